@@ -31,7 +31,7 @@ struct Message {
 };
 
 struct RunContext {
-  int threads = 0;               // 0: all
+  int threads = 0;  // 0: all. Reading and writing files has one number for the process: that of the latest call
   std::uint64_t max_memory = 0;  // bytes; 0: what the machine has
   // Starts a progress report of this label; the report ends when the returned callback is destroyed. Null: none.
   // The callback returns false to cancel the run, which then ends with kCancelled.
@@ -44,14 +44,15 @@ struct RunContext {
   std::shared_ptr<StageClock> clock;  // null: stages are not timed
   // Look-up tables and measured times are kept here between runs; empty: nowhere.
   std::filesystem::path cache_folder;
-  // Folders that may hold "exemplars" and "blender_scripts", the first match wins.
+  // Folders that may hold "exemplars" and "blender_scripts". Of a style in several, the first is taken.
   std::vector<std::filesystem::path> data_roots;
-  // Of the programs that a run starts, Blender above all: "NAME=VALUE". They are looked for in its PATH; without one,
-  // in /bin and /usr/bin.
+  // "NAME=VALUE": what programs that a run starts get, such as Blender. They are looked for in the PATH given here;
+  // without one, in /bin and /usr/bin.
   std::vector<std::string> environment;
   std::filesystem::path temporary_folder = "/tmp";  // for exported scenes and logs, while a program runs
-  std::filesystem::path program;  // the scumble program, for measurements in a process of their own; empty: none
-  std::shared_ptr<ProcessGuard> process_guard;  // null: nobody follows the programs that run
+  // This program, scumble, which measures memory in a process of its own; empty: memory cannot be measured.
+  std::filesystem::path program;
+  std::shared_ptr<ProcessGuard> process_guard;  // ends programs when a signal ends this one; null: they would go on
   // The largest need of memory that was noted so far; null: needs are checked and not noted.
   std::shared_ptr<std::atomic<std::uint64_t>> noted_memory = std::make_shared<std::atomic<std::uint64_t>>(0);
 

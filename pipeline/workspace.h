@@ -1,14 +1,14 @@
-// A workspace keeps what a caller changes one thing at a time of: the scene, its view, the guides, the styles, the
-// prepared exemplars. Each request is compared with what is there, and what is stale is made again:
+// A workspace keeps the scene, its view, the guides, the styles and the prepared exemplars from call to call. Each
+// request is compared with what is there, and only what is stale is made again:
 //
 //   changed                          made again
 //   a key of the style, the painting style; exemplars where the key concerns them; the picture. No ray is cast, unless
 //                                    the style now reads a layer that the guides lack.
 //   size, layers, samples, seed …    guides and picture. The acceleration structure stays.
-//   camera, view                     that, and the acceleration structure, which is relative to the camera. No file is
-//                                    loaded.
+//   camera, view                     guides, picture and the acceleration structure, which is relative to the camera.
+//                                    No file is loaded.
 //   the frame of an animation        pose, guides, picture. No file is loaded (a .blend is exported again).
-//   a file on disk                   what it is part of, and all that follows
+//   a file on disk                   what was read from it, and all that was made of that
 //
 // Pictures are those of `scumble stylize` with the same request, byte for byte.
 #pragma once
@@ -50,7 +50,7 @@ class Workspace {
   Workspace(Workspace&&) noexcept;
   Workspace& operator=(Workspace&&) noexcept;
 
-  // Paints one frame; no file is written. picture.seed, picture.fps and picture.frame count for the scene too. After an
+  // Paints one frame; no file is written. picture.seed, picture.fps and picture.frame replace the scene's. After an
   // error, kCancelled included, the next request starts from what is still valid. One call at a time.
   Expected<PaintedFrame> Paint(const SceneRequest& scene, const StyleRequest& style, const PictureRequest& picture);
 

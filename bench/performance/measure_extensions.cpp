@@ -100,12 +100,12 @@ void MeasureRadius(const PerformanceOptions& options, Report& report) {
     return With([=](Style& style) { style.transfer.blend_radius = radius, style.transfer.edge_aware = edge_aware; });
   };
   for (const Frame& frame : {WithMirrorImage(HillsFrame(width, height, true)), CloseUp(width, height),
-                             SceneFrame("suzanne", width, height)}) {
+                             SceneFrame("suzanne", width, height), SceneFrame("stilllife", width, height)}) {
     report.Say("radius 8: " + frame.name);
     std::vector<Extension> extensions;
     extensions.push_back(Extended("3", "plain", of_radius(1, false), frame, {}));
     extensions.push_back(Extended("3", "radius 8 against 1", of_radius(8, false), frame, 2.0));
-    extensions.push_back(Extended("4", "edge-aware against plain", of_radius(1, true), frame, 1.3));
+    extensions.push_back(Extended("4", "edge-aware against plain", of_radius(1, true), frame, 1.2));
     extensions.push_back(Extended("3", "radius 8 against 1, edge-aware", of_radius(8, true), frame, 2.5, 2));
     MeasureCosts(frame, extensions, options, report);
   }
@@ -125,10 +125,10 @@ void MeasureExtensions(const PerformanceOptions& options, Report& report) {
       return With([=](Style& style) { style.transfer.colorize = 1.0, style.transfer.colorize_mode = mode; });
     };
     all.push_back(Extended("4", "colorized by multiplying against plain", tinted(ColorizeMode::kMultiply), frame, 1.1));
-    all.push_back(Extended("4", "colorized in Oklab against plain", tinted(ColorizeMode::kOklab), frame, 1.1));
+    all.push_back(Extended("4", "colorized in Oklab against plain", tinted(ColorizeMode::kOklab), frame, 1.25));
     if (frame.name.starts_with("stilllife")) {
       const Style edges = With([](Style& style) { style.transfer.edge_aware = true; });
-      all.push_back(Extended("4", "edge-aware against plain", edges, frame, 1.3));
+      all.push_back(Extended("4", "edge-aware against plain", edges, frame, 1.2));
     }
     const Style table = With([](Style& style) { style.transfer.nearest = NearestSearch::kTable; });
     all.push_back(Extended("4", "look-up table against the formula", table, frame, 1.2));

@@ -60,8 +60,8 @@ struct EdgeRules {
   LazyDepthGradient& slopes;  // for callers that need the slopes of the whole picture
   double crease_degrees = 180.0;
   double depth_tolerance = 0.0;
-  std::span<const std::uint8_t> covered =
-      {};  // {}; // by pixel: whether its coverage is above 0; empty: taken from the guides
+  // By pixel: whether its coverage is above 0; empty: taken from the guides.
+  std::span<const std::uint8_t> covered = {};
 };
 
 // Whether two neighbouring pixels lie on one surface:

@@ -22,15 +22,15 @@ namespace scumble {
 
 struct StylizerOptions {
   int threads = 0;               // 0: all; for files, the number of the latest call of any Stylizer counts
-  std::uint64_t max_memory = 0;  // bytes; 0: what the machine has. What needs more is kUsage, or kMemory for 0
+  std::uint64_t max_memory = 0;  // bytes; 0: what the machine has. A call that needs more is kUsage, or kMemory for 0
   std::string data_folder = SCUMBLE_DATA_FOLDER;  // share/scumble; empty: no bundled styles
   std::string cache_folder;                       // for look-up tables; empty: they are not kept
   std::function<void(const std::string& line, bool is_warning)> message;  // on the calling thread; null: dropped
   Progress progress;  // of each call, 0 … 1; returning false cancels it
   // For .blend scenes. Blender is looked for in the PATH of this environment, "NAME=VALUE", and gets it; without a PATH
-  // it is looked for in /bin and /usr/bin. What it exports is in the folder until it is loaded.
+  // it is looked for in /bin and /usr/bin.
   std::vector<std::string> environment;
-  std::string temporary_folder = "/tmp";
+  std::string temporary_folder = "/tmp";  // holds what Blender exports until it is loaded
 };
 
 struct PaintSettings {

@@ -8,11 +8,11 @@ exemplars=$2
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 
-"$paint" --style all --size 128 --seed 1 -o "$folder/first" > /dev/null &
+"$paint" --style all --size 64 --seed 1 -o "$folder/first" > /dev/null &
 first=$!
 seed=1
 for style in "$exemplars"/*/style.toml; do
-  "$paint" --style "$(basename "$(dirname "$style")")" --size 128 --seed $seed -o "$folder/seed-$seed" > /dev/null
+  "$paint" --style "$(basename "$(dirname "$style")")" --size 64 --seed $seed -o "$folder/seed-$seed" > /dev/null
   seed=$((3 - seed))
 done
 wait "$first"

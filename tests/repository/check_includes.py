@@ -49,7 +49,6 @@ THIRD_PARTY = {
     "stb_image": {"guidegen"},
     "oneapi/tbb": {"guidegen", "transfer"},
     "tbb/": {"cli", "filter", "guidegen", "pipeline", "transfer"},
-    "nanoflann": {"transfer"},
     "hwy/": {"guidegen", "transfer"},
     "toml++/": {"style"},
     "apriltag/": {"style"},

@@ -10,8 +10,9 @@
 
 namespace scumble::internal {
 
-// Two active pixels are of one chunk if they have one exemplar and their sources differ as they do. Beyond the picture
-// no pixel is active, and all links are set, so that only pixels inside decide about a window that reaches out.
+// Two active neighbours are of one chunk if they take paint from one exemplar picture and the step between their
+// sources is the step between them. Beyond the picture no pixel is active but all are linked: only pixels inside decide
+// whether a window lies in one chunk.
 struct ChunkMasks {
   BitMaskRows active;
   BitMaskRows right;     // with the pixel to the right, both active

@@ -124,7 +124,7 @@ class VoteTile {
     return whole;
   }
 
-  // The steps that the support regions of multi-chunk pixels depend on: of three rows, from the pixel on the left.
+  // The steps that support regions of radius 1 of multi-chunk pixels depend on: of the 3 × 3 pixels around them.
   void MarkSteps() {
     BitMaskRows wanted;
     wanted.Reset(tile_, 0);

@@ -21,7 +21,7 @@ class SmallVotes {
   TexelPlanes texels_;
 };
 
-// Vote of vote.h, to the bit, for the radii 0 and 1.
+// The picture of VotePlainly (vote.h), to the bit, for the radii 0 and 1.
 bool VoteSmall(const VoteInput& input, Picture& out, RowProgress& progress);
 
 }  // namespace scumble::internal

@@ -21,7 +21,7 @@ struct VoteInput {
   std::span<const std::uint8_t> active;  // 1: a pixel that this style paints; others neither vote nor are painted
   const PreparedExemplar& exemplar;
   int radius = 0;
-  const EdgeRules* edges = nullptr;  // null: plain voting
+  const EdgeRules* edges = nullptr;  // null: windows are not cut at edges
   Region region;
   // Called from any thread for parts x0 … x1 - 1 of rows whose votes are counted, while they are in the caches: once
   // for each active pixel of the region, and maybe for others. It may change those pixels of the picture.

@@ -1,4 +1,5 @@
-// The two kernels for most pixels: copies of whole runs, and means of whole windows.
+// How most pixels get their colour: copies of runs of a chunk, means of the nine votes of a whole window, and means of
+// the votes of a part of one.
 #pragma once
 
 #include <cstdint>

@@ -61,7 +61,8 @@ class WideArms {
   OpenSteps steps_;
   std::vector<NormalBounds> bounds_;      // by cell
   BitMaskRows turns_right_, turns_down_;  // by row of cells: from these pixels on an arm may turn too far
-  std::vector<std::uint64_t> columns_;    // by length and row: columns whose pixel is on one arm with that far below
+  std::vector<std::uint64_t>
+      columns_;  // by length k and row: bit x is set if the pixel is on one arm with that k rows below
 };
 
 }  // namespace scumble::internal

@@ -31,7 +31,7 @@ class WideVotes {
   UsableRows usable_;
 };
 
-// The same picture as Vote's to the bit, for radii of 0 … kWidestRadius.
+// The picture of VotePlainly (vote.h), to the bit, for radii of 0 … kWidestRadius; Vote takes it from 2 on.
 bool WideVote(const VoteInput& input, Picture& out, RowProgress& progress);
 
 }  // namespace scumble::internal
