@@ -123,7 +123,7 @@ class Run {
            std::ranges::all_of(styles, [](const PreparedStyle* style) {
              const TransferSettings& settings = style->settings;
              return settings.method == Method::kStyleBlit && !settings.coherent && settings.match_step <= 1 &&
-                    !style->space && style->tones.empty() && style->rims.empty() &&
+                    !style->space && style->base_layers.empty() && style->rims.empty() &&
                     style->blend_radius <= internal::kMostBandRadius;
            });
   }
@@ -261,11 +261,11 @@ class Run {
     const internal::ColorizeInput tint{guides_, scratch_.active, TintOf(style)};
     if (tint.tint.active())
       votes.finished = [&](int y, int x0, int x1) { internal::ColorizeRow(tint, y, x0, x1, out_); };
-    if (style.tones.empty()) {
+    if (style.base_layers.empty()) {
       if (!internal::Vote(votes, out_, vote_progress)) return CancelledError();
     } else {
-      const internal::HybridInput hybrid{votes,       guides_,     style.illumination, input.luminance,
-                                         style.tones, input.space, input.brightness};
+      const internal::HybridInput hybrid{
+          votes, guides_, style.illumination, input.luminance, style.base_layers, input.space, input.brightness};
       if (!internal::VoteHybrid(hybrid, out_, vote_progress)) return CancelledError();
     }
     scratch_.times.vote_ms += watch.Lap();
@@ -284,7 +284,7 @@ class Run {
     coarse.region = input.region.GrownBy(internal::CoarseReach(step), guides_.width(), guides_.height());
     const internal::CoarseGrid grid(scratch_.active, guides_.width(), guides_.height(), step, coarse.region);
     wanted_.resize(guides_.pixel_count());
-    scratch_.field.moved.resize(guides_.pixel_count());
+    scratch_.field.guide_offset.resize(guides_.pixel_count());
     grid.Mark(1, guides_.width(), wanted_);
     coarse.wanted = wanted_;
     coarse.least_level = internal::CoarseLeastLevel(step);

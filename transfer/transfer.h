@@ -40,7 +40,7 @@ struct PreparedStyle {
   float reference_lightness =
       0.0f;  // Oklab's, of paint that takes on base colours as they are; only for tints in Oklab
   std::shared_ptr<const GuideSpace> space;  // the space of the match; null: normals alone, with weight 1
-  std::vector<Picture> tones;               // by exemplar, see MakeBaseLayers; only where transfer.hybrid is above 0
+  std::vector<Picture> base_layers;         // by exemplar, see MakeBaseLayers; only where transfer.hybrid is above 0
   Paper paper;
   // By exemplar; only where transfer.edge is "exemplar" and the paint of every exemplar ends near its rim.
   std::vector<RimPaint> rims;

@@ -94,16 +94,16 @@ class EdgeTest {
   // slopes do not matter, and along a column the horizontal ones.
   bool SameSurface(const Side& p, const Side& q, int dx, int dy) const {
     if (p.object != q.object) return false;
-    float along = 0.0f, leeway = 0.0f;
+    float along = 0.0f, slope_tolerance = 0.0f;
     if (dx != 0) {
       along += (p.slope_x + q.slope_x) * static_cast<float>(dx);
-      leeway += std::min(std::fabs(p.slope_x), std::fabs(q.slope_x));
+      slope_tolerance += std::min(std::fabs(p.slope_x), std::fabs(q.slope_x));
     }
     if (dy != 0) {
       along += (p.slope_y + q.slope_y) * static_cast<float>(dy);
-      leeway += std::min(std::fabs(p.slope_y), std::fabs(q.slope_y));
+      slope_tolerance += std::min(std::fabs(p.slope_y), std::fabs(q.slope_y));
     }
-    const float tolerance = leeway + give_.At(std::min(p.depth, q.depth));
+    const float tolerance = slope_tolerance + give_.At(std::min(p.depth, q.depth));
     return std::fabs(q.depth - p.depth - 0.5f * along) <= tolerance && NormalsAlike(p, q);
   }
   // Whether the normals are less than the crease apart.

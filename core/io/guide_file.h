@@ -30,7 +30,7 @@ struct GuideReadOptions {
   LayerSet required = AlwaysWritten();  // an error names those that are missing, and what is there
   LayerSet optional;                    // read where present
   std::string view_layer;               // which one of several in a multilayer file
-  std::string mend;  // the caller's remedy without depth and object, shown where nothing else is missing
+  std::string remedy;  // the caller's remedy without depth and object, shown where nothing else is missing
   std::filesystem::path blender_camera;  // the .camera file of a Blender render; empty: the camera is solved
 };
 

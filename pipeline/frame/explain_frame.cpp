@@ -16,9 +16,9 @@ std::vector<float> GuideErrors(const ShownTransfer& shown) {
     const glm::vec3 normal = shown.guides.Vec3(Layer::kNormal, i);
     const GuideTest test(style.settings.threshold, style.settings.threshold_metric);
     if (style.space) {
-      float rest[GuideSpace::kMaxExtra];
-      style.space->Read(shown.guides, i, exposure, rest);
-      errors[i] = style.space->Distance(test, field.exemplar[i], normal, rest, {field.x[i], field.y[i]});
+      float extra_values[GuideSpace::kMaxExtra];
+      style.space->Read(shown.guides, i, exposure, extra_values);
+      errors[i] = style.space->Distance(test, field.exemplar[i], normal, extra_values, {field.x[i], field.y[i]});
     } else {
       errors[i] = test.Distance(normal, style.exemplar->Normal(field.x[i], field.y[i]));
     }

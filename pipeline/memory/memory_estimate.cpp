@@ -29,7 +29,7 @@ constexpr Bytes kInstance = 2300;       // its node in the file, ours, and Embre
 
 // Of transfer/: what one pixel takes.
 constexpr Bytes kSource = 7;          // SourceField and who is painted
-constexpr Bytes kMoved = 13;          // SourceField::moved and who is matched, where not every pixel is
+constexpr Bytes kGuideOffset = 13;    // SourceField::guide_offset and who is matched, where not every pixel is
 constexpr Bytes kMatched = 32;        // of one that is matched then
 constexpr Bytes kSlopes = 8;          // DepthSlopes
 constexpr Bytes kSurfaceSeeds = 48;   // MatchCoherent
@@ -130,22 +130,22 @@ void AddStyle(const Style& style, int height, MemoryNeed& need) {
 void AddSources(const PictureWork& work, const Size& size, MemoryNeed& need) {
   const Bytes pixels = PixelsOf(size);
   bool keeps = work.keeps_field, lit = false;
-  Bytes of_pixel = 0, briefly = 0;
+  Bytes of_pixel = 0, transient = 0;
   int step = 1;
   for (const Style& style : work.styles) {
     keeps = keeps || KeepsSources(style, RadiusOf(style, size.height));
     lit = lit || LooksAtLight(style);
     step = std::max(step, style.transfer.match_step);
-    if (style.transfer.coherent) briefly = std::max(briefly, kSurfaceSeeds);
+    if (style.transfer.coherent) transient = std::max(transient, kSurfaceSeeds);
   }
-  if (step > 1) of_pixel += kMoved, briefly = std::max(briefly, kMatched / Bytes(step * step) + 1);
-  if (keeps) of_pixel += kSource, briefly += kSlopes;
-  if (lit) briefly += kFloat;  // exposed
+  if (step > 1) of_pixel += kGuideOffset, transient = std::max(transient, kMatched / Bytes(step * step) + 1);
+  if (keeps) of_pixel += kSource, transient += kSlopes;
+  if (lit) transient += kFloat;  // exposed
   if (work.has_map) of_pixel += 2;
   if (of_pixel > 0) need.Take("sources", of_pixel * pixels);
   const Bytes tiles = (Bytes(size.width) + 511) / 512;
   need.Take("seeds of the threads", ThreadsOf(work.threads) * tiles * kBandTile * work.styles.size());
-  if (briefly > 0) need.TakeTransient("match and votes", briefly * pixels);
+  if (transient > 0) need.TakeTransient("match and votes", transient * pixels);
 }
 
 }  // namespace

@@ -20,7 +20,8 @@ GuideReadOptions ReadOptions(const TransferRequest& request, const StyleSet& sty
   GuideReadOptions read;
   read.view_layer = request.view_layer;
   read.blender_camera = request.camera;
-  if (styles.first().transfer.edge_aware) read.mend = "; --set transfer.edge_aware=false does without depth and object";
+  if (styles.first().transfer.edge_aware)
+    read.remedy = "; --set transfer.edge_aware=false does without depth and object";
   return read;
 }
 

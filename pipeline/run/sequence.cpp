@@ -82,9 +82,9 @@ Expected<bool> CanKeep(const Sequence& sequence, const SequenceWork& work, int f
 }
 
 // Counts what became of the frames, and passes it on to the listener.
-class Tally {
+class FrameCounters {
  public:
-  Tally(const Sequence& sequence, const SequenceListener& listener, const RunContext& context)
+  FrameCounters(const Sequence& sequence, const SequenceListener& listener, const RunContext& context)
       : sequence_(sequence), listener_(listener), context_(context) {}
 
   void Made(int frame, const FrameReport& report) {
@@ -127,7 +127,7 @@ class Tally {
 // The frame that is written while the next one is made; at once, where there is one thread alone or no other to be had.
 class FramesBeingWritten {
  public:
-  FramesBeingWritten(Tally& tally, const RunContext& context) : tally_(tally), context_(context) {}
+  FramesBeingWritten(FrameCounters& counters, const RunContext& context) : counters_(counters), context_(context) {}
 
   Status Begin(int frame, const FrameWrite& write) {
     frame_ = frame;
@@ -155,12 +155,12 @@ class FramesBeingWritten {
 
  private:
   Status Report(Expected<FrameReport> report) {
-    if (!report) return tally_.Fail(frame_, report.error());
-    tally_.Made(frame_, *report);
+    if (!report) return counters_.Fail(frame_, report.error());
+    counters_.Made(frame_, *report);
     return Ok();
   }
 
-  Tally& tally_;
+  FrameCounters& counters_;
   const RunContext& context_;
   int frame_ = 0;
   std::future<Expected<FrameReport>> report_;  // waits at its end, so that no thread outlives what it uses
@@ -172,7 +172,7 @@ Expected<SequenceTotals> RunSequence(const Sequence& sequence, const SequenceWor
                                      const SequenceListener& listener, const RunContext& context,
                                      const Progress& progress) {
   Stopwatch watch;
-  Tally tally(sequence, listener, context);
+  FrameCounters counters(sequence, listener, context);
   std::vector<int> frames;
   for (const int frame : sequence.frames) {
     bool keep = false;
@@ -180,12 +180,12 @@ Expected<SequenceTotals> RunSequence(const Sequence& sequence, const SequenceWor
       SCUMBLE_ASSIGN(keep, CanKeep(sequence, work, frame, context));
     }
     if (keep) {
-      tally.Kept(frame);
+      counters.Kept(frame);
     } else {
       frames.push_back(frame);
     }
   }
-  FramesBeingWritten writing(tally, context);
+  FramesBeingWritten writing(counters, context);
   const double steps = static_cast<double>(frames.size() + 1);
   if (!frames.empty()) SCUMBLE_RETURN_IF_ERROR(work.begin(frames, Within(progress, 0.0, 1.0 / steps)));
   for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -196,11 +196,11 @@ Expected<SequenceTotals> RunSequence(const Sequence& sequence, const SequenceWor
     if (made) {
       SCUMBLE_RETURN_IF_ERROR(writing.Begin(frames[i], *made));
     } else {
-      SCUMBLE_RETURN_IF_ERROR(tally.Fail(frames[i], made.error()));
+      SCUMBLE_RETURN_IF_ERROR(counters.Fail(frames[i], made.error()));
     }
   }
   SCUMBLE_RETURN_IF_ERROR(writing.Finish());
-  return tally.Totals(watch.Lap());
+  return counters.Totals(watch.Lap());
 }
 
 Status StatusOf(const SequenceTotals& totals) {

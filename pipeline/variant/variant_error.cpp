@@ -97,21 +97,21 @@ TradeReference::TradeReference(std::shared_ptr<const GuideSet> guides, PreparedS
 void TradeReference::AddWeighedGuides() {
   const GuideSpace& space = *style_.space;
   const PreparedExemplar& exemplar = *style_.exemplar;
-  const auto count = static_cast<std::size_t>(space.rest());
+  const auto count = static_cast<std::size_t>(space.extra_dimensions());
   more_.assign(count, std::vector<float>(guides_->pixel_count()));
   const auto brightness = static_cast<float>(Exp2(exposure_));
   const auto coverage = guides_->Plane(Layer::kCoverage);
-  float rest[GuideSpace::kMaxExtra];
+  float extra_values[GuideSpace::kMaxExtra];
   for (std::size_t i = 0; i < guides_->pixel_count(); ++i) {
     if (!(coverage[i] > 0.0f)) continue;
-    space.Read(*guides_, i, brightness, rest);
-    for (std::size_t d = 0; d < count; ++d) more_[d][i] = rest[d];
+    space.Read(*guides_, i, brightness, extra_values);
+    for (std::size_t d = 0; d < count; ++d) more_[d][i] = extra_values[d];
   }
   for (int k = 0; k < exemplar.count(); ++k) {
     auto& planes = more_of_exemplars_[std::size_t(k)];
     planes.assign(count, std::vector<float>(PixelsOf(exemplar)));
     for (const Source& at : exemplar.UsablePixels()) {
-      const float* there = space.RestAt(k, at);
+      const float* there = space.ExtraValuesAt(k, at);
       for (std::size_t d = 0; d < count; ++d) planes[d][std::size_t(at.y) * exemplar.width() + at.x] = there[d];
     }
   }

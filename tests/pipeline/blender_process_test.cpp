@@ -159,14 +159,14 @@ TEST_F(BlenderProcess, ASignalEndsARangeWithinAFrame) {
     }
     return false;
   };
-  for (const auto& [last_words, signal] : {std::pair("sleep 50", SIGTERM), {"exit 0", SIGINT}}) {
+  for (const auto& [ending, signal] : {std::pair("sleep 50", SIGTERM), {"exit 0", SIGINT}}) {
     WriteProgram("blender",
                  "while [ \"$1\" != --output ]; do shift; done; folder=$(dirname \"$2\")\n"
                  "for frame in 1 2; do cp " +
                      Scene("suzanne.glb") +
                      " \"$folder/part\"; "
                      "mv \"$folder/part\" \"$folder/scene.$frame.glb\"; done; echo $$ > self; " +
-                     last_words);
+                     ending);
     fs::remove(At("self"));
     const pid_t child = Start({"guidegen", "shot.blend", "--blender", "./blender", "--frames", "1-2", "--size", "1024",
                                "--layers", "lpe.full", "--samples", "65536", "-o", "g.#.exr"});
@@ -177,10 +177,10 @@ TEST_F(BlenderProcess, ASignalEndsARangeWithinAFrame) {
     ::kill(child, signal);
     const CommandResult result = Finish(child);
     EXPECT_EQ(result.code, 128 + signal) << result.err;
-    EXPECT_TRUE(fs::is_empty(At("tmp"))) << last_words;
+    EXPECT_TRUE(fs::is_empty(At("tmp"))) << ending;
     std::string blender = Bytes("self");
     if (!blender.empty()) blender.pop_back();
-    EXPECT_TRUE(EndsSoon(blender)) << last_words;
+    EXPECT_TRUE(EndsSoon(blender)) << ending;
   }
   EXPECT_FALSE(Exists("g.1.exr"));
 }

@@ -302,7 +302,7 @@ TEST(Calibration, OfRivalsThatFitTheNearerIsTaken) {
   EXPECT_EQ(pick(40.0).variant, 2u);
   EXPECT_EQ(judged, 2) << "it is kept";
   EXPECT_EQ(clock.Total(), runs);
-  EXPECT_EQ(pick(31.0).variant, 1u) << "the rival is too slow";
+  EXPECT_EQ(pick(31.0).variant, 1u) << "the contender is too slow";
   EXPECT_TRUE(pick(31.0).compared.empty());
   EXPECT_EQ(pick(60.0).variant, 0u) << "what is above both is above the nearer, too";
   ladder.anew = true;

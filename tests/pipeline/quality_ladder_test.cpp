@@ -92,7 +92,7 @@ TEST(QualityLadder, SamplesGoFirstWhereThereAreAny) {
     return all;
   };
   EXPECT_EQ(most(17), 16);
-  EXPECT_EQ(most(16), 4) << "no rung takes more than there are, or as many";
+  EXPECT_EQ(most(16), 4) << "no step takes more than there are, or as many";
   EXPECT_EQ(most(4), 0);
   EXPECT_EQ(most(0), 0) << "no choice";
   frame.samples = 64;
@@ -110,7 +110,7 @@ TEST(QualityLadder, StylesThatAskForLight) {
 }
 
 // LadderSteps hold nothing that the style has anyway, and nothing that makes its look.
-TEST(QualityLadder, RungsSetWhatTheStyleHasNotAndLeaveItsLookAlone) {
+TEST(QualityLadder, StepsSetWhatTheStyleHasNotAndLeaveItsLookAlone) {
   EXPECT_FALSE(Sets(QualityLadder(Open("oil"), kCast), "transfer.hybrid")) << "oil is not split";
   EXPECT_TRUE(Sets(QualityLadder(Open("sumi-e"), kCast), "transfer.hybrid"));
   EXPECT_FALSE(Sets(QualityLadder(Open("ink"), kCast), "transfer.blend_radius")) << "ink is crisp";
@@ -273,18 +273,18 @@ RunContext WithMemory(std::uint64_t bytes) {
 }
 
 // Whatever the machine has.
-double MeasuredAs(StyleSet& styles, const std::string& rung, const GuideSet& guides,
+double MeasuredAs(StyleSet& styles, const std::string& step, const GuideSet& guides,
                   const RunContext& context = WithMemory(std::uint64_t(1) << 40)) {
   const PictureRequest picture;
   const std::string name = "guides", none;
   TrialPainter trial(styles, picture, {}, name, none, context);
   for (const Variant& variant : QualityLadder(styles, kGiven)) {
-    if (variant.name != rung) continue;
+    if (variant.name != step) continue;
     const auto off = trial.MeasureError(variant, guides);
     EXPECT_TRUE(off.ok()) << (off.ok() ? "" : off.error().message);
     return off.ok() ? *off : -1.0;
   }
-  ADD_FAILURE() << "no rung " << rung;
+  ADD_FAILURE() << "no step " << step;
   return -1.0;
 }
 

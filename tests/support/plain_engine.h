@@ -53,9 +53,9 @@ inline PlainSource PlainSourceAt(const GuideSet& guides, const PreparedExemplar&
     if (q.x < 0 || q.y < 0 || q.x >= guides.width() || q.y >= guides.height()) continue;
     if (!(coverage[guides.Index(q.x, q.y)] > 0.0f)) continue;
     const Source u = exemplar.NearestNeighbour(guides.Vec3(Layer::kNormal, guides.Index(q.x, q.y)));
-    const PlainSource offer{u.x + x - q.x, u.y + y - q.y, level};
-    if (!exemplar.Usable(offer.x, offer.y)) continue;
-    if (PlainAlike(normal - exemplar.Normal(offer.x, offer.y), settings)) return offer;
+    const PlainSource candidate{u.x + x - q.x, u.y + y - q.y, level};
+    if (!exemplar.Usable(candidate.x, candidate.y)) continue;
+    if (PlainAlike(normal - exemplar.Normal(candidate.x, candidate.y), settings)) return candidate;
   }
   const Source own = exemplar.NearestNeighbour(normal);
   return {own.x, own.y, 0};

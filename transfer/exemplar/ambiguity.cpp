@@ -88,16 +88,16 @@ SpaceAmbiguity MeasureAmbiguity(const GuideSpace& space, const PreparedExemplar&
   constexpr int kSide = 32;  // of the grid of directions
   std::size_t covered = 0, asked = 0;
   for (int step = 0; step < kLightSteps; ++step) {
-    std::vector<float> rest(std::size_t(space.rest()) + 1);
-    space.Blend(k, static_cast<float>(step) / (kLightSteps - 1), rest.data());
+    std::vector<float> extra_values(std::size_t(space.extra_dimensions()) + 1);
+    space.Blend(k, static_cast<float>(step) / (kLightSteps - 1), extra_values.data());
     for (int j = 0; j < kSide; ++j) {
       for (int i = 0; i < kSide; ++i) {
         const double px = (2.0 * i + 1.0) / kSide - 1.0, py = 1.0 - (2.0 * j + 1.0) / kSide;
         if (px * px + py * py > 1.0) continue;
         const glm::vec3 direction = DirectionAt(px, py);
-        const Source source = space.Nearest(k, direction, rest.data());
-        covered += space.Alike(test, k, direction, rest.data(), source, 0.0f);
-        report.mean_error += space.Distance(test, k, direction, rest.data(), source);
+        const Source source = space.Nearest(k, direction, extra_values.data());
+        covered += space.Alike(test, k, direction, extra_values.data(), source, 0.0f);
+        report.mean_error += space.Distance(test, k, direction, extra_values.data(), source);
         ++asked;
       }
     }

@@ -58,7 +58,7 @@ Expected<GuideSpace> GuideSpace::Build(const GuideWeights& weights, std::span<co
     if (!(weights[info.layer] > 0.0f) || info.layer == Layer::kNormal) continue;
     SCUMBLE_CHECK(GuideWeights::CanWeigh(info.layer));
     space.layers_.push_back(info.layer), space.weights_.push_back(weights[info.layer]);
-    for (int c = 0; c < ChannelCount(info.layer); ++c, ++space.rest_) {
+    for (int c = 0; c < ChannelCount(info.layer); ++c, ++space.extra_dimensions_) {
       space.parts_.push_back({info.layer, c, GuideWeights::IsRadiance(info.layer), weights[info.layer]});
     }
     for (const Exemplar& exemplar : exemplars) {
@@ -67,7 +67,7 @@ Expected<GuideSpace> GuideSpace::Build(const GuideWeights& weights, std::span<co
                         ", and transfer.guide_weights asks for it: make guides that hold it, or leave its weight at 0");
     }
   }
-  SCUMBLE_CHECK(space.dimensions() > 0 && space.rest_ <= kMaxExtra);
+  SCUMBLE_CHECK(space.dimensions() > 0 && space.extra_dimensions_ <= kMaxExtra);
   for (const Layer layer : kExposedBy) {
     if (!(weights[layer] > 0.0f)) continue;
     space.has_radiance_ = true, space.radiance_ = layer;
@@ -78,24 +78,24 @@ Expected<GuideSpace> GuideSpace::Build(const GuideWeights& weights, std::span<co
   }
   for (int k = 0; k < space.exemplar_->count(); ++k) {
     space.values_.emplace_back();
-    if (space.rest_ > 0) space.SampleExemplar(*exemplars[std::size_t(k)].guides, space.values_.back());
+    if (space.extra_dimensions_ > 0) space.SampleExemplar(*exemplars[std::size_t(k)].guides, space.values_.back());
     space.trees_.push_back(space.PlantTree(k));
   }
   return space;
 }
 
-void GuideSpace::ReadAll(const GuideSet& guides, std::size_t pixel, float factor, float* rest) const {
+void GuideSpace::ReadAll(const GuideSet& guides, std::size_t pixel, float factor, float* extra_values) const {
   for (const Part& part : parts_) {
-    *rest++ = part.weight * Coordinate(part.radiance, guides.Plane(part.layer, part.component)[pixel], factor);
+    *extra_values++ = part.weight * Coordinate(part.radiance, guides.Plane(part.layer, part.component)[pixel], factor);
   }
 }
 
-void GuideSpace::Read(const GuideSet& scene, std::size_t pixel, float brightness, float* rest) const {
-  ReadAll(scene, pixel, brightness / white_, rest);
+void GuideSpace::Read(const GuideSet& scene, std::size_t pixel, float brightness, float* extra_values) const {
+  ReadAll(scene, pixel, brightness / white_, extra_values);
 }
 
 void GuideSpace::SampleExemplar(const GuideSet& guides, std::vector<float>& values) const {
-  values.resize(std::size_t(exemplar_->width()) * exemplar_->height() * static_cast<std::size_t>(rest_));
+  values.resize(std::size_t(exemplar_->width()) * exemplar_->height() * static_cast<std::size_t>(extra_dimensions_));
   for (int y = 0; y < exemplar_->height(); ++y) {
     for (int x = 0; x < exemplar_->width(); ++x) {
       if (!exemplar_->Usable(x, y)) continue;
@@ -115,25 +115,26 @@ GuideSpace::Tree GuideSpace::PlantTree(int k) const {
   return {PointTree(dimensions(), std::move(coordinates)), std::move(sources)};
 }
 
-Source GuideSpace::Nearest(int k, glm::vec3 normal, const float* rest) const {
+Source GuideSpace::Nearest(int k, glm::vec3 normal, const float* extra_values) const {
   std::array<float, 3 + kMaxExtra> query;
   std::size_t n = 0;
   if (normal_weight_ > 0.0f) {
     const glm::vec3 facing = normal_weight_ * FacingDirection(normal);
     query[0] = facing.x, query[1] = facing.y, query[2] = facing.z, n = 3;
   }
-  std::copy(rest, rest + rest_, query.begin() + static_cast<std::ptrdiff_t>(n));
+  std::copy(extra_values, extra_values + extra_dimensions_, query.begin() + static_cast<std::ptrdiff_t>(n));
   const Tree& tree = trees_[std::size_t(k)];
   // Pixels come in rows, and neighbours resemble each other. The start of a search does not change its result.
   thread_local std::uint32_t place = 0;
-  return tree.sources[tree.points.Nearest({query.data(), n + static_cast<std::size_t>(rest_)}, place, nearest_error_)];
+  return tree.sources[tree.points.Nearest({query.data(), n + static_cast<std::size_t>(extra_dimensions_)}, place,
+                                          nearest_error_)];
 }
 
-void GuideSpace::Blend(int k, float share, float* rest) const {
+void GuideSpace::Blend(int k, float share, float* extra_values) const {
   for (std::size_t l = 0; l < layers_.size(); ++l) {
     const Range range = RangeOf(k, layers_[l]);
     const float value = weights_[l] * (range.least + share * (range.largest - range.least));
-    for (int c = 0; c < ChannelCount(layers_[l]); ++c) *rest++ = value;
+    for (int c = 0; c < ChannelCount(layers_[l]); ++c) *extra_values++ = value;
   }
 }
 
@@ -144,7 +145,7 @@ GuideSpace::Range GuideSpace::RangeOf(int k, Layer layer) const {
   Range range{1.0f, 0.0f};
   for (const Source& source : trees_[std::size_t(k)].sources) {
     for (int c = 0; c < ChannelCount(layer); ++c) {
-      const float value = RestAt(k, source)[from + static_cast<std::size_t>(c)] / weights_[l];
+      const float value = ExtraValuesAt(k, source)[from + static_cast<std::size_t>(c)] / weights_[l];
       range = {std::min(range.least, value), std::max(range.largest, value)};
     }
   }

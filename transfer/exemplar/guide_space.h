@@ -47,8 +47,8 @@ class GuideSpace {
                                     std::shared_ptr<const PreparedExemplar> prepared, double nearest_error = 0.0);
 
   float normal_weight() const { return normal_weight_; }
-  int rest() const { return rest_; }  // extra dimensions, beside the normal's
-  int dimensions() const { return rest_ + (normal_weight_ > 0.0f ? 3 : 0); }
+  int extra_dimensions() const { return extra_dimensions_; }  // extra dimensions, beside the normal's
+  int dimensions() const { return extra_dimensions_ + (normal_weight_ > 0.0f ? 3 : 0); }
   std::span<const Layer> layers() const { return layers_; }  // those of the extra dimensions, in the enum's order
 
   // Radiance: whether it has a weight; the layer that measures its exposure (the first of luminance, lpe.LDE,
@@ -59,7 +59,7 @@ class GuideSpace {
   float white() const { return white_; }
 
   // Reads the extra dimensions of a scene's pixel. `brightness` is 2^stops.
-  void Read(const GuideSet& scene, std::size_t pixel, float brightness, float* rest) const;
+  void Read(const GuideSet& scene, std::size_t pixel, float brightness, float* extra_values) const;
 
   // The least and the largest coordinate of exemplar k's usable pixels in one of layers(), unweighted.
   struct Range {
@@ -68,7 +68,7 @@ class GuideSpace {
   Range RangeOf(int k, Layer layer) const;
 
   // Extra dimensions between each layer's least value (share 0) and its largest (share 1).
-  void Blend(int k, float share, float* rest) const;
+  void Blend(int k, float share, float* extra_values) const;
 
   // Calls visit(value) for each coordinate of a usable pixel of exemplar k, the normal's first.
   template <class Visit>
@@ -77,29 +77,30 @@ class GuideSpace {
       const glm::vec3 normal = normal_weight_ * exemplar_->Normal(at.x, at.y);
       visit(normal.x), visit(normal.y), visit(normal.z);
     }
-    const float* rest = RestAt(k, at);
-    for (int d = 0; d < rest_; ++d) visit(rest[d]);
+    const float* extra_values = ExtraValuesAt(k, at);
+    for (int d = 0; d < extra_dimensions_; ++d) visit(extra_values[d]);
   }
 
   // The extra dimensions of a pixel of exemplar k.
-  const float* RestAt(int k, Source at) const { return values_[std::size_t(k)].data() + Offset(at); }
+  const float* ExtraValuesAt(int k, Source at) const { return values_[std::size_t(k)].data() + Offset(at); }
 
   // The usable pixel of exemplar k that is nearest, exactly unless an error is allowed; ties to the lowest (y, x).
-  // `normal` is unweighted, `rest` is weighted.
-  Source Nearest(int k, glm::vec3 normal, const float* rest) const;
+  // `normal` is unweighted, `extra_values` is weighted.
+  Source Nearest(int k, glm::vec3 normal, const float* extra_values) const;
 
   // Whether the test accepts `at` for a pixel, as GuideTest does; `extra` is the light's part.
-  bool Alike(const GuideTest& test, int k, glm::vec3 normal, const float* rest, Source at, float extra) const {
-    const float off = test.Rest(rest, RestAt(k, at), rest_);
+  bool Alike(const GuideTest& test, int k, glm::vec3 normal, const float* extra_values, Source at, float extra) const {
+    const float off = test.ExtraDistance(extra_values, ExtraValuesAt(k, at), extra_dimensions_);
     return test.Alike(normal_weight_ * normal, normal_weight_ * exemplar_->Normal(at.x, at.y), off, extra);
   }
   // Whether two pixels of exemplar k are alike in the extra dimensions.
   bool AlikeRest(const GuideTest& test, int k, Source a, Source b) const {
-    return test.Alike(glm::vec3(0.0f), glm::vec3(0.0f), test.Rest(RestAt(k, a), RestAt(k, b), rest_), 0.0f);
+    return test.Alike(glm::vec3(0.0f), glm::vec3(0.0f),
+                      test.ExtraDistance(ExtraValuesAt(k, a), ExtraValuesAt(k, b), extra_dimensions_), 0.0f);
   }
   // The distance that is compared with the threshold there.
-  float Distance(const GuideTest& test, int k, glm::vec3 normal, const float* rest, Source at) const {
-    const float off = test.Rest(rest, RestAt(k, at), rest_);
+  float Distance(const GuideTest& test, int k, glm::vec3 normal, const float* extra_values, Source at) const {
+    const float off = test.ExtraDistance(extra_values, ExtraValuesAt(k, at), extra_dimensions_);
     return test.Distance(normal_weight_ * normal, normal_weight_ * exemplar_->Normal(at.x, at.y), off);
   }
 
@@ -119,9 +120,9 @@ class GuideSpace {
   };
 
   std::size_t Offset(Source at) const {
-    return (std::size_t(at.y) * exemplar_->width() + at.x) * static_cast<std::size_t>(rest_);
+    return (std::size_t(at.y) * exemplar_->width() + at.x) * static_cast<std::size_t>(extra_dimensions_);
   }
-  void ReadAll(const GuideSet& guides, std::size_t pixel, float factor, float* rest) const;
+  void ReadAll(const GuideSet& guides, std::size_t pixel, float factor, float* extra_values) const;
   void SampleExemplar(const GuideSet& guides, std::vector<float>& values) const;
   Tree PlantTree(int k) const;
 
@@ -131,7 +132,7 @@ class GuideSpace {
   std::vector<Layer> layers_;
   std::vector<float> weights_;
   std::vector<Part> parts_;
-  int rest_ = 0;
+  int extra_dimensions_ = 0;
   bool has_radiance_ = false;
   Layer radiance_ = Layer::kLuminance;
   float white_ = 1.0f;

@@ -81,7 +81,7 @@ struct PreparedExemplar::LazySourceVariation {
   std::optional<SourceVariation> value;
 };
 
-PreparedExemplar::PreparedExemplar() : alternatives_(std::make_shared<LazySourceVariation>()) {}
+PreparedExemplar::PreparedExemplar() : source_variation_(std::make_shared<LazySourceVariation>()) {}
 
 PreparedExemplar::PreparedExemplar(std::span<const Picture* const> pictures, double rim, int size)
     : PreparedExemplar() {
@@ -152,9 +152,9 @@ Expected<PreparedExemplar> PreparedExemplar::OfScene(std::span<const Picture* co
   return exemplar;
 }
 
-const SourceVariation& PreparedExemplar::alternatives() const {
-  std::call_once(alternatives_->made, [this] { alternatives_->value.emplace(*this); });
-  return *alternatives_->value;
+const SourceVariation& PreparedExemplar::source_variation() const {
+  std::call_once(source_variation_->made, [this] { source_variation_->value.emplace(*this); });
+  return *source_variation_->value;
 }
 
 ExemplarRows PreparedExemplar::Rows() const {

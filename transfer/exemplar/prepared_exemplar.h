@@ -101,7 +101,7 @@ class PreparedExemplar {
   glm::vec2 OnDisc(glm::vec3 normal) const;
 
   // Other sources for a normal; computed by the first call, on whichever thread.
-  const SourceVariation& alternatives() const;
+  const SourceVariation& source_variation() const;
 
   ExemplarRows Rows() const;
 
@@ -144,7 +144,7 @@ class PreparedExemplar {
   std::vector<Picture> pictures_;
   std::shared_ptr<const Scene> scene_;            // null: the sphere
   std::shared_ptr<const ExemplarSearch> search_;  // null: analytic
-  std::shared_ptr<LazySourceVariation> alternatives_;
+  std::shared_ptr<LazySourceVariation> source_variation_;
 };
 
 // N for a picture of `size` pixels at `scale`, for an output of `output_height` pixels; `reference_height` 0 means that

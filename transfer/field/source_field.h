@@ -21,7 +21,7 @@ struct SourceField {
   std::vector<std::int16_t> y;
   std::vector<std::int8_t> level;
   std::vector<std::uint8_t> exemplar;
-  std::vector<glm::vec3> moved;  // guide offset of each seed's source (variety); empty where it is not needed
+  std::vector<glm::vec3> guide_offset;  // guide offset of each seed's source (variety); empty where it is not needed
 
   // Sets the size alone: values stay or are undefined, and guide offsets are 0.
   void Resize(int new_width, int new_height) { ResizeRows(new_width, new_height, new_height); }
@@ -30,13 +30,13 @@ struct SourceField {
     width = new_width, height = new_height, first_row = 0;
     const std::size_t count = std::size_t(width) * rows;
     x.resize(count), y.resize(count), level.resize(count), exemplar.resize(count);
-    moved.clear();
+    guide_offset.clear();
   }
   void Reset(int new_width, int new_height) {
     width = new_width, height = new_height, first_row = 0;
     const std::size_t count = std::size_t(width) * height;
     x.assign(count, 0), y.assign(count, 0), level.assign(count, kNoSource), exemplar.assign(count, 0);
-    moved.clear();
+    guide_offset.clear();
   }
   void Set(std::size_t i, int source_x, int source_y, int source_exemplar, int settled) {
     x[i] = static_cast<std::int16_t>(source_x), y[i] = static_cast<std::int16_t>(source_y);

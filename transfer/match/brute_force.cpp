@@ -5,11 +5,11 @@ namespace scumble::internal {
 namespace {
 
 // Tries the anchor's source on every free pixel whose place lands inside the exemplar.
-void GrowChunk(const MatchInput& input, int anchor_x, int anchor_y, const Candidate& offer, SourceField& field) {
-  const Source anchor = offer.source;
+void GrowChunk(const MatchInput& input, int anchor_x, int anchor_y, const Candidate& candidate, SourceField& field) {
+  const Source anchor = candidate.source;
   PixelGuide of_anchor;
   input.ReadGuide(input.guides.Index(anchor_x, anchor_y), of_anchor);
-  const bool off = input.IsOff(of_anchor, anchor, offer.exemplar);
+  const bool off = input.IsOff(of_anchor, anchor, candidate.exemplar);
   const int size = input.exemplar.size();
   const int x0 = std::max(input.region.x0, anchor_x - anchor.x);
   const int x1 = std::min(input.region.x1, anchor_x - anchor.x + size);
@@ -18,13 +18,13 @@ void GrowChunk(const MatchInput& input, int anchor_x, int anchor_y, const Candid
     for (int x = x0; x < x1; ++x) {
       const std::size_t i = field.Index(x, y);
       if (field.level[i] != SourceField::kNoSource || !input.Wants(i)) continue;
-      const Source candidate{anchor.x + (x - anchor_x), anchor.y + (y - anchor_y)};
-      if (!input.exemplar.Usable(candidate.x, candidate.y)) continue;
+      const Source source{anchor.x + (x - anchor_x), anchor.y + (y - anchor_y)};
+      if (!input.exemplar.Usable(source.x, source.y)) continue;
       PixelGuide guide;
       input.ReadGuide(i, guide);
-      if (off) input.MoveAs(of_anchor, anchor, offer.exemplar, guide);
-      if (!input.Alike(guide, glm::vec3(0.0f), candidate, offer.exemplar)) continue;
-      field.Set(i, candidate.x, candidate.y, offer.exemplar, 0);
+      if (off) input.OffsetGuide(of_anchor, anchor, candidate.exemplar, guide);
+      if (!input.Alike(guide, glm::vec3(0.0f), source, candidate.exemplar)) continue;
+      field.Set(i, source.x, source.y, candidate.exemplar, 0);
     }
   }
 }

@@ -14,13 +14,13 @@ struct Matched {
   Source source;
   int exemplar = 0;
   int level = 0;
-  glm::vec3 moved{0.0f};
+  glm::vec3 guide_offset{0.0f};
   bool off = false;  // MatchInput::IsOff
 
   bool SameChunk(const Matched& other) const {
     return source.x - pixel.x == other.source.x - other.pixel.x &&
            source.y - pixel.y == other.source.y - other.pixel.y && exemplar == other.exemplar && level == other.level &&
-           moved == other.moved;
+           guide_offset == other.guide_offset;
   }
 };
 
@@ -43,10 +43,10 @@ class MatchedGrid {
       if (!pixel) continue;
       const std::size_t i = field.Index(pixel->x, pixel->y);
       matched_[b] = Matched{*pixel, {field.x[i], field.y[i]}, field.exemplar[i], field.level[i]};
-      if (!field.moved.empty()) matched_[b]->moved = field.moved[i];
+      if (!field.guide_offset.empty()) matched_[b]->guide_offset = field.guide_offset[i];
       PixelGuide guide;
       input.ReadGuide(i, guide);
-      guide.normal += matched_[b]->moved;
+      guide.normal += matched_[b]->guide_offset;
       matched_[b]->off = input.IsOff(guide, matched_[b]->source, matched_[b]->exemplar);
     }
     in_one_piece_.resize(matched_.size());
@@ -88,15 +88,15 @@ std::optional<Candidate> Accept(const MatchInput& input, const Matched& matched,
   const Source candidate{matched.source.x + (x - matched.pixel.x), matched.source.y + (y - matched.pixel.y)};
   if (!input.exemplar.Usable(candidate.x, candidate.y)) return std::nullopt;
   if (matched.off) {
-    PixelGuide of_block, moved = guide;
+    PixelGuide of_block, offset_guide = guide;
     input.ReadGuide(input.guides.Index(matched.pixel.x, matched.pixel.y), of_block);
-    of_block.normal += matched.moved;
-    input.MoveAs(of_block, matched.source, matched.exemplar, moved);
-    if (!input.Alike(moved, matched.moved, candidate, matched.exemplar)) return std::nullopt;
-    return Candidate{candidate, matched.exemplar, matched.moved};
+    of_block.normal += matched.guide_offset;
+    input.OffsetGuide(of_block, matched.source, matched.exemplar, offset_guide);
+    if (!input.Alike(offset_guide, matched.guide_offset, candidate, matched.exemplar)) return std::nullopt;
+    return Candidate{candidate, matched.exemplar, matched.guide_offset};
   }
-  if (!input.Alike(guide, matched.moved, candidate, matched.exemplar)) return std::nullopt;
-  return Candidate{candidate, matched.exemplar, matched.moved};
+  if (!input.Alike(guide, matched.guide_offset, candidate, matched.exemplar)) return std::nullopt;
+  return Candidate{candidate, matched.exemplar, matched.guide_offset};
 }
 
 // The candidate that p takes from the blocks around it, and its level.
@@ -108,11 +108,11 @@ std::optional<Candidate> Best(const MatchInput& input, const MatchedGrid& matche
   for (const PixelPosition& block : blocks) {
     const std::optional<Matched>& there = matched.At(block.x, block.y);
     if (!there || (best && there->level < level)) continue;
-    const auto offer = Accept(input, *there, x, y, guide);
-    if (!offer) continue;
-    const float error = input.Distance(guide, offer->moved, offer->source, offer->exemplar);
+    const auto candidate = Accept(input, *there, x, y, guide);
+    if (!candidate) continue;
+    const float error = input.Distance(guide, candidate->guide_offset, candidate->source, candidate->exemplar);
     if (best && there->level == level && !(error < least)) continue;
-    best = offer, level = there->level, least = error;
+    best = candidate, level = there->level, least = error;
   }
   return best;
 }

@@ -15,7 +15,7 @@
 #include <optional>
 
 #include "core/image/hash.h"
-#include "transfer/match/seed_offer.h"
+#include "transfer/match/seed_candidate.h"
 #include "transfer/seeds/surface_seeds.h"
 
 namespace scumble::internal {
@@ -120,7 +120,7 @@ class CoherentMatch {
         if (!input_.Wants(i) || settled_[i]) continue;
         const Candidate own = OwnCandidate(input_, i);
         field_.Set(i, own.source.x, own.source.y, own.exemplar, 0);
-        if (!field_.moved.empty()) field_.moved[i] = own.moved;
+        if (!field_.guide_offset.empty()) field_.guide_offset[i] = own.guide_offset;
       }
     });
   }
@@ -220,7 +220,7 @@ class CoherentMatch {
       const auto taken = TryCandidate(input_, seed->made, seed->q, {x, y}, guide);
       if (!taken) continue;
       field_.Set(i, taken->source.x, taken->source.y, taken->exemplar, seed->level);
-      if (!field_.moved.empty()) field_.moved[i] = taken->moved;
+      if (!field_.guide_offset.empty()) field_.guide_offset[i] = taken->guide_offset;
       settled_[i] = 1;
     }
   }

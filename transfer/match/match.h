@@ -19,8 +19,8 @@ namespace scumble::internal {
 // The guide values of one pixel of the scene.
 struct PixelGuide {
   glm::vec3 normal;
-  float light;                        // exposed luminance, for the choice of exemplars
-  float rest[GuideSpace::kMaxExtra];  // the extra dimensions of a GuideSpace; only with one
+  float light;                                // exposed luminance, for the choice of exemplars
+  float extra_values[GuideSpace::kMaxExtra];  // the extra dimensions of a GuideSpace; only with one
 };
 
 // The input of a match. `field` has the picture's size already.
@@ -59,39 +59,39 @@ struct MatchInput {
   void ReadGuide(std::size_t i, PixelGuide& guide) const {
     guide.normal = guides.Vec3(Layer::kNormal, i);
     guide.light = LuminanceAt(i);
-    if (space) space->Read(guides, i, brightness, guide.rest);
+    if (space) space->Read(guides, i, brightness, guide.extra_values);
   }
 
   // The source in exemplar k that is nearest to a guide.
   Source NearestTo(const PixelGuide& guide, int k) const {
-    return space ? space->Nearest(k, guide.normal, guide.rest) : exemplar.NearestNeighbour(guide.normal);
+    return space ? space->Nearest(k, guide.normal, guide.extra_values) : exemplar.NearestNeighbour(guide.normal);
   }
 
   // Whether a pixel may show `at` of exemplar k, its light included. Its normal is compared after the guide offset
-  // `moved` is added.
-  bool Alike(const PixelGuide& guide, glm::vec3 moved, Source at, int k) const {
+  // `guide_offset` is added.
+  bool Alike(const PixelGuide& guide, glm::vec3 guide_offset, Source at, int k) const {
     const float extra = illumination.Error(guide.light, k);
-    if (space) return space->Alike(test, k, guide.normal + moved, guide.rest, at, extra);
-    return test.Alike(guide.normal + moved, exemplar.Normal(at.x, at.y), extra);
+    if (space) return space->Alike(test, k, guide.normal + guide_offset, guide.extra_values, at, extra);
+    return test.Alike(guide.normal + guide_offset, exemplar.Normal(at.x, at.y), extra);
   }
   // Whether no source in the exemplar is within the threshold of a seed, `best` being the nearest: for example a shadow
   // on a surface towards the light, where the exemplar shows all such surfaces lit. Its chunk would contain no pixel.
   // Instead the pixels around it are compared with the seed's own difference as a guide offset. Normals alone are
   // always compared directly.
   bool IsOff(const PixelGuide& seed, Source best, int k) const {
-    return space && space->rest() > 0 && !space->Alike(test, k, seed.normal, seed.rest, best, 0.0f);
+    return space && space->extra_dimensions() > 0 && !space->Alike(test, k, seed.normal, seed.extra_values, best, 0.0f);
   }
-  void MoveAs(const PixelGuide& seed, Source best, int k, PixelGuide& guide) const {
+  void OffsetGuide(const PixelGuide& seed, Source best, int k, PixelGuide& guide) const {
     guide.normal += exemplar.Normal(best.x, best.y) - seed.normal;
-    const float* there = space->RestAt(k, best);
-    for (int d = 0; d < space->rest(); ++d) guide.rest[d] += there[d] - seed.rest[d];
+    const float* there = space->ExtraValuesAt(k, best);
+    for (int d = 0; d < space->extra_dimensions(); ++d) guide.extra_values[d] += there[d] - seed.extra_values[d];
   }
 
   // The distance that is compared with the threshold there.
-  float Distance(const PixelGuide& guide, glm::vec3 moved, Source at, int k) const {
+  float Distance(const PixelGuide& guide, glm::vec3 guide_offset, Source at, int k) const {
     const float extra = illumination.Error(guide.light, k);
-    if (space) return space->Distance(test, k, guide.normal + moved, guide.rest, at) + extra;
-    return test.Distance(guide.normal + moved, exemplar.Normal(at.x, at.y)) + extra;
+    if (space) return space->Distance(test, k, guide.normal + guide_offset, guide.extra_values, at) + extra;
+    return test.Distance(guide.normal + guide_offset, exemplar.Normal(at.x, at.y)) + extra;
   }
 };
 
@@ -99,7 +99,7 @@ struct MatchInput {
 struct Candidate {
   Source source;
   int exemplar = 0;
-  glm::vec3 moved{0.0f};  // guide offset of the seed's source: the pixel's own guide is shifted equally
+  glm::vec3 guide_offset{0.0f};  // guide offset of the seed's source: the pixel's own guide is shifted equally
 };
 Candidate OwnCandidate(const MatchInput& input, std::size_t pixel);
 Candidate OwnCandidate(const MatchInput& input, const PixelGuide& guide);  // for a pixel whose guide has been read

@@ -41,7 +41,7 @@ void TileSeeds::Reset(const MatchInput& input, int level, int x0) {
   columns_ = ((x0 + kTileWidth - 1) >> level) + 1 - first_column_ + 1;
   part_ = std::max(0, 6 - level);
   SCUMBLE_DCHECK(columns_ >> part_ < 64);
-  for (Made* made : {&offered_, &placed_}) {
+  for (Made* made : {&filled_, &placed_}) {
     std::fill(std::begin(made->row), std::end(made->row), kNoRow);
     made->last_row = kNoRow;
   }
@@ -50,8 +50,8 @@ void TileSeeds::Reset(const MatchInput& input, int level, int x0) {
   for (int c = 0; c < columns_; ++c) column_hashes_[std::size_t(c)] = HashOn(level_hash, first_column_ + c);
   const std::size_t seeds = std::size_t(kSlots) * columns_;
   in_cell_.resize(seeds);
-  offers_.resize(seeds);
-  freedoms_.resize(input.variety_degrees > 0.0 ? seeds : 0);
+  candidates_.resize(seeds);
+  variations_.resize(input.variety_degrees > 0.0 ? seeds : 0);
   spread_ = level <= kMaxSpreadLevel ? std::size_t(columns_) << level : 0;
   spread_x_.resize(kSlots * spread_);
   spread_y_.resize(kSlots * spread_);
@@ -66,8 +66,8 @@ void TileSeeds::ForEachColumn(std::uint64_t parts, const Visit& visit) const {
 }
 
 void TileSeeds::MakeCandidates(int cell_row, std::uint64_t parts) {
-  TileCandidate* const offers = offers_.data() + std::size_t(Slot(cell_row)) * columns_;
-  ForEachColumn(parts, [&](int c) { offers[c].state = TileCandidate::kUnknown; });
+  TileCandidate* const candidates = candidates_.data() + std::size_t(Slot(cell_row)) * columns_;
+  ForEachColumn(parts, [&](int c) { candidates[c].state = TileCandidate::kUnknown; });
 }
 
 void TileSeeds::MakePlaces(int cell_row, std::uint64_t parts) {
@@ -82,8 +82,8 @@ void TileSeeds::MakePlaces(int cell_row, std::uint64_t parts) {
   });
 }
 
-void TileSeeds::Fill(int index, TileCandidate& offer) {
-  offer.state = TileCandidate::kNone;
+void TileSeeds::Fill(int index, TileCandidate& candidate) {
+  candidate.state = TileCandidate::kNone;
   const PixelPosition q = Position(index);
   if (q.x < 0 || q.y < 0 || q.x >= input_->guides.width() || q.y >= input_->guides.height()) return;
   const std::size_t i = input_->guides.Index(q.x, q.y);
@@ -92,21 +92,21 @@ void TileSeeds::Fill(int index, TileCandidate& offer) {
   guide.normal = {normal_[0][i], normal_[1][i], normal_[2][i]};
   guide.light = input_->LuminanceAt(i);
   internal::Candidate own = OwnCandidate(*input_, guide);
-  offer.is_free = false;
-  if (!freedoms_.empty()) {
+  candidate.can_vary = false;
+  if (!variations_.empty()) {
     const int column = index % columns_;
     const std::uint64_t hash = Hash(input_->seeds.seed, input_->seeds.time_step, level_ + input_->seeds.level_offset,
-                                    first_column_ + column, offered_.row[index / columns_], 0x7a);
+                                    first_column_ + column, filled_.row[index / columns_], 0x7a);
     SeedCandidate made = SeedOf(*input_, guide, own);
     if (VarySource(*input_, level_, q, hash, made)) {
-      offer.is_free = true;
-      freedoms_[static_cast<std::size_t>(index)] = {made.moved, WantedTone(*input_, own, level_)};
-      own = made.offer;
+      candidate.can_vary = true;
+      variations_[static_cast<std::size_t>(index)] = {made.guide_offset, WantedTone(*input_, own, level_)};
+      own = made.candidate;
     }
   }
-  offer.offset_x = own.source.x - q.x, offer.offset_y = own.source.y - q.y;
-  offer.exemplar = static_cast<std::uint8_t>(own.exemplar);
-  offer.state = TileCandidate::kCandidates;
+  candidate.offset_x = own.source.x - q.x, candidate.offset_y = own.source.y - q.y;
+  candidate.exemplar = static_cast<std::uint8_t>(own.exemplar);
+  candidate.state = TileCandidate::kCandidates;
 }
 
 TileSeeds::Two TileSeeds::NearestTwo(int x, int y) const {

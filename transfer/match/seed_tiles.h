@@ -8,7 +8,7 @@
 
 #include "transfer/exemplar/paint_by_normal.h"
 #include "transfer/match/match.h"
-#include "transfer/match/seed_offer.h"
+#include "transfer/match/seed_candidate.h"
 
 namespace scumble::internal {
 
@@ -26,13 +26,13 @@ struct TileCandidate {
   std::int32_t offset_x = 0, offset_y = 0;  // u* - q
   State state = kUnknown;
   std::uint8_t exemplar = 0;
-  bool is_free = false;  // `variety` may change its source: see SeedFreedom
+  bool can_vary = false;  // `variety` may change its source: see SeedFreedom
 };
 
 // The variation of a seed on a flat surface.
 struct SeedFreedom {
-  glm::vec3 moved{0.0f};       // guide offset of the source
-  SourceVariation::Tone tone;  // the wanted tone here
+  glm::vec3 guide_offset{0.0f};  // guide offset of the source
+  SourceVariation::Tone tone;    // the wanted tone here
 };
 
 // One level's seeds of one tile. A seed's index, below kSlots · columns, is valid as long as its row of cells. For one
@@ -52,7 +52,7 @@ class TileSeeds {
   // Makes the cells in row `cell_row` and those above and below that are near pixels [x, x + width). Their candidates
   // are available then, and with Need their places too.
   void NeedCandidates(int cell_row, int x, int width) {
-    NeedIn(offered_, cell_row, x, width, &TileSeeds::MakeCandidates);
+    NeedIn(filled_, cell_row, x, width, &TileSeeds::MakeCandidates);
   }
   void Need(int cell_row, int x, int width) {
     NeedCandidates(cell_row, x, width);
@@ -68,18 +68,18 @@ class TileSeeds {
 
   // A seed's place in the picture.
   PixelPosition Position(int index) const {
-    const int slot = index / columns_, column = index - slot * columns_, row = offered_.row[slot];
+    const int slot = index / columns_, column = index - slot * columns_, row = filled_.row[slot];
     const PixelPosition in_cell = SeedInCell(input_->seeds, level_, column_hashes_[std::size_t(column)], row);
     return {left_ + (column << level_) + in_cell.x, (row << level_) + in_cell.y};
   }
 
   // A seed's candidate, made on the first call.
   const TileCandidate& Candidate(int index) {
-    TileCandidate& offer = offers_[static_cast<std::size_t>(index)];
-    if (offer.state == TileCandidate::kUnknown) Fill(index, offer);
-    return offer;
+    TileCandidate& candidate = candidates_[static_cast<std::size_t>(index)];
+    if (candidate.state == TileCandidate::kUnknown) Fill(index, candidate);
+    return candidate;
   }
-  const SeedFreedom& Freedom(int index) const { return freedoms_[static_cast<std::size_t>(index)]; }
+  const SeedFreedom& Variation(int index) const { return variations_[static_cast<std::size_t>(index)]; }
 
   // The seed nearest to pixel (x, y) among the 3 × 3 cells around its own, and the second nearest, as SeedGrid has
   // them.
@@ -125,18 +125,18 @@ class TileSeeds {
   void ForEachColumn(std::uint64_t parts, const Visit& visit) const;
   void MakeCandidates(int cell_row, std::uint64_t parts);
   void MakePlaces(int cell_row, std::uint64_t parts);
-  void Fill(int index, TileCandidate& offer);
+  void Fill(int index, TileCandidate& candidate);
 
   const MatchInput* input_ = nullptr;
   const float* normal_[3] = {};
   int level_ = 0, left_ = 0, columns_ = 0, first_column_ = 0;
   int part_ = 0;
   std::size_t spread_ = 0;
-  Made offered_, placed_;
+  Made filled_, placed_;
   std::vector<std::uint64_t> column_hashes_;
   std::vector<PixelPosition> in_cell_;
-  std::vector<TileCandidate> offers_;
-  std::vector<SeedFreedom> freedoms_;  // empty without variety
+  std::vector<TileCandidate> candidates_;
+  std::vector<SeedFreedom> variations_;  // empty without variety
   std::vector<std::uint16_t> spread_x_, spread_y_;
 };
 

@@ -7,7 +7,7 @@
 
 #include "core/image/hash.h"
 #include "transfer/exemplar/paint_by_normal.h"
-#include "transfer/match/seed_offer.h"
+#include "transfer/match/seed_candidate.h"
 #include "transfer/match/variety.h"
 
 namespace scumble::internal {
@@ -29,32 +29,33 @@ Source ChooseInSpace(const MatchInput& input, const Candidate& own, int level, s
 
 bool VarySource(const MatchInput& input, int level, PixelPosition q, std::uint64_t hash, SeedCandidate& made) {
   if (!CanVary(input, level, q)) return false;
-  const Source own = made.offer.source;
-  made.offer.source = ChooseInSpace(input, made.offer, level, hash);
-  made.moved += input.exemplar.Normal(made.offer.source.x, made.offer.source.y) - input.exemplar.Normal(own.x, own.y);
+  const Source own = made.candidate.source;
+  made.candidate.source = ChooseInSpace(input, made.candidate, level, hash);
+  made.guide_offset +=
+      input.exemplar.Normal(made.candidate.source.x, made.candidate.source.y) - input.exemplar.Normal(own.x, own.y);
   return true;
 }
 
-SeedCandidate SeedOf(const MatchInput& input, const PixelGuide& guide, const Candidate& offer) {
-  SeedCandidate made{offer};
-  made.best = offer.source;
-  made.off = input.IsOff(guide, offer.source, offer.exemplar);
+SeedCandidate SeedOf(const MatchInput& input, const PixelGuide& guide, const Candidate& candidate) {
+  SeedCandidate made{candidate};
+  made.best = candidate.source;
+  made.off = input.IsOff(guide, candidate.source, candidate.exemplar);
   return made;
 }
 
 std::optional<Candidate> TryCandidate(const MatchInput& input, const SeedCandidate& seed, PixelPosition q,
                                       PixelPosition p, const PixelGuide& guide) {
-  const Source candidate{seed.offer.source.x + (p.x - q.x), seed.offer.source.y + (p.y - q.y)};
+  const Source candidate{seed.candidate.source.x + (p.x - q.x), seed.candidate.source.y + (p.y - q.y)};
   if (!input.exemplar.Usable(candidate.x, candidate.y)) return std::nullopt;
   if (!seed.off) {
-    if (!input.Alike(guide, seed.moved, candidate, seed.offer.exemplar)) return std::nullopt;
+    if (!input.Alike(guide, seed.guide_offset, candidate, seed.candidate.exemplar)) return std::nullopt;
   } else {
-    PixelGuide of_seed, moved = guide;
+    PixelGuide of_seed, offset_guide = guide;
     input.ReadGuide(input.guides.Index(q.x, q.y), of_seed);
-    input.MoveAs(of_seed, seed.best, seed.offer.exemplar, moved);
-    if (!input.Alike(moved, seed.moved, candidate, seed.offer.exemplar)) return std::nullopt;
+    input.OffsetGuide(of_seed, seed.best, seed.candidate.exemplar, offset_guide);
+    if (!input.Alike(offset_guide, seed.guide_offset, candidate, seed.candidate.exemplar)) return std::nullopt;
   }
-  return Candidate{candidate, seed.offer.exemplar, seed.moved};
+  return Candidate{candidate, seed.candidate.exemplar, seed.guide_offset};
 }
 
 namespace {
@@ -67,12 +68,12 @@ struct GridCandidate : SeedCandidate {
 // The seeds of one level with their candidates; thousands of pixels share each.
 struct Level {
   SeedGrid grid;
-  std::vector<std::optional<GridCandidate>> offers;  // empty: outside the picture, or not to be painted
-  std::vector<SourceVariation::Tone> tones;          // of the seeds on flat surfaces: that of their best-fitting paint
+  std::vector<std::optional<GridCandidate>> candidates;  // empty: outside the picture, or not to be painted
+  std::vector<SourceVariation::Tone> tones;  // of the seeds on flat surfaces: that of their best-fitting paint
   // Searches in many dimensions are slow, and most seeds of fine levels are never needed: theirs are made on demand.
   std::unique_ptr<std::once_flag[]> asked;
 
-  Level(const MatchInput& input, int level) : grid(input.seeds, level, input.region), offers(grid.size()) {
+  Level(const MatchInput& input, int level) : grid(input.seeds, level, input.region), candidates(grid.size()) {
     if (input.space && !(input.variety_degrees > 0.0)) {
       asked = std::make_unique<std::once_flag[]>(grid.size());
       return;
@@ -82,7 +83,7 @@ struct Level {
 
   const std::optional<GridCandidate>& CandidateOf(const MatchInput& input, std::size_t s) {
     if (asked) std::call_once(asked[s], [&] { Fill(input, s); });
-    return offers[s];
+    return candidates[s];
   }
 
   void Fill(const MatchInput& input, std::size_t s) {
@@ -93,7 +94,7 @@ struct Level {
     PixelGuide guide;
     input.ReadGuide(i, guide);
     const Candidate own = OwnCandidate(input, guide);
-    GridCandidate& made = offers[s].emplace(GridCandidate{SeedOf(input, guide, own)});
+    GridCandidate& made = candidates[s].emplace(GridCandidate{SeedOf(input, guide, own)});
     const int level = grid.level();
     const PixelPosition cell = grid.Cell(s);
     const std::uint64_t hash =
@@ -107,9 +108,9 @@ struct Level {
 // The candidate of seed s of this level that p accepts, or none.
 std::optional<Candidate> AcceptFrom(const MatchInput& input, Level& level, std::size_t s, int x, int y,
                                     const PixelGuide& guide) {
-  const std::optional<GridCandidate>& offer = level.CandidateOf(input, s);
-  if (!offer) return std::nullopt;
-  return TryCandidate(input, *offer, level.grid.Position(s), {x, y}, guide);
+  const std::optional<GridCandidate>& candidate = level.CandidateOf(input, s);
+  if (!candidate) return std::nullopt;
+  return TryCandidate(input, *candidate, level.grid.Position(s), {x, y}, guide);
 }
 
 // The candidate that p accepts from its nearest seed; near the border of two seeds of a flat surface, from the one that
@@ -119,11 +120,12 @@ std::optional<Candidate> Accept(const MatchInput& input, Level& level, int x, in
   const auto [s, t, excess] = level.grid.NearestTwo(x, y);
   const std::optional<Candidate> nearest = AcceptFrom(input, level, s, x, y, guide);
   if (!InBorderBand(level.grid.level(), excess)) return nearest;
-  if (!nearest || level.offers[s]->flat < 0 || !level.offers[t] || level.offers[t]->flat < 0) return nearest;
+  if (!nearest || level.candidates[s]->flat < 0 || !level.candidates[t] || level.candidates[t]->flat < 0)
+    return nearest;
   const std::optional<Candidate> other = AcceptFrom(input, level, t, x, y, guide);
   if (!other) return nearest;
-  const int nearest_off = ToneError(input, *nearest, level.tones[std::size_t(level.offers[s]->flat)]);
-  const int other_off = ToneError(input, *other, level.tones[std::size_t(level.offers[t]->flat)]);
+  const int nearest_off = ToneError(input, *nearest, level.tones[std::size_t(level.candidates[s]->flat)]);
+  const int other_off = ToneError(input, *other, level.tones[std::size_t(level.candidates[t]->flat)]);
   return SecondWins(level.grid.level(), excess, nearest_off - other_off) ? other : nearest;
 }
 
@@ -139,17 +141,17 @@ bool MatchStyleBlitPlain(const MatchInput& input, SourceField& field, RowProgres
       if (!input.Wants(i)) continue;
       PixelGuide guide;
       input.ReadGuide(i, guide);
-      std::optional<Candidate> offer;
+      std::optional<Candidate> candidate;
       int settled = 0;
       for (Level& level : levels) {
-        if ((offer = Accept(input, level, x, y, guide))) {
+        if ((candidate = Accept(input, level, x, y, guide))) {
           settled = level.grid.level();
           break;
         }
       }
-      if (!offer) offer = OwnCandidate(input, guide);
-      field.Set(i, offer->source.x, offer->source.y, offer->exemplar, settled);
-      if (!field.moved.empty()) field.moved[i] = offer->moved;
+      if (!candidate) candidate = OwnCandidate(input, guide);
+      field.Set(i, candidate->source.x, candidate->source.y, candidate->exemplar, settled);
+      if (!field.guide_offset.empty()) field.guide_offset[i] = candidate->guide_offset;
     }
   });
 }

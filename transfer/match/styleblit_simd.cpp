@@ -90,7 +90,7 @@ struct Row {
   std::int16_t source_x[kTileWidth], source_y[kTileWidth];
   std::uint16_t how[kTileWidth];          // level, and the exemplar times 256
   std::uint16_t nearest[kTileWidth + 1];  // seeds of the current level
-  glm::vec3 moved[kTileWidth];            // guide offsets; only where the field has them
+  glm::vec3 guide_offset[kTileWidth];     // guide offsets; only where the field has them
   float copy[4][kTileWidth];              // of a row whose last block is not whole: no read beyond the picture
 };
 
@@ -183,7 +183,7 @@ class TileMatcher {
     const std::size_t pixel = input_.guides.Index(tile_.x0, y);
     for (int c = 0; c < 3; ++c) row.normal[c] = Values(input_.guides.Plane(Layer::kNormal, c).data() + pixel, c);
     row.light = input_.luminance.empty() ? nullptr : Values(input_.luminance.data() + pixel, 3);
-    if (!field_.moved.empty()) std::fill_n(row.moved, width, glm::vec3(0.0f));
+    if (!field_.guide_offset.empty()) std::fill_n(row.guide_offset, width, glm::vec3(0.0f));
     return open;
   }
 
@@ -299,20 +299,20 @@ class TileMatcher {
 
   // Tries a seed on a group: the pixels that are like it take its candidate.
   HWY_INLINE void CandidateFor(TileSeeds& seeds, const Group& group) {
-    const TileCandidate& offer = seeds.Candidate(group.seed);
-    if (offer.state != TileCandidate::kCandidates) return;
-    const glm::vec3* const moved = offer.is_free ? &seeds.Freedom(group.seed).moved : nullptr;
+    const TileCandidate& candidate = seeds.Candidate(group.seed);
+    if (candidate.state != TileCandidate::kCandidates) return;
+    const glm::vec3* const guide_offset = candidate.can_vary ? &seeds.Variation(group.seed).guide_offset : nullptr;
     const int from = group.block * kBlock;
-    const std::uint32_t taken = Alike(from, offer, moved, group.lanes);
+    const std::uint32_t taken = Alike(from, candidate, guide_offset, group.lanes);
     row_.unsettled[group.block] &= static_cast<std::uint16_t>(~taken);
-    Take(from, taken, offer, seeds.level());
-    if (offer.is_free && taken != 0) TakeFreely(seeds, group.seed, from, taken);
+    Take(from, taken, candidate, seeds.level());
+    if (candidate.can_vary && taken != 0) TakeVaried(seeds, group.seed, from, taken);
   }
 
-  HWY_INLINE void Take(int from, std::uint32_t lanes, const TileCandidate& offer, int level) {
-    const int x = row_.x + from + offer.offset_x;
-    const auto y = hn::Set(kShorts, static_cast<std::int16_t>(row_.y + offer.offset_y));
-    const auto how = hn::Set(kWords, static_cast<std::uint16_t>(level | offer.exemplar << 8));
+  HWY_INLINE void Take(int from, std::uint32_t lanes, const TileCandidate& candidate, int level) {
+    const int x = row_.x + from + candidate.offset_x;
+    const auto y = hn::Set(kShorts, static_cast<std::int16_t>(row_.y + candidate.offset_y));
+    const auto how = hn::Set(kWords, static_cast<std::uint16_t>(level | candidate.exemplar << 8));
     for (int i = 0; i < kBlock; i += static_cast<int>(hn::Lanes(kShorts))) {
       const auto mask = MaskFrom(kShorts, lanes >> i);
       StoreSome(kShorts, mask, CountFrom(kShorts, x + i), row_.source_x + from + i);
@@ -323,9 +323,9 @@ class TileMatcher {
 
   // The lanes whose source is usable and whose guide, after the offset, is like it: the rules of GuideTest and
   // Illumination. `from` is the first lane's place in the row.
-  HWY_INLINE std::uint32_t Alike(int from, const TileCandidate& offer, const glm::vec3* moved,
+  HWY_INLINE std::uint32_t Alike(int from, const TileCandidate& candidate, const glm::vec3* guide_offset,
                                  std::uint32_t lanes) const {
-    const int x = row_.x + from + offer.offset_x, y = row_.y + offer.offset_y;
+    const int x = row_.x + from + candidate.offset_x, y = row_.y + candidate.offset_y;
     if (static_cast<unsigned>(y) >= static_cast<unsigned>(rows_.height)) return 0;
     if (rows_.is_sphere) {
       const int first = rows_.first[y], last = rows_.last[y];
@@ -335,7 +335,7 @@ class TileMatcher {
       }
       const auto down = hn::Set(kFloats, -rows_.coordinate[y]);
       const auto down_squared = hn::Mul(down, down);
-      return lanes & Compare(from, offer.exemplar, moved, [&](int i, auto& a, auto& b, auto& c) HWY_ATTR {
+      return lanes & Compare(from, candidate.exemplar, guide_offset, [&](int i, auto& a, auto& b, auto& c) HWY_ATTR {
                a = hn::LoadU(kFloats, rows_.coordinate + x + i);
                b = down;
                const auto squared = hn::Sub(hn::Sub(hn::Set(kFloats, 1.0f), hn::Mul(a, a)), down_squared);
@@ -347,16 +347,16 @@ class TileMatcher {
     const std::ptrdiff_t at = std::ptrdiff_t(y) * rows_.width + x;
     lanes &= Nonzero(rows_.usable + at);
     if (lanes == 0) return 0;
-    return lanes & Compare(from, offer.exemplar, moved, [&](int i, auto& a, auto& b, auto& c) HWY_ATTR {
+    return lanes & Compare(from, candidate.exemplar, guide_offset, [&](int i, auto& a, auto& b, auto& c) HWY_ATTR {
              a = hn::LoadU(kFloats, rows_.normal[0] + at + i);
              b = hn::LoadU(kFloats, rows_.normal[1] + at + i);
              c = hn::LoadU(kFloats, rows_.normal[2] + at + i);
            });
   }
 
-  // `read` loads the exemplar's normals from lane i on. `moved`: null for no offset.
+  // `read` loads the exemplar's normals from lane i on. `guide_offset`: null for no offset.
   template <class Read>
-  HWY_INLINE std::uint32_t Compare(int from, int exemplar, const glm::vec3* moved, const Read& read) const {
+  HWY_INLINE std::uint32_t Compare(int from, int exemplar, const glm::vec3* guide_offset, const Read& read) const {
     const auto bound = hn::Set(kFloats, input_.test.bound());
     std::uint32_t bits = 0;
     for (int i = 0; i < kBlock; i += static_cast<int>(hn::Lanes(kFloats))) {
@@ -365,10 +365,10 @@ class TileMatcher {
       auto x = hn::LoadU(kFloats, row_.normal[0] + from + i);
       auto y = hn::LoadU(kFloats, row_.normal[1] + from + i);
       auto z = hn::LoadU(kFloats, row_.normal[2] + from + i);
-      if (moved) {
-        x = hn::Add(x, hn::Set(kFloats, moved->x));
-        y = hn::Add(y, hn::Set(kFloats, moved->y));
-        z = hn::Add(z, hn::Set(kFloats, moved->z));
+      if (guide_offset) {
+        x = hn::Add(x, hn::Set(kFloats, guide_offset->x));
+        y = hn::Add(y, hn::Set(kFloats, guide_offset->y));
+        z = hn::Add(z, hn::Set(kFloats, guide_offset->z));
       }
       const auto dx = hn::Sub(x, a), dy = hn::Sub(y, b), dz = hn::Sub(z, c);
       const auto distance = squares_ ? hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz))
@@ -419,12 +419,13 @@ class TileMatcher {
   }
 
   // For lanes that accepted a seed on a flat surface: near its border they choose between two seeds.
-  HWY_NOINLINE void TakeFreely(TileSeeds& seeds, int seed, int from, std::uint32_t lanes) {
-    const TileCandidate& offer = seeds.Candidate(seed);
+  HWY_NOINLINE void TakeVaried(TileSeeds& seeds, int seed, int from, std::uint32_t lanes) {
+    const TileCandidate& candidate = seeds.Candidate(seed);
     for (; lanes != 0; lanes &= lanes - 1) {
       const int place = from + std::countr_zero(lanes);
       const PixelPosition p{row_.x + place, row_.y};
-      Candidate taken{{p.x + offer.offset_x, p.y + offer.offset_y}, offer.exemplar, seeds.Freedom(seed).moved};
+      Candidate taken{
+          {p.x + candidate.offset_x, p.y + candidate.offset_y}, candidate.exemplar, seeds.Variation(seed).guide_offset};
       ChooseAtBorder(input_, seeds, {p, GuideOf(place)}, taken);
       Put(place, taken, seeds.level());
     }
@@ -436,7 +437,7 @@ class TileMatcher {
     row_.source_x[place] = static_cast<std::int16_t>(taken.source.x);
     row_.source_y[place] = static_cast<std::int16_t>(taken.source.y);
     row_.how[place] = static_cast<std::uint16_t>(level | taken.exemplar << 8);
-    if (!field_.moved.empty()) row_.moved[place] = taken.moved;
+    if (!field_.guide_offset.empty()) row_.guide_offset[place] = taken.guide_offset;
   }
 
   static HWY_INLINE void StoreHow(const std::uint16_t* how, std::int8_t* level, std::uint8_t* exemplar) {
@@ -466,9 +467,9 @@ class TileMatcher {
         field_.Set(i + lane, row_.source_x[place], row_.source_y[place], row_.how[place] >> 8, row_.how[place] & 0xff);
       }
     }
-    if (field_.moved.empty()) return;
+    if (field_.guide_offset.empty()) return;
     for (std::uint32_t left = lanes; left != 0; left &= left - 1) {
-      field_.moved[i + std::countr_zero(left)] = row_.moved[from + std::countr_zero(left)];
+      field_.guide_offset[i + std::countr_zero(left)] = row_.guide_offset[from + std::countr_zero(left)];
     }
   }
 
@@ -524,12 +525,13 @@ void ChooseAtBorder(const MatchInput& input, TileSeeds& seeds, const FreeChoice&
   const auto [s, t, excess] = seeds.NearestTwo(p.x, p.y);
   if (!InBorderBand(seeds.level(), excess)) return;
   const TileCandidate& second = seeds.Candidate(t);
-  if (second.state != TileCandidate::kCandidates || !second.is_free) return;
-  const Candidate other{{p.x + second.offset_x, p.y + second.offset_y}, second.exemplar, seeds.Freedom(t).moved};
+  if (second.state != TileCandidate::kCandidates || !second.can_vary) return;
+  const Candidate other{
+      {p.x + second.offset_x, p.y + second.offset_y}, second.exemplar, seeds.Variation(t).guide_offset};
   if (!input.exemplar.Usable(other.source.x, other.source.y)) return;
-  if (!input.Alike(choice.guide, other.moved, other.source, other.exemplar)) return;
-  const int nearest_off = ToneError(input, taken, seeds.Freedom(s).tone);
-  const int other_off = ToneError(input, other, seeds.Freedom(t).tone);
+  if (!input.Alike(choice.guide, other.guide_offset, other.source, other.exemplar)) return;
+  const int nearest_off = ToneError(input, taken, seeds.Variation(s).tone);
+  const int other_off = ToneError(input, other, seeds.Variation(t).tone);
   if (SecondWins(seeds.level(), excess, nearest_off - other_off)) taken = other;
 }
 

@@ -40,21 +40,21 @@ bool CanVary(const MatchInput& input, int level, PixelPosition seed) {
 }
 
 Source ChooseAlike(const MatchInput& input, const Candidate& own, int level, std::uint64_t hash) {
-  return input.exemplar.alternatives().Choose(
+  return input.exemplar.source_variation().Choose(
       input.exemplar, {own.source, own.exemplar, input.variety_degrees, 1 << (level - 1), hash});
 }
 
 SourceVariation::Tone WantedTone(const MatchInput& input, const Candidate& own, int level) {
-  const SourceVariation& alternatives = input.exemplar.alternatives();
+  const SourceVariation& variation = input.exemplar.source_variation();
   // The square rounds to whole cells, so that the one around a source at the rim may hold no usable pixel.
-  return alternatives.ToneAround(own.source, own.exemplar, 1 << (level - 1))
-      .value_or(alternatives.ToneAt(own.source, own.exemplar));
+  return variation.ToneAround(own.source, own.exemplar, 1 << (level - 1))
+      .value_or(variation.ToneAt(own.source, own.exemplar));
 }
 
 bool InBorderBand(int level, std::int64_t excess) { return 2 * excess < std::int64_t{1} << (2 * level); }
 
-int ToneError(const MatchInput& input, const Candidate& offer, const SourceVariation::Tone& wanted) {
-  const SourceVariation::Tone tone = input.exemplar.alternatives().ToneAt(offer.source, offer.exemplar);
+int ToneError(const MatchInput& input, const Candidate& candidate, const SourceVariation::Tone& wanted) {
+  const SourceVariation::Tone tone = input.exemplar.source_variation().ToneAt(candidate.source, candidate.exemplar);
   int sum = 0;
   for (int c = 0; c < 4; ++c) sum += std::abs(tone[c] - wanted[c]);
   return sum;

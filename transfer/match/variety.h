@@ -26,7 +26,7 @@ SourceVariation::Tone WantedTone(const MatchInput& input, const Candidate& own, 
 // the wanted tone. So the border runs where both agree, and strokes that differ from either are cut off. Each pixel
 // decides by itself, so the order of work does not matter. `excess`: of the second nearest seed's squared distance.
 bool InBorderBand(int level, std::int64_t excess);
-int ToneError(const MatchInput& input, const Candidate& offer, const SourceVariation::Tone& wanted);
+int ToneError(const MatchInput& input, const Candidate& candidate, const SourceVariation::Tone& wanted);
 bool SecondWins(int level, std::int64_t excess, int gain_of_tone);
 
 }  // namespace scumble::internal

@@ -37,19 +37,19 @@ class GuideTest {
     return std::fabs(dx) + std::fabs(dy) + std::fabs(dz) < left;
   }
 
-  // Alike with extra dimensions: `rest` is their Rest, 0 or more.
-  bool Alike(glm::vec3 a, glm::vec3 b, float rest, float extra) const {
+  // Alike with extra dimensions: `extra_distance` is their ExtraDistance, 0 or more.
+  bool Alike(glm::vec3 a, glm::vec3 b, float extra_distance, float extra) const {
     const float dx = a.x - b.x, dy = a.y - b.y, dz = a.z - b.z;
     const float left = threshold_ - extra;
     if (!(left > 0.0f)) return false;
     if (metric_ == ThresholdMetric::kL2) {
-      return dx * dx + dy * dy + dz * dz + rest < (extra > 0.0f ? SquareOf(left) : bound_);
+      return dx * dx + dy * dy + dz * dz + extra_distance < (extra > 0.0f ? SquareOf(left) : bound_);
     }
-    return std::fabs(dx) + std::fabs(dy) + std::fabs(dz) + rest < (extra > 0.0f ? left : bound_);
+    return std::fabs(dx) + std::fabs(dy) + std::fabs(dz) + extra_distance < (extra > 0.0f ? left : bound_);
   }
 
   // The part of the extra dimensions: squares for kL2, absolute differences for kL1.
-  float Rest(const float* a, const float* b, int dimensions) const {
+  float ExtraDistance(const float* a, const float* b, int dimensions) const {
     float sum = 0.0f;
     for (int d = 0; d < dimensions; ++d) {
       const float off = a[d] - b[d];
@@ -77,10 +77,10 @@ class GuideTest {
     if (metric_ == ThresholdMetric::kL2) return std::sqrt(dx * dx + dy * dy + dz * dz);
     return std::fabs(dx) + std::fabs(dy) + std::fabs(dz);
   }
-  float Distance(glm::vec3 a, glm::vec3 b, float rest) const {
+  float Distance(glm::vec3 a, glm::vec3 b, float extra_distance) const {
     const float dx = a.x - b.x, dy = a.y - b.y, dz = a.z - b.z;
-    if (metric_ == ThresholdMetric::kL2) return std::sqrt(dx * dx + dy * dy + dz * dz + rest);
-    return std::fabs(dx) + std::fabs(dy) + std::fabs(dz) + rest;
+    if (metric_ == ThresholdMetric::kL2) return std::sqrt(dx * dx + dy * dy + dz * dz + extra_distance);
+    return std::fabs(dx) + std::fabs(dy) + std::fabs(dz) + extra_distance;
   }
 
  private:

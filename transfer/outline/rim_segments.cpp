@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kCoarsest = 6, kFinest = 3;  // levels at the reference height
 constexpr float kLeastAlike = 0.955336f;   // cos of 0.3 rad
-constexpr float kFreedom = 0.5f;           // radians
+constexpr float kMostTurn = 0.5f;          // radians
 // As a share of the rim's own turn over half a cell: from there on a seed's direction is the outline's.
 constexpr float kTurnOfNoFreedom = 0.75f;
 
@@ -94,7 +94,7 @@ class OutlineSeeds {
     const int h = LevelAt(std::size_t(seed));
     const std::uint64_t hash = Hash(rules.seed, rules.time_step, h + rules.level_offset, at.x >> h, at.y >> h,
                                     input_.silhouettes.ObjectOf(at), 0xed9e);
-    const float turn = (2.0f * UnitFloat(hash) - 1.0f) * kFreedom * FreedomAt(std::size_t(seed), h);
+    const float turn = (2.0f * UnitFloat(hash) - 1.0f) * kMostTurn * TurnShareAt(std::size_t(seed), h);
     return {at.point, Turned(at.outward, 0.5f * turn), seed};
   }
 
@@ -108,7 +108,7 @@ class OutlineSeeds {
   }
 
   // 1 where the outline is straight over half a cell to either side, 0 where it turns as strongly as the rim.
-  float FreedomAt(std::size_t k, int h) const {
+  float TurnShareAt(std::size_t k, int h) const {
     const auto outline = input_.silhouettes.outline();
     const OutlinePixel& own = outline[k];
     const std::uint32_t object = input_.silhouettes.ObjectOf(own);
@@ -141,9 +141,9 @@ std::vector<RimSegments> ChooseRimSegments(const RimSegmentInput& input) {
   std::vector<OutlineSeeds> levels;
   for (int level = kCoarsest; level >= kFinest; --level) levels.emplace_back(input, level, styles);
 
-  const auto melt = [&](std::size_t k) { return std::max(1, silhouettes.BandOf(outline[k]) / 4); };
+  const auto blend_width = [&](std::size_t k) { return std::max(1, silhouettes.BandOf(outline[k]) / 4); };
   int widest = 0;
-  for (std::size_t k = 0; k < outline.size(); ++k) widest = std::max(widest, melt(k));
+  for (std::size_t k = 0; k < outline.size(); ++k) widest = std::max(widest, blend_width(k));
   const Region& region = input.region;
   const auto within = [&](const OutlinePixel& pixel, int grown) {
     return pixel.x >= region.x0 - grown && pixel.y >= region.y0 - grown && pixel.x < region.x1 + grown &&
@@ -172,7 +172,7 @@ std::vector<RimSegments> ChooseRimSegments(const RimSegmentInput& input) {
     if (!within(pixel, 0)) return;
     const std::uint32_t object = silhouettes.ObjectOf(pixel);
     std::vector<std::pair<RimSegment, float>> votes;
-    silhouettes.ForNear(pixel.x, pixel.y, melt(k), [&](std::size_t other) {
+    silhouettes.ForNear(pixel.x, pixel.y, blend_width(k), [&](std::size_t other) {
       if (silhouettes.ObjectOf(outline[other]) != object || glm::dot(outline[other].outward, pixel.outward) < 0.5f)
         return;
       for (auto& [segment, count] : votes) {

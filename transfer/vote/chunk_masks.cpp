@@ -9,8 +9,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#ifndef SCUMBLE_CHUNK_MARKS_ONCE
-#define SCUMBLE_CHUNK_MARKS_ONCE
+#ifndef SCUMBLE_CHUNK_MASKS_ONCE
+#define SCUMBLE_CHUNK_MASKS_ONCE
 namespace scumble::internal {
 
 // One row of a picture, from its column 0 on.

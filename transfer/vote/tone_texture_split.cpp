@@ -11,11 +11,11 @@ namespace scumble {
 std::vector<Picture> MakeBaseLayers(const PreparedExemplar& exemplar, double sigma) {
   std::vector<std::uint8_t> usable(std::size_t(exemplar.width()) * exemplar.height());
   for (const Source& at : exemplar.UsablePixels()) usable[std::size_t(at.y) * exemplar.width() + at.x] = 1;
-  std::vector<Picture> tones;
+  std::vector<Picture> base_layers;
   for (int k = 0; k < exemplar.count(); ++k) {
-    tones.push_back(internal::MaskedBlur(exemplar.picture(k), usable, sigma));
+    base_layers.push_back(internal::MaskedBlur(exemplar.picture(k), usable, sigma));
   }
-  return tones;
+  return base_layers;
 }
 
 }  // namespace scumble
@@ -60,11 +60,11 @@ Color ToneFor(const PreparedExemplar& exemplar, const Picture& tone, glm::vec3 n
 // The base layer at a pixel's own nearest neighbour in exemplar k.
 Color ToneAt(const HybridInput& input, std::size_t pixel, int k) {
   const glm::vec3 normal = input.guides.Vec3(Layer::kNormal, pixel);
-  const Picture& tone = input.tones[std::size_t(k)];
+  const Picture& tone = input.base_layers[std::size_t(k)];
   if (!input.space) return ToneFor(input.votes.exemplar, tone, normal);
-  float rest[GuideSpace::kMaxExtra];
-  input.space->Read(input.guides, pixel, input.brightness, rest);
-  return TexelAt(tone, input.space->Nearest(k, normal, rest));
+  float extra_values[GuideSpace::kMaxExtra];
+  input.space->Read(input.guides, pixel, input.brightness, extra_values);
+  return TexelAt(tone, input.space->Nearest(k, normal, extra_values));
 }
 
 void Store(const Color& color, std::uint16_t* out) {
@@ -91,7 +91,7 @@ bool VoteHybrid(const HybridInput& input, Picture& out, RowProgress& progress) {
       std::int64_t count = 0;
       ForEachVote(votes, regions ? &*regions : nullptr, x, y, [&](int from, Source at) {
         const std::uint16_t* paint = exemplar.picture(from).At(at.x, at.y);
-        const std::uint16_t* tone = input.tones[std::size_t(from)].At(at.x, at.y);
+        const std::uint16_t* tone = input.base_layers[std::size_t(from)].At(at.x, at.y);
         for (int c = 0; c < 4; ++c) texture[c] += std::int64_t(Premultiplied(paint, c)) - tone[c];
         ++count;
       });

@@ -28,10 +28,10 @@ struct HybridInput {
   VoteInput votes;
   const GuideSet& guides;
   const Illumination& illumination;
-  std::span<const float> luminance;   // exposed; empty where the illumination is not active
-  std::span<const Picture> tones;     // base layers, by exemplar
-  const GuideSpace* space = nullptr;  // the space of the search; null: normals alone
-  float brightness = 1.0f;            // of the scene's radiance in that space
+  std::span<const float> luminance;      // exposed; empty where the illumination is not active
+  std::span<const Picture> base_layers;  // base layers, by exemplar
+  const GuideSpace* space = nullptr;     // the space of the search; null: normals alone
+  float brightness = 1.0f;               // of the scene's radiance in that space
 };
 
 // Every active pixel of the region becomes the base layer at its own nearest neighbour, in the exemplar that suits its

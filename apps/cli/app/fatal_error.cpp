@@ -21,7 +21,7 @@ bool IsForWantOfThreads(const std::exception& error) {
   return std::strstr(error.what(), "pthread_create") != nullptr;
 }
 
-[[noreturn]] void TellAndEnd() {
+[[noreturn]] void ReportAndEnd() {
   const int code = ReportException(std::current_exception());
   RemovePendingTemporaries();
   ::_exit(code);  // other threads still run: nothing that they use may be destroyed
@@ -56,6 +56,6 @@ int ReportException(std::exception_ptr thrown) {
   return static_cast<int>(ExitCode::kInternal);
 }
 
-void ReportUncaughtExceptions() { std::set_terminate(TellAndEnd); }
+void ReportUncaughtExceptions() { std::set_terminate(ReportAndEnd); }
 
 }  // namespace scumble

@@ -322,7 +322,7 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
     LayerSet others = missing;
     others.Remove(Layer::kObject);
     if (!solves_camera) others.Remove(Layer::kDepth);
-    if (others.empty()) remedy += options.mend;
+    if (others.empty()) remedy += options.remedy;
     LayerSet every;
     for (const LayerInfo& info : AllLayers()) every.Add(info.layer);
     const LayerSet there = CompleteLayers(SelectChannels(contents, prefix, every));

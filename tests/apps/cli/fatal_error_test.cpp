@@ -31,9 +31,9 @@ constexpr int kInternal = 6;  // DESIGN: internal error
 
 int Lines(const std::string& text) { return static_cast<int>(std::count(text.begin(), text.end(), '\n')); }
 
-class LastWords : public testing::Test {
+class FatalError : public testing::Test {
  protected:
-  LastWords() { GTEST_FLAG_SET(death_test_style, "threadsafe"); }
+  FatalError() { GTEST_FLAG_SET(death_test_style, "threadsafe"); }
 
   // In the process of a death test: an output is half written when a second thread ends as it should not.
   [[noreturn]] void EndOnAnotherThread(const std::function<void()>& end) {
@@ -51,25 +51,25 @@ class LastWords : public testing::Test {
 
   const TemporaryFolder folder_;
 };
-using LastWordsDeathTest = LastWords;
+using FatalErrorDeathTest = FatalError;
 
-TEST_F(LastWordsDeathTest, OfMemory) {
+TEST_F(FatalErrorDeathTest, OfMemory) {
   ExpectWords([] { throw std::bad_alloc(); }, "error", "out of memory");
 }
 
-TEST_F(LastWordsDeathTest, OfThreads) {
+TEST_F(FatalErrorDeathTest, OfThreads) {
   ExpectWords([] { throw std::system_error(EAGAIN, std::generic_category()); }, "error", "no more threads");
   ExpectWords([] { throw std::runtime_error("pthread_create has failed"); }, "error", "no more threads");
 }
 
-TEST_F(LastWordsDeathTest, OfAnythingElse) {
+TEST_F(FatalErrorDeathTest, OfAnythingElse) {
   ExpectWords([] { throw std::runtime_error("a broken promise"); }, "internal error",
               "a broken promise; please report");
   ExpectWords([] { throw std::system_error(EIO, std::generic_category()); }, "internal error", "please report");
   ExpectWords([] { throw 7; }, "internal error", "of an unknown kind; please report");
 }
 
-TEST_F(LastWordsDeathTest, OfNothing) {
+TEST_F(FatalErrorDeathTest, OfNothing) {
   ExpectWords([] { std::terminate(); }, "error", "a library gave up");
 }
 

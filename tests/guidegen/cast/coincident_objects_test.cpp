@@ -25,7 +25,7 @@ struct Stand {
 
 // Of two at one place the first is left out if the second hides all of it: never behind holes, nor behind a culled
 // object where it is not culled. An emissive object is a light besides.
-TEST(ExactCopies, AreCoveredByWhatHidesThemWhole) {
+TEST(CoincidentObjects, AreCoveredByWhatHidesThemWhole) {
   const Stand stand;
   const auto first_is_covered = [&](const Material& first, const Material& second) {
     const std::vector<bool> covered = FindHiddenCoincident(std::vector{stand.Of(first), stand.Of(second)});
@@ -44,7 +44,7 @@ TEST(ExactCopies, AreCoveredByWhatHidesThemWhole) {
 
 // A tree of masked leaves that somebody placed half a million times: nothing is covered, and each is looked at once,
 // in less than a second. Were each compared with each, 1.25e11 pairs would take longer than a test may.
-TEST(ExactCopies, WithHolesAreNotComparedWithEachOther) {
+TEST(CoincidentObjects, WithHolesAreNotComparedWithEachOther) {
   const Stand stand;
   const std::vector<PlacedObject> leaves(500'000, stand.Of(stand.holes));
   const std::vector<bool> covered = FindHiddenCoincident(leaves);

@@ -169,7 +169,7 @@ TEST_F(ExtremePlace, ObjFilesFarFromTheOriginKeepTheirDigits) {
 // relative to its first joint, so its floats are as good as at 0. Every number here has few bits and keys are halved at
 // most, so nothing is rounded, and guides and motion have the same bits.
 TEST_F(LoadAnimation, SkinsAndAnimationsTenThousandKilometresAwayLoseNothing) {
-  const auto film_at = [&](double x) {
+  const auto animation_at = [&](double x) {
     Bar bar;
     bar.b.Animate(bar.tip, "translation", {0, 1}, {0, 1, 0, 0.5, 1, 0.25});
     bar.b.Animate(bar.root, "translation", {0, 1}, {0, 0, 0, 0.25, 0.125, 0});
@@ -186,7 +186,7 @@ TEST_F(LoadAnimation, SkinsAndAnimationsTenThousandKilometresAwayLoseNothing) {
     const Scene now = At(film, seconds), next = At(film, 1.0);
     return TakeValid(RenderGuides(now, camera, NextFrame{next, camera}, Sized(40, 40, {Layer::kPref, Layer::kMotion})));
   };
-  const AnimatedScene here = film_at(0.0), there = film_at(1e7);
+  const AnimatedScene here = animation_at(0.0), there = animation_at(1e7);
   for (const double seconds : {0.0, 0.5, 1.0}) {
     const GuidegenResult near_by = see(here, 0.0, seconds);
     EXPECT_TRUE(SameBytes(near_by.guides, see(there, 1e7, seconds).guides)) << seconds;

@@ -42,7 +42,7 @@ StyleMap StripedMap(int styles) {
 void Spoil(TransferScratch& scratch, Picture& out) {
   scratch.field.Reset(kWidth, kHeight);
   for (std::size_t i = 0; i < scratch.field.x.size(); ++i) scratch.field.Set(i, 31000, 31000, 200, 5);
-  scratch.field.moved.assign(scratch.field.x.size(), glm::vec3(3.0f));
+  scratch.field.guide_offset.assign(scratch.field.x.size(), glm::vec3(3.0f));
   scratch.active.assign(scratch.field.x.size(), 1);
   out = Picture(kWidth, kHeight);
   std::fill(out.rgba.begin(), out.rgba.end(), std::uint16_t{4711});

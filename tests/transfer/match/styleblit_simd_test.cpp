@@ -32,19 +32,19 @@ struct Case {
   double variety = 0.0;
   std::int64_t step = 0;
   std::optional<Region> region = std::nullopt;
-  bool keep_moved = false;
+  bool keep_guide_offset = false;
   std::uint64_t seed = 5;
 };
 
 // What both forms leave alone.
 constexpr int kUntouched = -7;
 
-SourceField Empty(const GuideSet& guides, bool keep_moved) {
+SourceField Empty(const GuideSet& guides, bool keep_guide_offset) {
   SourceField field;
   field.Reset(guides.width(), guides.height());
   std::fill(field.x.begin(), field.x.end(), std::int16_t{kUntouched});
   std::fill(field.level.begin(), field.level.end(), std::int8_t{kUntouched});
-  if (keep_moved) field.moved.assign(guides.pixel_count(), glm::vec3(9.0f));
+  if (keep_guide_offset) field.guide_offset.assign(guides.pixel_count(), glm::vec3(9.0f));
   return field;
 }
 
@@ -69,7 +69,7 @@ class Matches {
         c.levels, c.variety, 4,         c.region.value_or(whole)};
     input.wanted = wanted_;
     input.least_level = c.least_level;
-    SourceField plain = Empty(guides_, c.keep_moved), fast = plain;
+    SourceField plain = Empty(guides_, c.keep_guide_offset), fast = plain;
     const Progress unheard;
     tbb::task_arena(threads).execute([&] {
       internal::RowProgress progress(unheard, 0.0, 1.0, 1);
@@ -86,7 +86,7 @@ class Matches {
     EXPECT_EQ(plain.y, fast.y) << what;
     EXPECT_EQ(plain.level, fast.level) << what;
     EXPECT_EQ(plain.exemplar, fast.exemplar) << what;
-    EXPECT_EQ(plain.moved, fast.moved) << what;
+    EXPECT_EQ(plain.guide_offset, fast.guide_offset) << what;
   }
 
   const GuideSet& guides_;
@@ -260,7 +260,7 @@ TEST(TransferTiles, VarietyAndItsBorders) {
   const PreparedExemplar exemplar(NoisePicture(96), 2.0, 256);
   const Matches matches(walls, exemplar);
   for (const double degrees : {5.0, 15.0, 90.0}) {
-    matches.ExpectEqual({.variety = degrees, .keep_moved = true}, "variety " + std::to_string(degrees));
+    matches.ExpectEqual({.variety = degrees, .keep_guide_offset = true}, "variety " + std::to_string(degrees));
     matches.ExpectEqual({.levels = 8, .variety = degrees}, "variety with runs " + std::to_string(degrees));
   }
 }
@@ -276,7 +276,7 @@ TEST(TransferTiles, SeveralExemplarsAndTheirLight) {
     for (const LuminanceError form : {LuminanceError::kExcess, LuminanceError::kPublished}) {
       const Matches matches(guides, exemplar, Illumination(luminances, weight, form), Light(guides));
       matches.ExpectEqual({}, "weight " + std::to_string(weight));
-      matches.ExpectEqual({.metric = ThresholdMetric::kL1, .variety = 15.0, .keep_moved = true},
+      matches.ExpectEqual({.metric = ThresholdMetric::kL1, .variety = 15.0, .keep_guide_offset = true},
                           "l1, weight " + std::to_string(weight));
     }
   }
@@ -305,7 +305,7 @@ TEST(TransferTiles, OnlyWhatIsWanted) {
   for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
     matches.wanted().push_back(guides.Plane(Layer::kCoverage)[i] > 0.0f && Hash(i) % 7 == 0);
   }
-  matches.ExpectEqual({.least_level = 2, .keep_moved = true}, "wanted");
+  matches.ExpectEqual({.least_level = 2, .keep_guide_offset = true}, "wanted");
 }
 
 TEST(TransferTiles, NormalsThatAreNone) {

@@ -38,7 +38,7 @@ Picture TwoTones(int width, int height) {
 
 TEST(SourceVariation, ToneIsTheMeanOfTheUsablePixelsAround) {
   const PreparedExemplar exemplar(NoisePicture(100), 2.0, 100);  // small: sums of single pixels
-  const SourceVariation alternatives(exemplar);
+  const SourceVariation variation(exemplar);
   int empty = 0;
   for (const Source at : {Source{50, 50}, Source{12, 40}, Source{3, 50}, Source{80, 20}, Source{0, 0}}) {
     for (const int half : {1, 4, 9}) {
@@ -48,7 +48,7 @@ TEST(SourceVariation, ToneIsTheMeanOfTheUsablePixelsAround) {
           if (exemplar.Usable(x, y)) sum += exemplar.picture().At(x, y)[1], count += 1.0;
         }
       }
-      const auto tone = alternatives.ToneAround(at, 0, half);
+      const auto tone = variation.ToneAround(at, 0, half);
       ASSERT_EQ(tone.has_value(), count > 0.0);
       if (!tone) {
         ++empty;
@@ -71,24 +71,24 @@ TEST(SourceVariation, ToneOfAPixelIsSmooth) {
     }
   }
   const PreparedExemplar exemplar(ramp, 2.0, 300);
-  const SourceVariation alternatives(exemplar);
+  const SourceVariation variation(exemplar);
   for (int y = 100; y < 200; y += 7) {
-    for (int x = 100; x < 200; ++x) EXPECT_NEAR(alternatives.ToneAt({x, y}, 0)[0], ramp.At(x, y)[0], 2.0);
+    for (int x = 100; x < 200; ++x) EXPECT_NEAR(variation.ToneAt({x, y}, 0)[0], ramp.At(x, y)[0], 2.0);
   }
 }
 
 TEST(SourceVariation, ChoosesWithinTheConeAndOfTheWantedTone) {
   const PreparedExemplar exemplar(TwoTones(256, 256), 2.0, 256);
-  const SourceVariation alternatives(exemplar);
+  const SourceVariation variation(exemplar);
   const Source own{112, 120};  // light, near the dark half, which most of the cone is
   const glm::vec3 normal = exemplar.Normal(own.x, own.y);
   std::set<std::pair<int, int>> chosen;
   for (std::uint64_t hash = 0; hash < 300; ++hash) {
-    const Source source = alternatives.Choose(exemplar, {own, 0, 25.0, 12, Mix64(hash)});
+    const Source source = variation.Choose(exemplar, {own, 0, 25.0, 12, Mix64(hash)});
     ASSERT_TRUE(exemplar.Usable(source.x, source.y));
     EXPECT_GE(glm::dot(normal, exemplar.Normal(source.x, source.y)), std::cos(25.0 * kRadians) - 1e-6);
     EXPECT_LE(source.x, 124) << "dark paint within its square";
-    EXPECT_EQ(source, alternatives.Choose(exemplar, {own, 0, 25.0, 12, Mix64(hash)}));
+    EXPECT_EQ(source, variation.Choose(exemplar, {own, 0, 25.0, 12, Mix64(hash)}));
     chosen.insert({source.x, source.y});
   }
   EXPECT_GT(chosen.size(), 250u);
@@ -103,13 +103,13 @@ TEST(SourceVariation, ASceneOffersAllOfAFlatFace) {
   const Picture* const pictures[] = {&paint};
   auto exemplar = PreparedExemplar::OfScene(pictures, panes, 0.0, 200, 120, "panes");
   ASSERT_TRUE(exemplar.ok());
-  const SourceVariation alternatives(*exemplar);
+  const SourceVariation variation(*exemplar);
   std::set<int> tenths, both;
   for (std::uint64_t hash = 0; hash < 2000; ++hash) {
-    const Source source = alternatives.Choose(*exemplar, {{0, 0}, 0, 20.0, 10, Mix64(hash)});
+    const Source source = variation.Choose(*exemplar, {{0, 0}, 0, 20.0, 10, Mix64(hash)});
     EXPECT_LT(source.x, 100) << "the other pane is 30 degrees away";
     tenths.insert(source.x / 10 * 100 + source.y / 10);
-    const Source any = alternatives.Choose(*exemplar, {{0, 0}, 0, 31.0, 10, Mix64(hash)});
+    const Source any = variation.Choose(*exemplar, {{0, 0}, 0, 31.0, 10, Mix64(hash)});
     both.insert(any.x / 10 * 100 + any.y / 10);
   }
   EXPECT_GT(tenths.size(), 100u) << "of 120 squares of the left pane";

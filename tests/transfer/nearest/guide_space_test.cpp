@@ -104,8 +104,8 @@ class Reference {
   }
 
   // Without the normal's.
-  std::vector<float> Rest(const GuideSet& set, std::size_t i, float factor) const {
-    std::vector<float> rest;
+  std::vector<float> ExtraDistance(const GuideSet& set, std::size_t i, float factor) const {
+    std::vector<float> extra_values;
     for (const LayerInfo& info : AllLayers()) {
       if (info.layer == Layer::kNormal || !(weights_[info.layer] > 0.0f)) continue;
       for (int c = 0; c < ChannelCount(info.layer); ++c) {
@@ -116,16 +116,16 @@ class Reference {
           coordinate = std::isinf(light) ? 1.0f : light / (1.0f + light);
         }
         if (std::isnan(value)) coordinate = 0.0f;
-        rest.push_back(weights_[info.layer] * coordinate);
+        extra_values.push_back(weights_[info.layer] * coordinate);
       }
     }
-    return rest;
+    return extra_values;
   }
-  std::vector<float> RestOfSource(Source u) const { return Rest(own_, own_.Index(u.x, u.y), 1.0f / white_); }
-  std::vector<float> RestOfPixel(std::size_t i) const { return Rest(guides_, i, brightness_ / white_); }
+  std::vector<float> RestOfSource(Source u) const { return ExtraDistance(own_, own_.Index(u.x, u.y), 1.0f / white_); }
+  std::vector<float> ExtraValuesOf(std::size_t i) const { return ExtraDistance(guides_, i, brightness_ / white_); }
 
   Source Nearest(std::size_t i) const {
-    const auto rest = RestOfPixel(i);
+    const auto extra_values = ExtraValuesOf(i);
     const glm::vec3 normal = weights_[Layer::kNormal] * FacingDirection(guides_.Vec3(Layer::kNormal, i));
     double least = std::numeric_limits<double>::infinity();
     Source best;
@@ -135,8 +135,8 @@ class Reference {
       double sum = 0.0;
       for (int c = 0; c < 3; ++c) sum += (double(normal[c]) - there[c]) * (double(normal[c]) - there[c]);
       const auto& values = values_[s];
-      for (std::size_t d = 0; d < rest.size(); ++d)
-        sum += (double(rest[d]) - values[d]) * (double(rest[d]) - values[d]);
+      for (std::size_t d = 0; d < extra_values.size(); ++d)
+        sum += (double(extra_values[d]) - values[d]) * (double(extra_values[d]) - values[d]);
       if (sum < least) least = sum, best = u;
     }
     return best;
@@ -147,21 +147,22 @@ class Reference {
     if (!exemplar_.Usable(u.x, u.y)) return false;
     const glm::vec3 of_seed = guides_.Vec3(Layer::kNormal, seed);
     glm::vec3 normal = guides_.Vec3(Layer::kNormal, i);
-    auto rest = RestOfPixel(i);
-    if (!Near(of_seed, RestOfPixel(seed), best)) {
-      const auto off = RestOfPixel(seed), there = RestOfSource(best);
+    auto extra_values = ExtraValuesOf(i);
+    if (!Near(of_seed, ExtraValuesOf(seed), best)) {
+      const auto off = ExtraValuesOf(seed), there = RestOfSource(best);
       normal += exemplar_.Normal(best.x, best.y) - of_seed;
-      for (std::size_t k = 0; k < rest.size(); ++k) rest[k] += there[k] - off[k];
+      for (std::size_t k = 0; k < extra_values.size(); ++k) extra_values[k] += there[k] - off[k];
     }
-    return Near(normal, rest, u);
+    return Near(normal, extra_values, u);
   }
 
  private:
-  bool Near(glm::vec3 normal, const std::vector<float>& rest, Source u) const {
+  bool Near(glm::vec3 normal, const std::vector<float>& extra_values, Source u) const {
     const glm::vec3 d = weights_[Layer::kNormal] * normal - weights_[Layer::kNormal] * exemplar_.Normal(u.x, u.y);
     const auto values = RestOfSource(u);
     float off = 0.0f;
-    for (std::size_t k = 0; k < rest.size(); ++k) off += (rest[k] - values[k]) * (rest[k] - values[k]);
+    for (std::size_t k = 0; k < extra_values.size(); ++k)
+      off += (extra_values[k] - values[k]) * (extra_values[k] - values[k]);
     return d.x * d.x + d.y * d.y + d.z * d.z + off < test_ * test_;
   }
 
@@ -273,9 +274,9 @@ TEST(GuideSpace, DefinedForEveryValue) {
   for (const Layer layer : {Layer::kLuminance, Layer::kAlbedo}) scene.Add(layer);
   const auto read = [&](float luminance, float albedo, float brightness) {
     scene.Plane(Layer::kLuminance)[0] = luminance, scene.Plane(Layer::kAlbedo, 1)[0] = albedo;
-    float rest[GuideSpace::kMaxExtra];
-    space.Read(scene, 0, brightness, rest);
-    return std::pair(rest[1], rest[3]);  // albedo comes first, its green second
+    float extra_values[GuideSpace::kMaxExtra];
+    space.Read(scene, 0, brightness, extra_values);
+    return std::pair(extra_values[1], extra_values[3]);  // albedo comes first, its green second
   };
   EXPECT_EQ(read(2.0f, 0.25f, 1.0f), std::pair(0.5f, 2.0f));
   EXPECT_EQ(read(1.0f, 1.0f, 6.0f), std::pair(2.0f, 3.0f));
@@ -411,9 +412,10 @@ TEST(GuideSpace, EachExemplarIsSearchedByItsOwnLight) {
     if (both.level[i] == SourceField::kNoSource) continue;
     const int k = both.exemplar[i];
     EXPECT_EQ(k, prepared->illumination.Choose(guides.Plane(Layer::kLuminance)[i]));
-    float rest[GuideSpace::kMaxExtra];
-    prepared->space->Read(guides, i, 1.0f, rest);
-    ASSERT_EQ((Source{both.x[i], both.y[i]}), prepared->space->Nearest(k, guides.Vec3(Layer::kNormal, i), rest));
+    float extra_values[GuideSpace::kMaxExtra];
+    prepared->space->Read(guides, i, 1.0f, extra_values);
+    ASSERT_EQ((Source{both.x[i], both.y[i]}),
+              prepared->space->Nearest(k, guides.Vec3(Layer::kNormal, i), extra_values));
     ++of[k];
   }
   EXPECT_GT(of[0], 500);

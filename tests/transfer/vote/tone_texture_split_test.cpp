@@ -147,7 +147,7 @@ TEST(Hybrid, ZeroIsThePlainEngineAndAnEvenToneToo) {
       style.transfer.blend_radius = radius;
       const Transferred plain = MustTransfer(style, guides);
       style.transfer.hybrid = 0.0;
-      EXPECT_TRUE(Prepare(style, 90)->tones.empty());
+      EXPECT_TRUE(Prepare(style, 90)->base_layers.empty());
       EXPECT_EQ(MustTransfer(style, guides).picture.rgba, plain.picture.rgba);
       style.transfer.hybrid = kInfinity;
       const Transferred even = MustTransfer(style, guides);
@@ -242,7 +242,7 @@ TEST(Hybrid, IsTheOwnTonePlusTheMeanOfTheTexturesVotedFor) {
         if (field.level[p] == SourceField::kNoSource) continue;
         const int own = prepared->illumination.Choose(guides.Plane(Layer::kLuminance)[p]);
         foreign += own != field.exemplar[p];
-        const auto tone = ToneAt(exemplar, prepared->tones[std::size_t(own)], guides.Vec3(Layer::kNormal, p));
+        const auto tone = ToneAt(exemplar, prepared->base_layers[std::size_t(own)], guides.Vec3(Layer::kNormal, p));
         double texture[4] = {0, 0, 0, 0}, votes = 0.0;
         for (int v = std::max(0, y - 2); v <= std::min(59, y + 2); ++v) {
           for (int u = std::max(0, x - 2); u <= std::min(69, x + 2); ++u) {
@@ -252,7 +252,7 @@ TEST(Hybrid, IsTheOwnTonePlusTheMeanOfTheTexturesVotedFor) {
             const std::uint16_t* paint = exemplar.picture(field.exemplar[q]).At(sx, sy);
             for (int c = 0; c < 4; ++c) {
               const double value = c < 3 ? paint[c] * double(paint[3]) / 65535 : paint[3];
-              texture[c] += value - prepared->tones[field.exemplar[q]].At(sx, sy)[c];
+              texture[c] += value - prepared->base_layers[field.exemplar[q]].At(sx, sy)[c];
             }
             votes += 1.0;
           }
@@ -353,11 +353,11 @@ TEST(Hybrid, FollowsTheScale) {
   style.transfer.scale = 0.5;
   const auto prepared = Prepare(style, 60);
   ASSERT_TRUE(prepared.ok());
-  EXPECT_EQ(prepared->tones[0].rgba, MakeBaseLayers(*prepared->exemplar, 3.0)[0].rgba);
+  EXPECT_EQ(prepared->base_layers[0].rgba, MakeBaseLayers(*prepared->exemplar, 3.0)[0].rgba);
   style.transfer.scale = 1.0, style.transfer.reference_height = 40;
   const auto taller = Prepare(style, 60);
   ASSERT_TRUE(taller.ok());
-  EXPECT_EQ(taller->tones[0].rgba, MakeBaseLayers(*taller->exemplar, 9.0)[0].rgba);
+  EXPECT_EQ(taller->base_layers[0].rgba, MakeBaseLayers(*taller->exemplar, 9.0)[0].rgba);
 }
 
 TEST(Hybrid, ThreadsAndRegionsDoNotChangeAByte) {

@@ -10,15 +10,15 @@
 namespace scumble::internal {
 
 struct SeedCandidate {
-  Candidate offer;
+  Candidate candidate;
   // The guide offset of `variety`: a pixel's own guide is shifted equally before it is compared.
-  glm::vec3 moved{0.0f};
+  glm::vec3 guide_offset{0.0f};
   bool off = false;  // MatchInput::IsOff, by `best`
   Source best{};     // the nearest neighbour, whatever source `variety` took
 };
 
 // The seed at a pixel whose guide has been read, before `variety`.
-SeedCandidate SeedOf(const MatchInput& input, const PixelGuide& guide, const Candidate& offer);
+SeedCandidate SeedOf(const MatchInput& input, const PixelGuide& guide, const Candidate& candidate);
 
 // If the surface around q is flat, `variety` may choose another source by the hash. Returns whether it is flat.
 bool VarySource(const MatchInput& input, int level, PixelPosition q, std::uint64_t hash, SeedCandidate& made);
