@@ -134,7 +134,7 @@ TEST(ApproximateTree, GuidesOfLightKeepToItToo) {
     const auto off = [&](const GuideSpace& space) {
       const Source at = space.Nearest(0, normal, &light);
       const glm::dvec3 d = glm::dvec3(normal) - glm::dvec3(exact.exemplar->Normal(at.x, at.y));
-      const double l = double(light) - space.RestAt(0, at)[0];
+      const double l = double(light) - space.ExtraValuesAt(0, at)[0];
       return std::sqrt(glm::dot(d, d) + l * l);
     };
     const double least = off(*exact.space), found = off(*rough.space);
