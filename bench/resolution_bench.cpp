@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -82,7 +83,11 @@ struct Variant {
 
 void Measure(const std::string& scene, const std::string& style_name) {
   Style style = OrStop(LoadStyle(std::string(SCUMBLE_SOURCE_DIR) + "/exemplars/" + style_name, {}));
-  const PreparedStyle prepared = OrStop(Prepare(style, kHeight));
+  std::map<int, PreparedStyle> prepared;  // by step
+  for (const int step : {1, 2, 4, 8}) {
+    style.transfer.match_step = step;
+    prepared.emplace(step, OrStop(Prepare(style, kHeight)));
+  }
   const Made full = Render(scene, 1);
   std::vector<Made> upsampled;
   for (const int factor : {2, 4}) {
@@ -102,16 +107,15 @@ void Measure(const std::string& scene, const std::string& style_name) {
     for (Variant& way : ways) {
       TransferOptions options;
       options.threads = 1;
-      options.match_step = way.step;
       options.keep_field = true;
-      OrStop(Transfer(prepared, *way.guides, options, scratch, picture));
+      OrStop(Transfer(prepared.at(way.step), *way.guides, options, scratch, picture));
       way.match_ms.push_back(scratch.times.match_ms);
       way.field = scratch.field;
     }
   }
   const double base = Median(ways[0].match_ms);
   for (const Variant& way : ways) {
-    const Error error = GuideError(full.guides, *prepared.exemplar, way.field);
+    const Error error = GuideError(full.guides, *prepared.at(1).exemplar, way.field);
     std::printf("| %s | %s | %s | %.0f | %.2f | %.0f | %.1f° | %.1f° | %.1f%% |\n", scene.c_str(), style_name.c_str(),
                 way.name.c_str(), Median(way.match_ms), Median(way.match_ms) / base, way.guides_ms, error.mean,
                 error.most, SameSources(ways[0].field, way.field));
