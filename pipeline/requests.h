@@ -58,10 +58,11 @@ struct SceneRequest {
   NormalFrame normal_frame = NormalFrame::kCamera;
   std::string isa;  // as GuidegenOptions::isa
   bool robust = true;
-  bool half = false;             // colour layers as half floats
-  BlenderRequest blender;        // for .blend scenes
-  std::string animation;         // of a glTF file with several, as AnimationOptions has it
-  std::optional<FrameRate> fps;  // empty: a .blend's own, otherwise FrameRate()
+  bool half = false;                          // colour layers as half floats
+  BlenderRequest blender;                     // for .blend scenes
+  std::optional<double> auto_smooth_degrees;  // of normals that the file lacks, as LoadOptions has it
+  std::string animation;                      // of a glTF file with several, as AnimationOptions has it
+  std::optional<FrameRate> fps;               // empty: a .blend's own, otherwise FrameRate()
   // Light-path layers, as in GuidegenOptions.
   int samples = GuidegenOptions().samples;
   bool samples_given = false;  // then they are the most that noise or a time budget may take

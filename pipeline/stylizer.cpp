@@ -45,6 +45,10 @@ Expected<SceneRequest> RequestOf(const SceneSettings& settings) {
     request.view = ViewAngles{view->azimuth, view->elevation, view->distance};
   }
   request.animation = settings.animation;
+  if (const std::optional<double>& degrees = settings.auto_smooth; degrees && !(*degrees >= 0.0 && *degrees <= 180.0)) {
+    return UsageError("auto_smooth must be 0 to 180 degrees");
+  }
+  request.auto_smooth_degrees = settings.auto_smooth;
   request.blender.frame = settings.frame;
   if (settings.frames_per_second != 0.0) {
     const double thousandths = settings.frames_per_second * 1000.0;

@@ -168,14 +168,16 @@ Status Workspace::State::LoadScene(const SceneRequest& request, std::optional<in
   if (blender) {
     text += fmt::format("{} {} {}\n", frame ? std::to_string(*frame) : "", request.blender.program,
                         request.view.has_value());
+  } else if (request.auto_smooth_degrees) {
+    text += fmt::format("auto smooth {}\n", *request.auto_smooth_degrees);
   }
   text += SceneStamps(request.scene);
   if (text + (blender && posed ? StampsOf(posed->animation.files) : "") == scene_key) return Ok();
   scene_key.clear(), pose_key.clear(), guides_key.clear();
   rays.reset(), animation.reset(), posed.reset();
   if (!blender) {
-    SCUMBLE_ASSIGN(animation, AnimatedScene::Load(request.scene, {request.animation, TextureLoading::kWhenNeeded}));
-    for (const std::string& warning : animation->rest().warnings) context.Warn(request.scene + ": " + warning);
+    SCUMBLE_ASSIGN(animation, AnimatedScene::Load(request.scene, {request.animation, LoadOptionsOf(request)}));
+    PassOnNotes(animation->rest(), request.scene, context);
   } else {
     // Blender's scene is posed as it is loaded; how it is seen is decided again in Pose.
     const LayersFor none = [](const SceneStyleRequests&) -> Expected<LayerSet> { return LayerSet(); };

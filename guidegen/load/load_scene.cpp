@@ -23,11 +23,18 @@ std::string LowerEnding(const std::filesystem::path& path) {
   return ending;
 }
 
-Expected<Scene> LoadByEnding(const std::filesystem::path& path) {
+MissingNormals MissingNormalsOf(const LoadOptions& options) {
+  const std::optional<double>& degrees = options.auto_smooth_degrees;
+  SCUMBLE_CHECK(!degrees || (*degrees >= 0.0 && *degrees <= 180.0));
+  return MissingNormals(degrees);
+}
+
+Expected<Scene> LoadByEnding(const std::filesystem::path& path, const LoadOptions& options) {
   const std::string ending = LowerEnding(path);
-  if (ending == ".glb" || ending == ".gltf") return LoadGltfScene(path);
-  if (ending == ".obj") return LoadObjScene(path);
-  if (ending == ".ply") return LoadPlyScene(path);
+  const MissingNormals missing = MissingNormalsOf(options);
+  if (ending == ".glb" || ending == ".gltf") return LoadGltfScene(path, missing);
+  if (ending == ".obj") return LoadObjScene(path, missing);
+  if (ending == ".ply") return LoadPlyScene(path, missing);
   if (ending == ".blend") {
     return UnavailableError(path.string() +
                             ": .blend files cannot be read directly: scumble guidegen and stylize have " +
@@ -75,10 +82,10 @@ Status Finish(const std::filesystem::path& path, bool has_geometry, TextureLoadi
 
 }  // namespace
 
-Expected<Scene> LoadScene(const std::filesystem::path& path, TextureLoading textures) {
+Expected<Scene> LoadScene(const std::filesystem::path& path, const LoadOptions& options) {
   return WithinMemory(path, [&]() -> Expected<Scene> {
-    SCUMBLE_ASSIGN(Scene scene, LoadByEnding(path));
-    SCUMBLE_RETURN_IF_ERROR(Finish(path, !scene.instances.empty(), textures, scene));
+    SCUMBLE_ASSIGN(Scene scene, LoadByEnding(path, options));
+    SCUMBLE_RETURN_IF_ERROR(Finish(path, !scene.instances.empty(), options.textures, scene));
     return scene;
   });
 }
@@ -88,15 +95,15 @@ Expected<AnimatedScene> AnimatedScene::Load(const std::filesystem::path& path, c
     AnimatedScene animated;
     const std::string ending = LowerEnding(path);
     if (ending != ".glb" && ending != ".gltf") {
-      SCUMBLE_ASSIGN(animated.rest_, LoadScene(path, options.textures));
+      SCUMBLE_ASSIGN(animated.rest_, LoadScene(path, options.load));
       if (options.animation.empty() || options.animation == "*") return animated;
       return UsageError(path.string() + " has no animation \"" + Excerpt(options.animation, 80) +
                         "\": only .glb and .gltf files have any");
     }
-    SCUMBLE_ASSIGN(MovingScene loaded, LoadMovingGltfScene(path, options.animation));
+    SCUMBLE_ASSIGN(MovingScene loaded, LoadMovingGltfScene(path, options.animation, MissingNormalsOf(options.load)));
     animated.rest_ = std::move(loaded.scene);
     animated.animations_ = std::move(loaded.animations);
-    SCUMBLE_RETURN_IF_ERROR(Finish(path, !loaded.rig.instances.empty(), options.textures, animated.rest_));
+    SCUMBLE_RETURN_IF_ERROR(Finish(path, !loaded.rig.instances.empty(), options.load.textures, animated.rest_));
     if (!loaded.rig.animation.empty()) animated.rig_ = std::make_shared<const GltfRig>(std::move(loaded.rig));
     return animated;
   });

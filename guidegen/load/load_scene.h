@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,15 +17,22 @@ enum class TextureLoading {
   kWhenNeeded,  // DecodeTextures is called before the scene is rendered, and reports damaged ones
 };
 
-// Loads by the file's ending. Missing normals are made smooth, weighted by angle. A scene without geometry is legal,
-// with a warning. Errors name the file and the defect: unreadable, corrupt, an accessor that points outside its buffer,
-// an index that points outside its attributes, a missing texture. Never reads outside the file's data. A moving scene
-// is loaded at rest: nodes with their own transforms, skins and morph weights applied.
-Expected<Scene> LoadScene(const std::filesystem::path& path, TextureLoading textures = TextureLoading::kNow);
+struct LoadOptions {
+  TextureLoading textures = TextureLoading::kNow;
+  // Of normals that the file lacks (guidegen/load/auto_smooth.h): 0 … 180 degrees, 0: flat. Empty: glTF is flat, OBJ as
+  // its smoothing groups say, other OBJ and PLY smooth up to kDefaultAutoSmooth. The scene's notes say what was done.
+  std::optional<double> auto_smooth_degrees;
+};
+
+// Loads by the file's ending. A scene without geometry is legal, with a warning. Errors name the file and the defect:
+// unreadable, corrupt, an accessor that points outside its buffer, an index that points outside its attributes, a
+// missing texture. Never reads outside the file's data. A moving scene is loaded at rest: nodes with their own
+// transforms, skins and morph weights applied.
+Expected<Scene> LoadScene(const std::filesystem::path& path, const LoadOptions& options = {});
 
 struct AnimationOptions {
   std::string animation;  // by name; "": the file's first, "*": all of them at once
-  TextureLoading textures = TextureLoading::kNow;
+  LoadOptions load = {};
 };
 
 struct GltfRig;

@@ -103,6 +103,8 @@ std::vector<glm::vec3> SmoothNormals(std::span<const glm::vec3> positions, std::
   return normals;
 }
 
+bool HasDirection(const glm::vec3& normal) { return UnitOrZero(glm::dvec3(normal)) != glm::dvec3(0.0); }
+
 std::size_t FillNormals(Mesh& mesh) {
   if (mesh.normals.empty()) {
     mesh.normals = SmoothNormals(mesh.positions, mesh.triangles, WeldByPosition(mesh.positions));

@@ -1,7 +1,8 @@
 // Normals and tangents for meshes whose files give none.
 //
-// Normals are smooth: the sum of the adjoining triangles' normals, each weighted by its angle at the vertex (Thürmer &
-// Wüthrich, "Computing vertex normals from polygonal facets", 1998), so they do not depend on the triangulation.
+// Normals here are smooth; guidegen/load/auto_smooth.h limits that by an angle. They are the sum of the adjoining
+// triangles' normals, each weighted by its angle at the vertex (Thürmer & Wüthrich, "Computing vertex normals from
+// polygonal facets", 1998), so they do not depend on the triangulation.
 // Tangents follow Lengyel, "Computing tangent space basis vectors for an arbitrary mesh", 2001, with the
 // triangles weighted likewise. Sums are in double and in the order of the triangles: the same bits every time.
 #pragma once
@@ -25,8 +26,11 @@ std::vector<std::uint32_t> WeldByPosition(std::span<const glm::vec3> positions);
 std::vector<glm::vec3> SmoothNormals(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles,
                                      std::span<const std::uint32_t> weld);
 
+// Whether a normal has one: not zero, NaN or infinite.
+bool HasDirection(const glm::vec3& normal);
+
 // Makes mesh.normals one unit normal per vertex: those given are normalised, missing ones and ones that have no
-// direction (zero, NaN, infinite) become smooth, welded by position. Returns how many given normals were replaced.
+// direction become smooth, welded by position. Returns how many given normals were replaced.
 std::size_t FillNormals(Mesh& mesh);
 
 // Computes mesh.tangents from the normals and one of the UV sets, as transformed by `uv_transform`, in glTF's sense:

@@ -15,6 +15,7 @@
 #include "core/image/color.h"
 #include "core/image/hash.h"
 #include "core/io/picture_file.h"
+#include "guidegen/load/auto_smooth.h"
 #include "guidegen/load/loader_util.h"
 #include "guidegen/load/mesh_normals.h"
 #include "guidegen/load/mtl_materials.h"
@@ -56,7 +57,7 @@ struct NearOrigins {
   }
 };
 
-// `normal` is an index into the file's normals, or -1 - an index into the smooth ones.
+// `normal` is an index into the file's normals, or -1 - an index into those made here.
 struct Corner {
   int position = 0;
   int uv = -1;
@@ -67,15 +68,14 @@ struct CornerHash {
   std::size_t operator()(const Corner& c) const { return Hash(c.position, c.uv, c.normal); }
 };
 
-// Corners with equal keys share a smooth normal.
+// Corners of smoothing groups with equal keys share a normal.
 struct SmoothKey {
   std::uint32_t place = 0;  // the same for positions that are equal
   unsigned group = 0;
-  std::size_t flat_face = 0;  // 1 + the face where it is flat
   bool operator==(const SmoothKey&) const = default;
 };
 struct SmoothKeyHash {
-  std::size_t operator()(const SmoothKey& k) const { return Hash(k.place, k.group, k.flat_face); }
+  std::size_t operator()(const SmoothKey& k) const { return Hash(k.place, k.group); }
 };
 
 struct Triangle {
@@ -88,7 +88,8 @@ struct Triangle {
 
 class ObjLoader {
  public:
-  explicit ObjLoader(const std::filesystem::path& path) : path_(path), file_(path.string()) {}
+  ObjLoader(const std::filesystem::path& path, MissingNormals missing)
+      : path_(path), file_(path.string()), missing_(missing) {}
 
   Expected<Scene> Load() {
     SCUMBLE_RETURN_IF_ERROR(ParseObj(path_, warnings_, contents_));
@@ -97,10 +98,11 @@ class ObjLoader {
     ChooseOrigins();
     PlacePositions();
     for (std::size_t s = 0; s < shapes_.size(); ++s) AddShape(s);
-    if (lacks_normals_) ComputeNormals();
+    if (without_normals_ > 0) ComputeNormals();
     LoadMaterials();
     BuildMeshes();
     warnings_.MoveTo(scene_.warnings);
+    missing_.Tell(scene_.notes);
     return std::move(scene_);
   }
 
@@ -226,7 +228,6 @@ class ObjLoader {
       SCUMBLE_RETURN_IF_ERROR(CheckIndex(index.vertex_index, positions, shape.name));
       SCUMBLE_RETURN_IF_ERROR(CheckIndex(index.texcoord_index, uvs, shape.name));
       SCUMBLE_RETURN_IF_ERROR(CheckIndex(index.normal_index, normals, shape.name));
-      lacks_normals_ |= index.normal_index < 0;
     }
     for (const std::size_t count : mesh.num_face_vertices) {
       if (count >= 3) SCUMBLE_RETURN_IF_ERROR(budget_.Take(file_, count, count - 2));
@@ -253,15 +254,22 @@ class ObjLoader {
     TriangulatePolygon(polygon, cuts);
     for (const glm::uvec3& cut : cuts) {
       Triangle triangle;
+      bool lacks = false;
       for (int i = 0; i < 3; ++i) {
         const tinyobj::index_t& index = mesh.indices[first + cut[i]];
         triangle.corners[i] = {index.vertex_index, index.texcoord_index, index.normal_index};
+        if (index.normal_index >= 0 && !HasDirection(NormalAt(triangle.corners[i]))) {
+          warnings_.Add("normals without a direction were computed anew",
+                        "'" + Excerpt(shapes_[shape_index].name, 80) + "'");
+          triangle.corners[i].normal = -1;
+        }
+        lacks = lacks || triangle.corners[i].normal < 0;
       }
       triangle.face = faces_;
       triangle.smoothing_group = mesh.smoothing_group_ids[face];
       triangle.shape = static_cast<int>(shape_index);
       triangle.material = mesh.material_ids[face];
-      has_smoothing_groups_ |= triangle.smoothing_group != 0;
+      without_normals_ += lacks;
       triangles_.push_back(triangle);
     }
     ++faces_;
@@ -279,31 +287,56 @@ class ObjLoader {
     return weld;
   }
 
-  // Smooth over all shapes with one origin, so that no seam shows between shapes or materials. In a file with smoothing
-  // groups a normal is shared inside a group only, and group 0 means flat faces; a file without any is smooth
-  // everywhere.
+  // Normals that the file lacks. They are smooth over all shapes with one origin, so that no seam shows between shapes
+  // or materials.
   void ComputeNormals() {
+    const auto rule = contents_.has_smoothing ? MissingNormals::Rule::kGroups : MissingNormals::Rule::kAngle;
+    const std::optional<double> degrees = missing_.Take(rule, without_normals_);
     const std::vector<std::uint32_t> weld = WeldFrames();
+    std::vector<glm::uvec3> triangles;
+    std::vector<std::uint32_t> faces;
+    for (const Triangle& triangle : triangles_) {
+      const Corner* const c = triangle.corners;
+      triangles.emplace_back(c[0].position, c[1].position, c[2].position);
+      faces.push_back(static_cast<std::uint32_t>(triangle.face));
+    }
+    const SmoothingInput input{positions_, triangles, weld, faces};
+    // Where there are groups, these are the normals of faces outside of all groups.
+    CornerNormals normals = AutoSmoothNormals(input, degrees.value_or(0.0));
+    if (!degrees) SmoothInsideGroups(weld, normals);
+    for (std::size_t t = 0; t < triangles_.size(); ++t) {
+      for (int i = 0; i < 3; ++i) {
+        Corner& corner = triangles_[t].corners[i];
+        if (corner.normal < 0) corner.normal = -1 - std::int64_t(normals.of_corners[t][i]);
+      }
+    }
+    made_normals_ = std::move(normals.normals);
+  }
+
+  // All faces of a group at one place share a normal there.
+  void SmoothInsideGroups(std::span<const std::uint32_t> weld, CornerNormals& normals) const {
     std::unordered_map<SmoothKey, std::uint32_t, SmoothKeyHash> ids;
     std::vector<glm::vec3> positions;
     std::vector<glm::uvec3> triangles;
-    for (Triangle& triangle : triangles_) {
-      const bool flat = has_smoothing_groups_ && triangle.smoothing_group == 0;
+    const auto first = static_cast<std::uint32_t>(normals.normals.size());
+    for (std::size_t t = 0; t < triangles_.size(); ++t) {
+      const unsigned group = triangles_[t].smoothing_group;
+      if (group == 0) continue;
       glm::uvec3 indices(0);
       for (int i = 0; i < 3; ++i) {
-        Corner& corner = triangle.corners[i];
-        const std::uint32_t place = weld[std::size_t(corner.position)];
-        const SmoothKey key{place, triangle.smoothing_group, flat ? triangle.face + 1 : 0};
-        const auto [it, is_new] = ids.try_emplace(key, static_cast<std::uint32_t>(positions.size()));
+        const std::uint32_t place = weld[std::size_t(triangles_[t].corners[i].position)];
+        const auto [it, is_new] =
+            ids.try_emplace(SmoothKey{place, group}, static_cast<std::uint32_t>(positions.size()));
         if (is_new) positions.push_back(positions_[place]);
         indices[i] = it->second;
-        if (corner.normal < 0) corner.normal = -1 - std::int64_t(it->second);
       }
       triangles.push_back(indices);
+      normals.of_corners[t] = indices + first;
     }
     std::vector<std::uint32_t> own(positions.size());
     std::iota(own.begin(), own.end(), 0u);
-    smooth_normals_ = SmoothNormals(positions, triangles, own);
+    const std::vector<glm::vec3> smooth = SmoothNormals(positions, triangles, own);
+    normals.normals.insert(normals.normals.end(), smooth.begin(), smooth.end());
   }
 
   void LoadMaterials() {
@@ -408,7 +441,7 @@ class ObjLoader {
       }
       mesh.triangles.push_back(indices);
     }
-    if (FillNormals(mesh) > 0) warnings_.Add("normals without a direction were computed anew", "'" + object + "'");
+    FillNormals(mesh);
     const TextureUse& normal_map = scene_.materials[std::size_t(mesh.material)].normal_texture;
     if (normal_map.texture >= 0 && has_uvs) FillTangents(mesh, 0, normal_map.uv_transform);
     scene_.meshes.push_back(std::move(mesh));
@@ -418,7 +451,7 @@ class ObjLoader {
   }
 
   glm::vec3 NormalAt(const Corner& corner) const {
-    if (corner.normal < 0) return smooth_normals_[std::size_t(-1 - corner.normal)];
+    if (corner.normal < 0) return made_normals_[std::size_t(-1 - corner.normal)];
     const double* n = attributes_.normals.data() + 3 * std::size_t(corner.normal);
     return {n[0], n[1], n[2]};
   }
@@ -459,14 +492,16 @@ class ObjLoader {
   std::shared_ptr<MtlLibrary> mtl_;   // once it is loaded
   std::vector<std::shared_ptr<std::vector<std::size_t>>> users_;  // of each texture: materials
   std::vector<Triangle> triangles_;
-  std::vector<glm::vec3> smooth_normals_;
+  MissingNormals missing_;
+  std::size_t without_normals_ = 0;  // triangles with a corner without a normal
+  std::vector<glm::vec3> made_normals_;
   std::size_t faces_ = 0;
-  bool lacks_normals_ = false;
-  bool has_smoothing_groups_ = false;
 };
 
 }  // namespace
 
-Expected<Scene> LoadObjScene(const std::filesystem::path& path) { return ObjLoader(path).Load(); }
+Expected<Scene> LoadObjScene(const std::filesystem::path& path, MissingNormals missing) {
+  return ObjLoader(path, missing).Load();
+}
 
 }  // namespace scumble

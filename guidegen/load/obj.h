@@ -5,10 +5,14 @@
 // coordinates (v flipped), vertex colours (sRGB-encoded), smoothing groups where there are no normals. A material
 // library or texture that is missing is a warning, not an error: OBJ files are often passed on without them.
 //
+// Normals that the file lacks: in a file that speaks of smoothing groups, faces of one group share the normal at a
+// place, and faces in group 0 (`s off`) or before the first `s` are flat. Any other file is smooth up to
+// kDefaultAutoSmooth. The user's degrees go before both.
+//
 // Vertices far from 0, as surveyors' are, keep their digits: the objects stand at the middle of what faces use in the
 // file instead of at 0. Where the file spans too much for that, those more than 65,536 m and 16 of their sizes from 0
 // each stand at the middle of their own shape, or of a neighbour's within 65,536 m. Rest positions are relative to that
-// place, and normals that the file lacks are smooth across objects that share one.
+// place, and smooth normals continue across objects that share one.
 //
 // From the MTL, as Blender 3.4 understands it:
 //   Kd, map_Kd    base colour, linear; the map stands in place of Kd; -s, -o and -clamp apply
@@ -25,10 +29,11 @@
 #include <filesystem>
 
 #include "core/image/status.h"
+#include "guidegen/load/auto_smooth.h"
 #include "guidegen/scene/scene.h"
 
 namespace scumble {
 
-Expected<Scene> LoadObjScene(const std::filesystem::path& path);
+Expected<Scene> LoadObjScene(const std::filesystem::path& path, MissingNormals missing);
 
 }  // namespace scumble

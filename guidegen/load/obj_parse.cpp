@@ -15,8 +15,10 @@ bool IsBlank(char c) { return c == ' ' || c == '\t'; }
 
 // Turns lines into comments that tinyobjloader would store but no code here reads; line numbers stay. A subdivision tag
 // of 20 bytes becomes 360 KB, and again in each shape. The lines and points of an object are copied at each change of
-// material; the first index of each kind shows that they exist.
-void BlankUnused(std::string& text) {
+// material; the first index of each kind shows that they exist. Returns whether smoothing groups are mentioned, `s off`
+// included, which tinyobjloader does not tell from silence.
+bool BlankUnused(std::string& text) {
+  bool has_smoothing = false;
   const auto ends_line = [](char c) { return c == '\n' || c == '\r'; };
   bool has_lines = false, has_points = false;  // in this object or group
   for (auto begin = text.begin(); begin != text.end();) {
@@ -25,6 +27,7 @@ void BlankUnused(std::string& text) {
     begin = end == text.end() ? end : end + 1;
     if (what == end || what + 1 == end || !IsBlank(what[1])) continue;
     if (*what == 'o' || *what == 'g') has_lines = has_points = false;
+    has_smoothing |= *what == 's';
     if (*what == 't') *what = '#';
     if (*what != 'l' && *what != 'p') continue;
     bool& is_told = *what == 'l' ? has_lines : has_points;
@@ -36,6 +39,7 @@ void BlankUnused(std::string& text) {
       is_told = true;
     }
   }
+  return has_smoothing;
 }
 
 // Reads material libraries from regular files only, each file once, and names missing ones.
@@ -78,7 +82,7 @@ Status ParseObj(const std::filesystem::path& path, WarningCounter& warnings, Obj
   SCUMBLE_ASSIGN(const std::vector<std::byte> bytes, ReadRegularFile(path));
   if (bytes.empty()) return InputError(file + " is empty; expected a Wavefront OBJ scene");
   std::string text = AsText(bytes);
-  BlankUnused(text);
+  contents.has_smoothing = BlankUnused(text);
   std::istringstream stream(std::move(text));
   LibraryReader library(path, warnings);
   std::string warning, error;

@@ -16,6 +16,7 @@ struct ObjContents {
   tinyobj::attrib_t attributes;
   std::vector<tinyobj::shape_t> shapes;  // faces are polygons; indices are not checked
   std::vector<tinyobj::material_t> materials;
+  bool has_smoothing = false;  // there are lines `s`; faces before the first one are in no smoothing group
 };
 
 // Fills `contents` from a file. A missing library becomes a warning; tinyobjloader's refusals and exceptions become

@@ -171,7 +171,8 @@ class Values {
 
 class PlyLoader {
  public:
-  explicit PlyLoader(const std::filesystem::path& path) : path_(path), file_(path.string()) {}
+  PlyLoader(const std::filesystem::path& path, MissingNormals missing)
+      : path_(path), file_(path.string()), missing_(missing) {}
 
   Expected<Scene> Load() {
     SCUMBLE_ASSIGN(const std::vector<std::byte> whole, ReadRegularFile(path_));
@@ -430,6 +431,30 @@ class PlyLoader {
     }
   }
 
+  // The number of the face that each triangle is a part of.
+  std::vector<std::uint32_t> Faces() const {
+    std::vector<std::uint32_t> faces;
+    std::uint32_t face = 0;
+    for (const Polygon& polygon : polygons_) {
+      while (faces.size() < polygon.first) faces.push_back(face++);
+      faces.insert(faces.end(), polygon.triangles, face++);
+    }
+    while (faces.size() < mesh_.triangles.size()) faces.push_back(face++);
+    return faces;
+  }
+
+  Status MakeNormals() {
+    if (std::none_of(mesh_.normals.begin(), mesh_.normals.end(), HasDirection)) mesh_.normals.clear();
+    if (!mesh_.normals.empty()) {
+      if (FillNormals(mesh_) > 0) warnings_.Add("normals without a direction were computed anew", "");
+      return Ok();
+    }
+    const std::optional<double> degrees = missing_.Take(MissingNormals::Rule::kAngle, mesh_.triangles.size());
+    const std::vector<std::uint32_t> weld = WeldByPosition(mesh_.positions), faces = Faces();
+    const CornerNormals normals = AutoSmoothNormals({mesh_.positions, mesh_.triangles, weld, faces}, *degrees);
+    return budget_.Take(file_, SetCornerNormals(normals, mesh_).sources.size() - weld.size(), 0);
+  }
+
   Expected<Scene> Finish() {
     Scene scene;
     Material material;
@@ -438,11 +463,12 @@ class PlyLoader {
     if (mesh_.colors.empty()) material.base_color = kPlainColor;
     scene.materials.push_back(std::move(material));
     if (!mesh_.triangles.empty()) {
-      if (FillNormals(mesh_) > 0) warnings_.Add("normals without a direction were computed anew", "");
+      SCUMBLE_RETURN_IF_ERROR(MakeNormals());
       scene.meshes.push_back(std::move(mesh_));
       scene.instances.push_back({path_.stem().string(), 0, glm::translate(glm::dmat4(1.0), origin_)});
     }
     warnings_.MoveTo(scene.warnings);
+    missing_.Tell(scene.notes);
     return scene;
   }
 
@@ -460,10 +486,13 @@ class PlyLoader {
   glm::dvec3 origin_{0.0};
   GeometryBudget budget_;
   WarningCounter warnings_;
+  MissingNormals missing_;
 };
 
 }  // namespace
 
-Expected<Scene> LoadPlyScene(const std::filesystem::path& path) { return PlyLoader(path).Load(); }
+Expected<Scene> LoadPlyScene(const std::filesystem::path& path, MissingNormals missing) {
+  return PlyLoader(path, missing).Load();
+}
 
 }  // namespace scumble

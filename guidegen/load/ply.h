@@ -6,16 +6,18 @@
 // cloud of points without faces is a scene without geometry. The object is named after the file. Its surface is
 // Lambert, in the file's colours or in Blender's grey of 0.8. Positions of type double that lie far from 0, as
 // surveyors' do, keep their digits: the object then stands at the middle of its shape instead of at 0, and its rest
-// positions are relative to that. The shape is that of the vertices in faces.
+// positions are relative to that. The shape is that of the vertices in faces. Without normals, or with none that has a
+// direction, it is smooth up to kDefaultAutoSmooth, or as the user says.
 #pragma once
 
 #include <filesystem>
 
 #include "core/image/status.h"
+#include "guidegen/load/auto_smooth.h"
 #include "guidegen/scene/scene.h"
 
 namespace scumble {
 
-Expected<Scene> LoadPlyScene(const std::filesystem::path& path);
+Expected<Scene> LoadPlyScene(const std::filesystem::path& path, MissingNormals missing);
 
 }  // namespace scumble

@@ -145,6 +145,7 @@ struct Scene {
   std::vector<Light> lights;
   glm::vec3 world_radiance{0.0f};     // from every direction without a hit; linear
   std::vector<std::string> warnings;  // unsupported requests of the file, in the user's words
+  std::vector<std::string> notes;     // what the loader decided where the file leaves it open, likewise
 };
 
 }  // namespace scumble

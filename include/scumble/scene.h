@@ -21,9 +21,12 @@ struct SceneSettings {
   std::optional<int> frame;        // of an animation; empty: at rest
   std::string animation;           // by name, where a file has several; "*": all; empty: the first
   double frames_per_second = 0.0;  // 0: a .blend's own, otherwise 24
-  int coverage_samples = 1;        // N × N samples of the silhouette, 1 … 16
-  int light_samples = 64;          // of each pixel, where light is sampled
-  std::string instruction_set;     // "sse2", "sse4.2", "avx", "avx2", "avx512"; empty: the best of this machine
+  // Degrees between faces, 0 … 180, up to which they are smooth where the file gives no normals; 0: flat. Empty: glTF
+  // is flat, OBJ as its smoothing groups say, other OBJ and PLY smooth up to 60.
+  std::optional<double> auto_smooth;
+  int coverage_samples = 1;     // N × N samples of the silhouette, 1 … 16
+  int light_samples = 64;       // of each pixel, where light is sampled
+  std::string instruction_set;  // "sse2", "sse4.2", "avx", "avx2", "avx512"; empty: the best of this machine
 };
 
 }  // namespace scumble

@@ -73,7 +73,7 @@ Expected<std::vector<std::string>> ExportCommand(const std::string& path, const 
 }
 
 Expected<Scene> LoadExport(const fs::path& exported, const std::string& path) {
-  Expected<Scene> scene = LoadScene(exported, TextureLoading::kWhenNeeded);
+  Expected<Scene> scene = LoadScene(exported, {TextureLoading::kWhenNeeded, {}});
   if (!scene) return Error{scene.error().kind, Renamed(scene.error().message, exported.string(), path)};
   scene->name = path;
   for (std::shared_ptr<const EncodedTexture>& texture : scene->encoded_textures) {

@@ -46,7 +46,7 @@ Expected<Scene> LoadAnyScene(const SceneRequest& options, const RunContext& cont
   BlenderRequest blender = options.blender;
   blender.wants_start = options.view.has_value();
   if (IsBlenderScene(options.scene)) return LoadBlenderScene(options.scene, blender, context, animation);
-  return LoadScene(options.scene, TextureLoading::kWhenNeeded);
+  return LoadScene(options.scene, LoadOptionsOf(options));
 }
 
 }  // namespace
@@ -61,14 +61,27 @@ std::string ViewToText(const ViewAngles& view) {
 Expected<Scene> OpenScene(const SceneRequest& options, const RunContext& context, BlenderAnimation* animation,
                           bool warns) {
   SCUMBLE_ASSIGN(Scene scene, LoadAnyScene(options, context, animation));
-  if (!warns) return scene;
-  for (const std::string& warning : scene.warnings) context.Warn(options.scene + ": " + warning);
+  PassOnNotes(scene, options.scene, context, warns);
   return scene;
+}
+
+LoadOptions LoadOptionsOf(const SceneRequest& request) {
+  return {TextureLoading::kWhenNeeded, request.auto_smooth_degrees};
+}
+
+void PassOnNotes(const Scene& scene, const std::string& file, const RunContext& context, bool warns) {
+  for (const std::string& note : scene.notes) context.Note(file + ": " + note);
+  if (!warns) return;
+  for (const std::string& warning : scene.warnings) context.Warn(file + ": " + warning);
 }
 
 Status CheckSceneRequest(const SceneRequest& request) {
   SCUMBLE_RETURN_IF_ERROR(CheckScene(request.scene));
   if (IsBlenderScene(request.scene)) {
+    if (request.auto_smooth_degrees) {
+      return UsageError("--auto-smooth is for files that lack normals; Blender gives those of " + request.scene +
+                        ": leave it out");
+    }
     if (request.animation.empty()) return Ok();
     return UsageError("--animation is for glTF files; " + request.scene + " has a time of its own: leave it out");
   }
@@ -114,6 +127,7 @@ std::string GuideSettings(const SceneRequest& options) {
   };
   add("camera", options.camera), add("view", options.view ? ViewToText(*options.view) : "");
   add("animation", options.animation);
+  add("auto smooth", options.auto_smooth_degrees ? fmt::format("{}", *options.auto_smooth_degrees) : "");
   add("fps", options.fps && *options.fps != FrameRate() ? FrameRateToText(*options.fps) : "");
   // All of them always: what a file does not name differs.
   return text + fmt::format("; robust {}; samples {}; bounces {}; noise {}", options.robust ? "yes" : "no",

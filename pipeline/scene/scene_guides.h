@@ -47,6 +47,12 @@ bool IsScene(const std::string& path);
 // "AZIMUTH,ELEVATION[,DISTANCE]" in degrees and metres.
 std::string ViewToText(const ViewAngles& view);
 
+// How the request's scene is loaded; textures are decoded when they are needed.
+LoadOptions LoadOptionsOf(const SceneRequest& request);
+
+// Passes on a loaded scene's notes, and its warnings if `warns`.
+void PassOnNotes(const Scene& scene, const std::string& file, const RunContext& context, bool warns = true);
+
 // Finds mistakes in the request before a large scene is loaded: kUsage or kInput.
 Status CheckSceneRequest(const SceneRequest& request);
 

@@ -66,8 +66,9 @@ Status SceneFrames::StartBlender(std::span<const int> frames) {
 
 Status SceneFrames::StartFile(const Progress& progress) {
   Stopwatch watch;
-  SCUMBLE_ASSIGN(animation_, AnimatedScene::Load(options_.scene, {options_.animation, TextureLoading::kWhenNeeded}));
+  SCUMBLE_ASSIGN(animation_, AnimatedScene::Load(options_.scene, {options_.animation, LoadOptionsOf(options_)}));
   SCUMBLE_ASSIGN(now_, animation_->SceneAt(0.0));
+  PassOnNotes(now_, options_.scene, context_, false);
   WarnOnce(now_);
   SCUMBLE_ASSIGN(layers_, layers_for_(SceneStyleRequestsOf(animation_->objects(), animation_->rest())));
   SCUMBLE_ASSIGN(const PreparedView view, ViewScene(now_, options_, layers_));
@@ -228,7 +229,7 @@ Expected<StaticScene> OpenSceneAt(std::optional<int> frame, const SceneRequest& 
   SCUMBLE_RETURN_IF_ERROR(CheckSceneRequest(options));
   Stopwatch watch;
   SCUMBLE_ASSIGN(const AnimatedScene animation,
-                 AnimatedScene::Load(options.scene, {options.animation, TextureLoading::kWhenNeeded}));
+                 AnimatedScene::Load(options.scene, {options.animation, LoadOptionsOf(options)}));
   SCUMBLE_ASSIGN(StaticScene result, PoseScene(animation, frame, options, layers_for, context, warns));
   result.load_ms = watch.Lap();
   return result;
@@ -241,9 +242,7 @@ Expected<StaticScene> PoseScene(const AnimatedScene& animation, std::optional<in
   if (frame) {
     SCUMBLE_ASSIGN(result.scene, animation.SceneAt(0.0));
   }
-  if (warns) {
-    for (const std::string& warning : result.scene.warnings) context.Warn(options.scene + ": " + warning);
-  }
+  PassOnNotes(result.scene, options.scene, context, warns);
   SCUMBLE_ASSIGN(result.layers, layers_for(SceneStyleRequestsOf(animation.objects(), animation.rest())));
   SCUMBLE_ASSIGN(result.view, ViewScene(result.scene, options, result.layers));
   for (const std::string& note : result.view.notes) context.Note(note);

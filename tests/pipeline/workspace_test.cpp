@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -13,6 +14,7 @@
 
 #include "core/io/format_dispatch.h"
 #include "core/io/picture_file.h"
+#include "scumble/stylizer.h"
 #include "tests/support/gltf_builder.h"
 #include "tests/support/temporary_folder.h"
 
@@ -302,6 +304,35 @@ TEST(Workspace, ATextureThatIsMissingStaysLeftOut) {
   EXPECT_EQ(other.rgba, Painted(fresh_turned, turned, StyleOf("tinted-oil")).rgba);
   EXPECT_EQ(workspace.counters().scenes_loaded, 1u);
   EXPECT_EQ(workspace.counters().structures_built, 3u) << "it depends on materials, and on the camera";
+}
+
+TEST(Workspace, AnotherSmoothingLoadsTheFileAgain) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "roof.obj")
+      << "v -1 0 0\nv 0 0 1\nv 0 1 1\nv -1 1 0\nv 1 0 0\nv 1 1 0\nf 1 2 3 4\nf 2 5 6 3\n";
+  SceneRequest scene = SceneIn(folder / "roof.obj"), smooth = scene;
+  smooth.auto_smooth_degrees = 180.0;
+  Workspace workspace(Context());
+  const Picture before = Painted(workspace, scene, StyleOf("oil"));
+  const Picture round = Painted(workspace, smooth, StyleOf("oil"));
+  EXPECT_NE(round.rgba, before.rgba);
+  Painted(workspace, smooth, StyleOf("oil"));
+  EXPECT_EQ(workspace.counters().scenes_loaded, 2u);
+  EXPECT_EQ(Painted(workspace, scene, StyleOf("oil")).rgba, before.rgba);
+  // As the API has it.
+  Stylizer stylizer;
+  SceneSettings settings;
+  settings.file = scene.scene, settings.width = 96, settings.height = 54;
+  settings.auto_smooth = 180.0;
+  const auto painted = stylizer.Paint(settings, {.style = kSource + "/exemplars/oil"});
+  ASSERT_TRUE(painted.ok()) << painted.error().message;
+  EXPECT_EQ(painted->rgba, round.rgba);
+  for (const double wrong : {-1.0, 180.5, std::nan("")}) {
+    settings.auto_smooth = wrong;
+    const auto refused = stylizer.Paint(settings, {.style = kSource + "/exemplars/oil"});
+    ASSERT_FALSE(refused.ok());
+    EXPECT_EQ(refused.error().kind, ErrorKind::kUsage);
+  }
 }
 
 TEST(Workspace, CountsTheMemoryOfPaintingAndRefusesInTime) {

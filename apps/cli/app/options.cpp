@@ -81,6 +81,18 @@ Expected<std::vector<double>> ParseNumbers(const std::string& text, std::size_t 
                     (most > least ? " to " + std::to_string(most) : "") + " numbers with commas between");
 }
 
+namespace {
+
+std::string RefuseNoSmoothing(const std::string& text) {
+  double value = 0.0;
+  const char* const end = text.data() + text.size();
+  const auto [read, failure] = std::from_chars(text.data(), end, value);
+  if (failure == std::errc() && read == end && value >= 0.0 && value <= 180.0) return "";
+  return "'" + text + "' is no angle: expected degrees, 0 to 180";
+}
+
+}  // namespace
+
 void AddViewOptions(CLI::App& verb, SceneOptions& options) {
   verb.add_option("scene", options.request.scene,
                   "scene file: .glb, .gltf, .obj, .ply, or .blend, which Blender 3.4 exports first")
@@ -95,6 +107,11 @@ void AddViewOptions(CLI::App& verb, SceneOptions& options) {
           "look at the scene's centre instead of through a camera: AZIMUTH,ELEVATION[,DISTANCE] in degrees from "
           "+Z towards +X, degrees above the horizon, metres; without DISTANCE the scene is framed")
       ->type_name("AZ,EL[,DIST]");
+  verb.add_option("--auto-smooth", options.request.auto_smooth_degrees,
+                  "where the file gives no normals, faces up to so many degrees apart are smooth, 0 to 180; 0: flat. "
+                  "Left out: glTF is flat, OBJ as its smoothing groups say, other OBJ and PLY smooth up to 60")
+      ->type_name("DEGREES")
+      ->check(RefuseNoSmoothing);
 }
 
 void AddCastOptions(CLI::App& verb, SceneOptions& options) {

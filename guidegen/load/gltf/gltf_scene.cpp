@@ -6,7 +6,6 @@
 #include <cmath>
 #include <map>
 #include <optional>
-#include <string_view>
 #include <unordered_map>
 
 #include "guidegen/load/gltf/accessor.h"
@@ -30,22 +29,11 @@ constexpr std::uint64_t kMaxParts = 64'000'000;
 // A skin needs as many inverse bind matrices as joints; further ones are allowed, and ignored.
 constexpr std::size_t kMaxSpareMatrices = 1024;
 
-// Extensions that a file may require: those read here, at least in part, and those that change only shading outside the
-// guides.
-bool IsKnownExtension(std::string_view name) {
-  constexpr std::string_view kKnown[] = {"KHR_lights_punctual", "KHR_texture_transform", "KHR_mesh_quantization",
-                                         "EXT_texture_webp"};
-  for (std::string_view known : kKnown) {
-    if (name == known) return true;
-  }
-  return name.rfind("KHR_materials_", 0) == 0;
-}
-
 class GltfLoader {
  public:
   // `animation` as in AnimationOptions; without one the scene is at rest.
-  GltfLoader(std::string file, std::optional<std::string> animation)
-      : file_(std::move(file)), animation_(std::move(animation)) {}
+  GltfLoader(std::string file, std::optional<std::string> animation, MissingNormals missing)
+      : file_(std::move(file)), animation_(std::move(animation)), missing_(missing) {}
 
   Expected<MovingScene> Load(const std::filesystem::path& path) {
     SCUMBLE_RETURN_IF_ERROR(ParseGltf(path, model_, warnings_));
@@ -66,6 +54,7 @@ class GltfLoader {
     if (!rig_.meshes.empty()) SCUMBLE_RETURN_IF_ERROR(rig_.Pose(std::nullopt, scene_));
     WarnOfIgnoredParts();
     warnings_.MoveTo(scene_.warnings);
+    missing_.Tell(scene_.notes);
     return MovingScene{std::move(scene_), std::move(rig_), AnimationNames(model_)};
   }
 
@@ -77,13 +66,7 @@ class GltfLoader {
       return InputError(file_ + " is glTF version '" + Excerpt(model_.asset.version, 40) +
                         "'; expected 2.0, export it as glTF 2.0");
     }
-    std::string unknown;
-    for (const std::string& name : model_.extensionsRequired) {
-      if (!IsKnownExtension(name)) unknown += (unknown.empty() ? "" : ", ") + Excerpt(name, 80);
-    }
-    if (unknown.empty()) return Ok();
-    return InputError(file_ + " requires " + unknown + ", which cannot be read: export it without (for Draco or " +
-                      "meshopt: switch compression off)");
+    return CheckRequiredExtensions(file_, model_.extensionsRequired);
   }
 
   // A file's own default may be anywhere in its list, and searching for it with each primitive without a material would
@@ -147,7 +130,8 @@ class GltfLoader {
     const auto [loaded, is_new] = loaded_meshes_.try_emplace(node.mesh);
     if (is_new) {
       SCUMBLE_RETURN_IF_ERROR(TakeZeros(node.mesh, false));
-      SCUMBLE_ASSIGN(loaded->second, LoadGltfMesh({model_, file_, scene_, budget_, warnings_, choice_}, node.mesh));
+      SCUMBLE_ASSIGN(loaded->second,
+                     LoadGltfMesh({model_, file_, scene_, budget_, warnings_, choice_, missing_}, node.mesh));
     }
     for (int mesh : loaded->second) {
       SCUMBLE_RETURN_IF_ERROR(budget_.TakeInstance(file_, scene_.meshes[std::size_t(mesh)], is_new));
@@ -239,8 +223,9 @@ class GltfLoader {
     DeformationRequest request;
     request.joints = skin < 0 ? 0 : rig_.skins[std::size_t(skin)].joints.size();
     request.targets = weights.size();
-    SCUMBLE_ASSIGN(std::vector<DeformableMesh> loaded,
-                   LoadDeformableMesh({model_, file_, scene_, budget_, warnings_, choice_}, node.mesh, request));
+    SCUMBLE_ASSIGN(
+        std::vector<DeformableMesh> loaded,
+        LoadDeformableMesh({model_, file_, scene_, budget_, warnings_, choice_, missing_}, node.mesh, request));
     for (DeformableMesh& mesh : loaded) {
       instance.mesh = mesh.mesh;
       const bool skinned = mesh.deformation.influences > 0;
@@ -306,6 +291,7 @@ class GltfLoader {
 
   const std::string file_;
   const std::optional<std::string> animation_;
+  MissingNormals missing_;
   tinygltf::Model model_;
   Scene scene_;
   GeometryBudget budget_;
@@ -324,13 +310,14 @@ class GltfLoader {
 
 }  // namespace
 
-Expected<Scene> LoadGltfScene(const std::filesystem::path& path) {
-  SCUMBLE_ASSIGN(MovingScene loaded, GltfLoader(path.string(), std::nullopt).Load(path));
+Expected<Scene> LoadGltfScene(const std::filesystem::path& path, MissingNormals missing) {
+  SCUMBLE_ASSIGN(MovingScene loaded, GltfLoader(path.string(), std::nullopt, missing).Load(path));
   return std::move(loaded.scene);
 }
 
-Expected<MovingScene> LoadMovingGltfScene(const std::filesystem::path& path, const std::string& animation) {
-  return GltfLoader(path.string(), animation).Load(path);
+Expected<MovingScene> LoadMovingGltfScene(const std::filesystem::path& path, const std::string& animation,
+                                          MissingNormals missing) {
+  return GltfLoader(path.string(), animation, missing).Load(path);
 }
 
 }  // namespace scumble

@@ -4,9 +4,9 @@
 // Read: the default scene's node hierarchy; triangles, strips and fans; every component type, sparse accessors and
 // strides; base colour, its texture, vertex colours, normal maps, alpha modes; both kinds of camera;
 // KHR_lights_punctual, KHR_texture_transform, KHR_mesh_quantization; skins, morph targets and animations;
-// KHR_materials_pbrSpecularGlossiness in part, with a warning. Ignored with
-// a warning: points, lines, the range of lights (Blender's lights have none). A file that *requires* another extension
-// is refused by the extension's name.
+// KHR_materials_pbrSpecularGlossiness in part, with a warning. Ignored with a warning: points, lines, the range of
+// lights (Blender's lights have none). A mesh without normals, or with none that has a direction, is flat, as glTF
+// demands, unless the user says otherwise. A file that *requires* another extension is refused by the extension's name.
 //
 // An object is named after its node. Where several nodes have one name, the first in the file's list keeps it and the
 // others take their path, "Parent/Name", then "Parent/Name#2", …: the additions rename no other object. Names of more
@@ -18,13 +18,14 @@
 #include <vector>
 
 #include "core/image/status.h"
+#include "guidegen/load/auto_smooth.h"
 #include "guidegen/load/gltf/rig.h"
 #include "guidegen/scene/scene.h"
 
 namespace scumble {
 
 // At rest: nodes as they stand, skins and morph weights applied.
-Expected<Scene> LoadGltfScene(const std::filesystem::path& path);
+Expected<Scene> LoadGltfScene(const std::filesystem::path& path, MissingNormals missing);
 
 struct MovingScene {
   Scene scene;  // at rest
@@ -32,6 +33,7 @@ struct MovingScene {
   std::vector<std::string> animations;  // their names
 };
 // `animation` as in GltfAnimation::Read.
-Expected<MovingScene> LoadMovingGltfScene(const std::filesystem::path& path, const std::string& animation);
+Expected<MovingScene> LoadMovingGltfScene(const std::filesystem::path& path, const std::string& animation,
+                                          MissingNormals missing);
 
 }  // namespace scumble

@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 
+#include "guidegen/load/auto_smooth.h"
 #include "guidegen/load/gltf/accessor.h"
 #include "guidegen/load/mesh_normals.h"
 
@@ -38,7 +39,8 @@ class PrimitiveLoader {
         primitive_(primitive),
         name_(std::move(name)),
         request_(request),
-        shared_choice_(load.choice) {}
+        shared_choice_(load.choice),
+        missing_(load.missing) {}
 
   // After Load, where one was requested.
   MeshDeformation TakeDeformation() { return std::move(deformation_); }
@@ -76,11 +78,10 @@ class PrimitiveLoader {
       warnings_.Add("primitives without a triangle are left out", name_);
       return std::optional<Mesh>();
     }
-    if (FillNormals(mesh_) > 0) warnings_.Add("normals without a direction were computed anew", name_);
+    SCUMBLE_RETURN_IF_ERROR(MakeNormals());
     PrepareTangents(scene_.materials[std::size_t(mesh_.material)]);
     if (request_) {
       mesh_.rest_positions = mesh_.positions;
-      deformation_.smooth_normals = Accessor("NORMAL") < 0;
       deformation_.normals = mesh_.normals;
       deformation_.tangents = mesh_.tangents;
     }
@@ -321,6 +322,40 @@ class PrimitiveLoader {
     return Ok();
   }
 
+  // Without normals of its own a mesh is flat, and its tangents mean nothing (glTF 2.0, section 3.7.2.1).
+  Status MakeNormals() {
+    if (std::none_of(mesh_.normals.begin(), mesh_.normals.end(), HasDirection)) {
+      if (!mesh_.normals.empty()) warnings_.Add("normals without a direction were computed anew", name_);
+      mesh_.normals.clear();
+    }
+    if (!mesh_.normals.empty()) {
+      if (FillNormals(mesh_) > 0) warnings_.Add("normals without a direction were computed anew", name_);
+      return Ok();
+    }
+    mesh_.tangents.clear();
+    const double degrees = *missing_.Take(MissingNormals::Rule::kFlat, mesh_.triangles.size());
+    const std::vector<std::uint32_t> weld = WeldByPosition(mesh_.positions);
+    const CornerNormals normals = AutoSmoothNormals({mesh_.positions, mesh_.triangles, weld, {}, !request_}, degrees);
+    const std::size_t before = mesh_.positions.size();
+    SplitVertices split = SetCornerNormals(normals, mesh_);
+    const std::uint64_t more = mesh_.positions.size() - before;
+    SCUMBLE_RETURN_IF_ERROR(budget_.Take(file_, more * (1 + deformation_.targets.size()), 0));
+    if (!request_) return Ok();
+    SplitDeformation(split.sources);
+    deformation_.shared_normals = degrees == 180.0 ? weld : std::move(split.shared);
+    return Ok();
+  }
+
+  void SplitDeformation(std::span<const std::uint32_t> sources) {
+    for (MorphTarget& target : deformation_.targets) {
+      Split(sources, target.positions);
+      target.normals.clear();
+      target.tangents.clear();
+    }
+    Split(sources, deformation_.joints, std::size_t(deformation_.influences));
+    Split(sources, deformation_.weights, std::size_t(deformation_.influences));
+  }
+
   Status ChooseMaterial() {
     if (primitive_.material < 0) {
       mesh_.material = DefaultMaterial(scene_);
@@ -373,6 +408,7 @@ class PrimitiveLoader {
   const std::string name_;
   const DeformationRequest* request_;
   ElementChoice& shared_choice_;
+  MissingNormals& missing_;
   const ElementChoice* choice_ = nullptr;  // the chosen vertices of the file; null: all
   std::size_t vertices_ = 0;               // in the file
   Mesh mesh_;

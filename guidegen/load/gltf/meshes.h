@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/image/status.h"
+#include "guidegen/load/auto_smooth.h"
 #include "guidegen/load/gltf/accessor.h"
 #include "guidegen/load/gltf/skin.h"
 #include "guidegen/load/loader_util.h"
@@ -24,6 +25,7 @@ struct GltfLoad {
   GeometryBudget& budget;
   WarningCounter& warnings;
   ElementChoice& choice;  // of vertices; each primitive makes its own
+  MissingNormals& missing;
 };
 
 // Loads the primitives of one glTF mesh into scene.meshes and returns their indices. Points, lines and primitives

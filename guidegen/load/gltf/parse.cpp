@@ -82,9 +82,22 @@ constexpr ListLimit kListLimits[] = {
 // of Blender's custom properties each have 10 million.
 constexpr std::uint64_t kMaxFreeValues = 16'000'000;
 
+// Names of required extensions that an error can list.
+constexpr std::size_t kMostNamed = 16;
+
+// Extensions that a file may require: those read here, at least in part, and those that change only shading outside the
+// guides.
+bool IsKnownExtension(std::string_view name) {
+  constexpr std::string_view kKnown[] = {"KHR_lights_punctual", "KHR_texture_transform", "KHR_mesh_quantization",
+                                         "EXT_texture_webp"};
+  return std::find(std::begin(kKnown), std::end(kKnown), name) != std::end(kKnown) ||
+         name.rfind("KHR_materials_", 0) == 0;
+}
+
 // The result of a cheap scan of the JSON before it is parsed.
 struct JsonOutline {
-  int depth = 0;                  // of the deepest brackets
+  std::vector<std::string> unknown_required;  // extensions that the file requires and that are not read here
+  int depth = 0;                              // of the deepest brackets
   int buffers_without_uri = 0;    // or with an empty one or one that is no text, which tinygltf treats as none
   std::string_view long_list;     // a top-level list that exceeds its limit; empty: none
   std::size_t elements = 0;       // its number of elements
@@ -105,6 +118,7 @@ class Outliner {
         text_ = json.substr(begin, i - begin);
         escaped_ = text_.find('\\') != text_.npos;
         if (depth_ == 3 && at_uri_) has_uri_ = !text_.empty();
+        if (depth_ == 2 && list_ == "extensionsRequired") TakeRequired();
       } else if (c == ':') {
         TakeKey();
       } else if (c == ',') {
@@ -135,6 +149,11 @@ class Outliner {
       at_samplers_ = MayBe("samplers");
       at_copied_ = MayBe("extensions");
     }
+  }
+
+  void TakeRequired() {
+    std::vector<std::string>& names = outline_.unknown_required;
+    if (!escaped_ && !IsKnownExtension(text_) && names.size() < kMostNamed) names.emplace_back(text_);
   }
 
   void TakeComma() {
@@ -320,6 +339,23 @@ Status RunTinygltf(const std::string& file, Surroundings& surroundings, std::spa
 
 }  // namespace
 
+Status CheckRequiredExtensions(const std::string& file, std::span<const std::string> required) {
+  std::string names;
+  std::size_t unknown = 0;
+  bool packed = false, basis = false;
+  for (const std::string& name : required) {
+    if (IsKnownExtension(name) || ++unknown > kMostNamed) continue;
+    names += (names.empty() ? "" : ", ") + Excerpt(name, 80);
+    packed = packed || name == "KHR_draco_mesh_compression" || name.find("meshopt") != name.npos;
+    basis = basis || name == "KHR_texture_basisu";
+  }
+  if (unknown == 0) return Ok();
+  std::string fix = ": export it without";
+  if (packed) fix = ": export it again with the compression of meshes (Draco, meshopt) switched off";
+  if (basis) fix += packed ? ", and with textures as PNG or JPEG" : ", with textures as PNG or JPEG";
+  return InputError(file + " requires " + names + (unknown > kMostNamed ? ", …" : "") + ", which cannot be read" + fix);
+}
+
 Status ParseGltf(const std::filesystem::path& path, tinygltf::Model& model, WarningCounter& warnings) {
   const std::string file = path.string();
   SCUMBLE_ASSIGN(const std::vector<std::byte> whole, ReadRegularFile(path));
@@ -335,6 +371,8 @@ Status ParseGltf(const std::filesystem::path& path, tinygltf::Model& model, Warn
     SCUMBLE_ASSIGN(json, GlbJson(file, bytes));
   }
   const JsonOutline outline = Outliner().Read({reinterpret_cast<const char*>(json.data()), json.size()});
+  // First, because whatever else such a file seems to lack (data of buffers, say) may be in the extension's own form.
+  SCUMBLE_RETURN_IF_ERROR(CheckRequiredExtensions(file, outline.unknown_required));
   if (outline.depth > kMaxJsonDepth) {
     return InputError(file + " nests its JSON more than " + std::to_string(kMaxJsonDepth) +
                       " levels deep; no scene needs that");

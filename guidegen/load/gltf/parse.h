@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,10 @@ namespace scumble {
 // buffers that repeat one chunk or one large file, of which it would keep as many copies. Its exceptions become errors
 // that name the file, its messages about accepted files become warnings. Only regular files beside the scene are read.
 Status ParseGltf(const std::filesystem::path& path, tinygltf::Model& model, WarningCounter& warnings);
+
+// Ok, or an error that names the extensions among `required` that are not read here, and how to export without them.
+// ParseGltf asks this before anything else.
+Status CheckRequiredExtensions(const std::string& file, std::span<const std::string> required);
 
 // The file of a picture of the scene, by its Image::uri.
 std::filesystem::path PictureFile(const std::filesystem::path& scene, const std::string& uri);

@@ -67,14 +67,10 @@ void MorphMesh(const MeshDeformation& deformation, std::span<const double> weigh
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
     mesh.positions[v] = glm::vec3(positions.Add(glm::dvec3(mesh.rest_positions[v]), v));
   }
-  if (deformation.smooth_normals && !positions.empty()) {
-    mesh.normals = SmoothNormals(mesh.positions, mesh.triangles, WeldByPosition(mesh.rest_positions));
-  } else {
-    const ActiveDeltas normals(deformation, weights, &MorphTarget::normals);
-    for (std::size_t v = 0; v < mesh.normals.size(); ++v) {
-      const glm::vec3& rest = deformation.normals[v];
-      mesh.normals[v] = UnitOr(normals.Add(rest, v), rest);
-    }
+  const ActiveDeltas normals(deformation, weights, &MorphTarget::normals);
+  for (std::size_t v = 0; v < mesh.normals.size(); ++v) {
+    const glm::vec3& rest = deformation.normals[v];
+    mesh.normals[v] = UnitOr(normals.Add(rest, v), rest);
   }
   const ActiveDeltas tangents(deformation, weights, &MorphTarget::tangents);
   for (std::size_t v = 0; v < mesh.tangents.size(); ++v) {
@@ -136,8 +132,12 @@ bool DeformMesh(const MeshDeformation& deformation, std::span<const double> morp
                 std::span<const glm::dmat4> joint_matrices, Mesh& mesh) {
   SCUMBLE_CHECK_EQ(morph_weights.size(), deformation.targets.size());
   SCUMBLE_CHECK_EQ(mesh.rest_positions.size(), mesh.positions.size());
+  const bool skinned = !joint_matrices.empty() && deformation.influences > 0;
   MorphMesh(deformation, morph_weights, mesh);
-  if (!joint_matrices.empty() && deformation.influences > 0) SkinMesh(deformation, joint_matrices, mesh);
+  if (skinned) SkinMesh(deformation, joint_matrices, mesh);
+  if (!deformation.shared_normals.empty() && (skinned || mesh.positions != mesh.rest_positions)) {
+    mesh.normals = SmoothNormals(mesh.positions, mesh.triangles, deformation.shared_normals);
+  }
   for (const glm::vec3& position : mesh.positions) {
     if (!IsFinite(position)) return false;
   }

@@ -29,7 +29,9 @@ struct MeshDeformation {
   int influences = 0;                 // joints of each vertex; 0 where the mesh is not skinned
   std::vector<std::uint16_t> joints;  // by vertex, `influences` each; numbers in the skin's list
   std::vector<float> weights;         // likewise, of 0 or more
-  bool smooth_normals = false;        // the file gives none: morphed shapes get smooth ones of their own
+  // Where the file gives no normals, which vertices share one (SplitVertices::shared): a deformed shape gets normals of
+  // its own, and stays smooth or sharp where the rest shape is. Empty: `normals` are deformed.
+  std::vector<std::uint32_t> shared_normals;
   std::vector<glm::vec3> normals;
   std::vector<glm::vec4> tangents;
 };

@@ -55,7 +55,7 @@ class RequiredTextures : public LoaderTest {
   }
   // Of a scene whose textures wait; the message where these layers need what cannot be read.
   static std::string ErrorFor(const std::filesystem::path& path, LayerSet layers) {
-    Expected<Scene> scene = LoadScene(path, kLater);
+    Expected<Scene> scene = LoadScene(path, {kLater, {}});
     if (!scene) return "not loaded: " + scene.error().message;
     const Expected<DecodedTextures> decoded = DecodeTextures(*scene, Asking(layers));
     if (decoded) return {};
@@ -67,7 +67,7 @@ class RequiredTextures : public LoaderTest {
 TEST_F(RequiredTextures, AreDecodedOnceAndForTheLayersThatNeedThem) {
   WriteRed("red.png");
   const std::filesystem::path path = WriteSquare(SquareWith({{"uri", "red.png"}}));
-  Expected<Scene> scene = LoadScene(path, kLater);
+  Expected<Scene> scene = LoadScene(path, {kLater, {}});
   ASSERT_TRUE(scene.ok());
   ASSERT_EQ(scene->textures.size(), 1u);
   EXPECT_TRUE(scene->textures[0].empty());
@@ -85,7 +85,7 @@ TEST_F(RequiredTextures, AreDecodedOnceAndForTheLayersThatNeedThem) {
   EXPECT_EQ(DecodeAllTextures(other)->count, 1);
   EXPECT_EQ(other.textures[0].rgba, scene->textures[0].rgba);
   // And so has a scene over time.
-  const Expected<AnimatedScene> animated = AnimatedScene::Load(path, {"", kLater});
+  const Expected<AnimatedScene> animated = AnimatedScene::Load(path, {"", {kLater, {}}});
   ASSERT_TRUE(animated.ok());
   Expected<Scene> posed = animated->SceneAt(0.0);
   ASSERT_TRUE(posed.ok());
@@ -115,7 +115,7 @@ TEST_F(RequiredTextures, ABrokenPictureIsAnErrorOnlyWhereItIsNeeded) {
   EXPECT_THAT(ErrorFor(glb, {Layer::kAlbedo}), HasSubstr("image 0"));
   // A fault in the file itself is reported at once: the view is not in its buffer.
   b.json["bufferViews"].back()["byteLength"] = 1 << 20;
-  EXPECT_FALSE(LoadScene(Write("torn.glb", b.Glb()), kLater).ok());
+  EXPECT_FALSE(LoadScene(Write("torn.glb", b.Glb()), {kLater, {}}).ok());
 }
 
 // A picture's ending does not make a file a picture: glTF lets buffers be named so.
@@ -146,7 +146,7 @@ TEST_F(RequiredTextures, WavefrontDoesWithoutThemAndSaysSoWhereTheyAreNeeded) {
   const std::filesystem::path path =
       Write("a.obj", std::string("mtllib lib.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n"
                                  "usemtl lost\nf 1/1 2/2 3/3\nusemtl red\nf 1/1 3/3 2/2\n"));
-  Expected<Scene> scene = LoadScene(path, kLater);
+  Expected<Scene> scene = LoadScene(path, {kLater, {}});
   ASSERT_TRUE(scene.ok());
   EXPECT_THAT(scene->warnings, IsEmpty());
   const Expected<DecodedTextures> none = DecodeTextures(*scene, Asking({}));

@@ -329,8 +329,10 @@ TEST_F(LoadGltf, SharedListsMayBeSparse) {
   const Scene scene = Load(b);
   ASSERT_EQ(scene.meshes.size(), 2u);
   EXPECT_EQ(scene.meshes[0].positions, (std::vector<glm::vec3>{{0, 0, 8}, {7, 49, 0}, {8, 64, 0}}));
-  EXPECT_EQ(scene.meshes[1].positions, (std::vector<glm::vec3>{{8, 64, 0}, {0, 0, 9}, {0, 0, 8}}));
-  EXPECT_EQ(scene.meshes[1].triangles, (std::vector<glm::uvec3>{{0, 1, 2}, {0, 2, 1}}));
+  // Both sides of a triangle, each with its own normal.
+  EXPECT_EQ(scene.meshes[1].positions,
+            (std::vector<glm::vec3>{{8, 64, 0}, {0, 0, 9}, {0, 0, 8}, {8, 64, 0}, {0, 0, 8}, {0, 0, 9}}));
+  EXPECT_EQ(scene.meshes[1].triangles, (std::vector<glm::uvec3>{{0, 1, 2}, {3, 4, 5}}));
 }
 
 // The extension's own defaults: white, glossiness 1. Its metals are their specular colour, which nothing here can hold,
@@ -391,7 +393,10 @@ TEST_F(LoadGltf, TangentsAreKeptOrComputed) {
     EXPECT_EQ(tangent.w, -1.0f);
   }
   const int given = b.Floats({0, 2, 0, -1, 0, 2, 0, -1, 0, 2, 0, -1, 0, 2, 0, -1}, 4);
-  b.json["meshes"][0]["primitives"][0]["attributes"]["TANGENT"] = given;
+  json& attributes = b.json["meshes"][0]["primitives"][0]["attributes"];
+  attributes["TANGENT"] = given;
+  EXPECT_EQ(Load(b).meshes[0].tangents[3], glm::vec4(-1, 0, 0, -1)) << "without normals they mean nothing";
+  attributes["NORMAL"] = b.Floats({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, 3);
   EXPECT_EQ(Load(b).meshes[0].tangents[3], glm::vec4(0, 1, 0, -1));
   b.json["materials"][0].erase("normalTexture");
   EXPECT_TRUE(Load(b).meshes[0].tangents.empty());
@@ -623,6 +628,41 @@ TEST_F(LoadGltf, RequiredExtensions) {
   const std::string message = ErrorOf(b);
   EXPECT_THAT(message, HasSubstr("KHR_draco_mesh_compression, EXT_unheard_of"));
   EXPECT_THAT(message, testing::Not(HasSubstr("KHR_texture_transform")));
+  EXPECT_THAT(message, HasSubstr("export it again with the compression of meshes (Draco, meshopt) switched off"));
+  b.json["extensionsRequired"] = {"KHR_texture_basisu"};
+  EXPECT_THAT(ErrorOf(b), HasSubstr("requires KHR_texture_basisu, which cannot be read: export it without, with "
+                                    "textures as PNG or JPEG"));
+}
+
+// Files as gltfpack and Draco's exporters write them lack, in the core format's terms, most of their data.
+TEST_F(LoadGltf, RequiredExtensionsAreNamedBeforeAnythingElse) {
+  const auto expect_named = [&](const nlohmann::json& packed_json, const std::string& extension) {
+    for (const bool is_glb : {true, false}) {
+      GltfBuilder packed;
+      packed.json = packed_json;
+      packed.json["extensionsRequired"] = {extension};
+      const auto file = is_glb ? Write("packed.glb", packed.Glb()) : Write("packed.gltf", packed.json.dump());
+      EXPECT_THAT(ErrorOf(file), HasSubstr("requires " + extension)) << packed_json.dump();
+    }
+  };
+  GltfBuilder b;
+  b.Triangle();
+  nlohmann::json gone = b.json, far = b.json, two = b.json, deep = b.json, old = b.json;
+  gone["buffers"] = {{{"byteLength", 100}, {"uri", "gone.bin"}}};
+  expect_named(gone, "KHR_draco_mesh_compression");
+  far["buffers"] = {{{"byteLength", 4}}};
+  far["bufferViews"][0]["byteLength"] = 1000;
+  for (nlohmann::json& accessor : far["accessors"]) accessor.erase("bufferView");
+  expect_named(far, "KHR_draco_mesh_compression");
+  two["buffers"] = {{{"byteLength", 4}},
+                    {{"byteLength", 4}, {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}}};
+  expect_named(two, "EXT_meshopt_compression");
+  deep["extras"] = nlohmann::json::parse(std::string(300, '[') + std::string(300, ']'));
+  expect_named(deep, "KHR_draco_mesh_compression");
+  old["asset"]["version"] = "3.1";
+  expect_named(old, "EXT_of_later_days");
+  old["asset"] = 1;
+  expect_named(old, "EXT_of_later_days");
 }
 
 TEST_F(LoadGltf, WhatIsIgnoredIsSaid) {

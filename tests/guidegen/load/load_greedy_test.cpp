@@ -22,7 +22,7 @@ using testing::IsEmpty;
 class Greedy : public RefusedScenes {
  protected:
   Scene Load(const std::filesystem::path& path, TextureLoading textures = TextureLoading::kNow) {
-    Expected<Scene> scene = LoadScene(path, textures);
+    Expected<Scene> scene = LoadScene(path, {textures, {}});
     EXPECT_TRUE(scene.ok()) << scene.error().message;
     return scene ? std::move(*scene) : Scene{};
   }

@@ -265,7 +265,7 @@ TEST_F(LoadText, ObjNormalsAreSmoothAcrossMaterialsAndInsideGroups) {
   const std::string roof = "v 0 0 0\nv 1 1 0\nv 0 0 -1\nv 1 1 -1\nv 2 0 0\nv 2 0 -1\n";
   const std::string left = "f 1 2 4 3\n", right = "f 2 5 6 4\n";
   const double half = std::sqrt(0.5);
-  Scene scene = Load("a.obj", roof + "g L\n" + left + "g R\n" + right);
+  Scene scene = Load("a.obj", roof + "s 1\ng L\n" + left + "g R\n" + right);
   ASSERT_EQ(scene.meshes.size(), 2u);
   ExpectNear(scene.meshes[0].normals[1], {0, 1, 0}, 1e-6);
   ExpectNear(scene.meshes[1].normals[0], {0, 1, 0}, 1e-6);
