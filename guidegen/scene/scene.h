@@ -80,6 +80,18 @@ struct Instance {
 // The side of the picture that a camera's extent measures: a fixed one, or the longer one of any picture.
 enum class CameraFit { kVertical, kHorizontal, kLonger };
 
+// The part of a camera's frame that is drawn, as Blender's render region: sides as fractions of the frame, from its
+// left and its bottom; 0 ≤ left < right ≤ 1, 0 ≤ bottom < top ≤ 1.
+struct CameraBorder {
+  double left = 0.0;
+  double bottom = 0.0;
+  double right = 1.0;
+  double top = 1.0;
+  // The picture is what lies in the border: the frame is as many times wider and higher as the border is narrower and
+  // lower. Otherwise the picture is the frame, and all outside the border's whole pixels is background.
+  bool crop = false;
+};
+
 struct Camera {
   std::string name;
   glm::dmat4 world_from_camera{1.0};  // looks down its −Z, +Y up; rotation and translation only
@@ -95,6 +107,8 @@ struct Camera {
   std::optional<double> aspect;
   double z_near = 0.0;
   double z_far = std::numeric_limits<double>::infinity();
+  std::optional<CameraBorder> border;  // empty: the whole frame is drawn
+  std::string border_size;             // "960x540": a cropped border's pixels in the file that it is from; may be empty
 };
 
 enum class LightType { kPoint, kSpot, kSun, kArea };
