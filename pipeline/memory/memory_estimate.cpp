@@ -183,8 +183,11 @@ void AddGuides(const Size& size, const LayerSet& layers, const SceneRequest& opt
   need.TakeTransient("light paths", (2 * kPathPixel + (open_ended ? kSum * path_layers : 0)) * pixels);
 }
 
-void AddGuideFile(const Size& size, const LayerSet& layers, MemoryNeed& need) {
-  need.TakeTransient("guide file", PlanesOf(size, Made(layers)));
+void AddGuideFile(const Size& size, const LayerSet& layers, bool cryptomatte, MemoryNeed& need) {
+  // Ids of objects and materials and a plane of zeros, and all eight channels in the file.
+  constexpr Bytes kMattePlanes = 3 + 8;
+  need.TakeTransient("guide file",
+                     PlanesOf(size, Made(layers)) + (cryptomatte ? kMattePlanes * kFloat * PixelsOf(size) : 0));
 }
 
 void AddGuidesBehind(const Size& size, const LayerSet& layers, MemoryNeed& need) {

@@ -369,6 +369,7 @@ Expected<GuideFileInfo> InspectGuides(const std::filesystem::path& path) {
                      contents.spec.full_height,
                      contents.has_half,
                      contents.from_blender,
+                     !contents.mattes.empty(),
                      {},
                      contents.all_names,
                      {}};
