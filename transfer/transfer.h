@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -56,6 +57,8 @@ struct PrepareOptions {
   int table_resolution = LookUpTable::kResolution;  // cells a side of look-up tables, 1 … 16384
   TableCache* cache = nullptr;                      // null: none
   int threads = 0;                                  // 0: all
+  // Asked between the steps; true ends them with kCancelled. Null: nothing cancels it.
+  std::function<bool()> is_cancelled = {};
 };
 
 // Resizes exemplars and paper for outputs of `output_height` pixels; several exemplars become one size, the first's.

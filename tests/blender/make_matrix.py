@@ -4,7 +4,7 @@ one scene for each other difficulty of a lighting pass.
     blender -b -noaudio --factory-startup -P tests/blender/make_matrix.py -- --output FOLDER [--only NAME,NAME]
 
 FOLDER gets NAME.blend for each scene, and matrix.json: for each NAME its layers, the picture's size, and the samples
-that its noise needs.
+that its noise needs; 0: light is not compared.
 """
 
 import argparse
@@ -327,9 +327,12 @@ SCENES = {  # builder, layers, size, samples
 for fit in ("AUTO", "HORIZONTAL", "VERTICAL"):
     for way, pixels in (("landscape", LANDSCAPE), ("portrait", PORTRAIT)):
         SCENES[f"fit_{fit.lower()}_{way}"] = (
-            camera_scene(sensor_fit=fit, sensor_height=30.0, shift_x=0.05), ["full", "LDE"], pixels, 64)
+            camera_scene(sensor_fit=fit, sensor_height=30.0, shift_x=0.05), [], pixels, 0)
+TEXTURES_UNDER = ("area_square", "sun")  # a texture is read alike under any lamp
 for lamp_name, add_lamp in LAMPS.items():
     for surface, (make_set, about, samples) in SURFACES.items():
+        if surface == "textured" and lamp_name not in TEXTURES_UNDER:
+            continue
         if surface == "glossy" and lamp_name in ("point", "spot"):
             make_set = glossy_set_for_points
 
