@@ -226,7 +226,8 @@ Expected<PreparedStyle> PrepareInArena(const Style& style, int output_height, co
     // In pixels of the file; the exemplar was resized by scale and height, and the base layer with it.
     const Picture& file = style.exemplars.front().picture;
     const double ratio = static_cast<double>(prepared.exemplar->size()) / std::max(file.width, file.height);
-    prepared.base_layers = MakeBaseLayers(*prepared.exemplar, settings.hybrid * ratio);
+    prepared.base_layers =
+        std::make_shared<PreparedExemplar>(MakeBaseLayers(*prepared.exemplar, settings.hybrid * ratio));
   }
   SCUMBLE_RETURN_IF_ERROR(CheckNotCancelled(options));
   if (settings.shadow == ShadowMode::kPaint) {

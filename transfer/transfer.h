@@ -40,8 +40,8 @@ struct PreparedStyle {
   Illumination illumination;
   float reference_lightness =
       0.0f;  // Oklab's, of paint that takes on base colours as they are; only for tints in Oklab
-  std::shared_ptr<const GuideSpace> space;  // the space of the match; null: normals alone, with weight 1
-  std::vector<Picture> base_layers;         // by exemplar, see MakeBaseLayers; only where transfer.hybrid is above 0
+  std::shared_ptr<const GuideSpace> space;              // the space of the match; null: normals alone, with weight 1
+  std::shared_ptr<const PreparedExemplar> base_layers;  // by MakeBaseLayers; null where transfer.hybrid is 0
   Paper paper;
   // By exemplar; only where transfer.edge is "exemplar" and the paint of every exemplar ends near its rim.
   std::vector<RimPaint> rims;

@@ -357,7 +357,7 @@ TEST(Vote, TellsOfEveryFinishedPixelOnce) {
   Case all = MakeCase(2300, 70, Pieces::kMixed, 150, 1, true, 20);
   all.guides.Add(Layer::kNormal);
   std::ranges::fill(all.guides.Plane(Layer::kNormal, 2), 1.0f);
-  const std::vector<Picture> tones = MakeBaseLayers(all.exemplar, 2.0);
+  const PreparedExemplar tones = MakeBaseLayers(all.exemplar, 2.0);
   const Illumination even_light;
   for (const Region& region : {Whole(all), Region{13, 21, 1100, 66}, Region{2050, 0, 2299, 1}, Region{5, 5, 5, 9}}) {
     for (const int radius : {0, 1, 3, 9}) {
