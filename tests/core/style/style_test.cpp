@@ -280,6 +280,11 @@ TEST_F(StyleFile, BadTomlSaysTheLine) {
     ExpectRefusal(Load(text), ErrorKind::kInput, {"style.toml:", "not valid TOML"});
   }
   ExpectRefusal(Load("# one\n# two\nlevels = = 3\n"), ErrorKind::kInput, {"style.toml:3: "});
+  for (const char* open : {"name = \"x", "name = 'x", "name = \"x\\\"", "name = \"\"\"x\n\"\"", "name = '''x\n"}) {
+    SCOPED_TRACE(open);
+    ExpectRefusal(Load("# one\n" + std::string(open) + "\nlevels = 3\n"), ErrorKind::kInput,
+                  {"style.toml:2: ", "begins here is not closed"});
+  }
   ExpectRefusal(Load(std::string(2 << 20, '#')), ErrorKind::kInput, {"style.toml", "larger than"});
 }
 
@@ -454,8 +459,9 @@ TEST_F(StyleFile, PaperIsAColourAPictureOrNothing) {
   ASSERT_TRUE(none) << none.error().message;
   EXPECT_FALSE(none->paper.color || none->paper.picture);
   ExpectRefusal(LoadLine("paper = 'no.png'"), ErrorKind::kInput,
-                {"style.toml:2", "transfer.paper", "no.png", "no such file"});
-  ExpectRefusal(LoadLine("paper = 3"), ErrorKind::kInput, {"transfer.paper", "#rrggbb"});
+                {"style.toml:2", "transfer.paper", "no.png", "no such file", "a colour is #"});
+  ExpectRefusal(LoadLine("paper = 3"), ErrorKind::kInput,
+                {"transfer.paper", "a colour is # and six hexadecimal digits"});
 }
 
 TEST_F(StyleFile, OnlySixHexadecimalDigitsAreAColour) {
@@ -463,7 +469,7 @@ TEST_F(StyleFile, OnlySixHexadecimalDigitsAreAColour) {
                           "#f4ef 6", "#f4efé"}) {
     SCOPED_TRACE(bad);
     ExpectRefusal(LoadLine("paper = '" + std::string(bad) + "'"), ErrorKind::kInput,
-                  {"transfer.paper", bad, "is not a colour like"});
+                  {"transfer.paper", bad, "a colour is # and six hexadecimal digits", "#f4efe6"});
   }
 }
 
