@@ -15,6 +15,7 @@
 #include "guidegen/rays/camera_rays.h"
 #include "tests/support/cli_harness.h"
 #include "tests/support/cycles_passes.h"
+#include "tests/support/numbers.h"
 #include "tests/support/scoped_variable.h"
 
 namespace scumble {
@@ -26,7 +27,6 @@ using testing::Contains;
 using testing::HasSubstr;
 using testing::UnorderedElementsAre;
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr const char* kBlender = "blender -b -noaudio --factory-startup -Y ";
 
 // The scenes of make_cases.py, made and exported once for all tests.

@@ -12,8 +12,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool Contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
 class CliBadFiles : public CliTest {
  protected:
   // `whole` is a file that the command takes; IN stands for its name. Missing, empty, cut short and damaged ones of the

@@ -14,11 +14,10 @@
 #include "guidegen/light/sampler.h"
 #include "guidegen/surface/bsdf.h"
 #include "tests/support/guidegen_scenes.h"
+#include "tests/support/numbers.h"
 
 namespace scumble::testing {
 namespace {
-
-constexpr double kPi = glm::pi<double>();
 
 PathExpression Parsed(const std::string& text) {
   Expected<PathExpression> expression = PathExpression::Parse(text);

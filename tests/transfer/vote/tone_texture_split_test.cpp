@@ -9,14 +9,13 @@
 #include <vector>
 
 #include "core/filter/masked_blur.h"
+#include "tests/support/numbers.h"
 #include "tests/support/transfer_fixtures.h"
 
 namespace scumble {
 namespace {
 
 using namespace testing;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Irregular colours and opacities, from `least_alpha` on.
 Picture AnyPicture(int width, int height, std::uint64_t seed, int least_alpha) {
@@ -118,7 +117,7 @@ TEST(MaskedBlur, KeepsAFlatToneAndBecomesTheMean) {
   Picture flat(width, height);
   for (std::size_t i = 0; i < flat.rgba.size(); ++i) flat.rgba[i] = i % 4 == 3 ? 65535 : 12345;
   const std::vector<std::uint8_t> mask = AnyMask(width, height);
-  for (const double sigma : {0.5, 7.0, 49.0, 50.0, kInfinity}) {
+  for (const double sigma : {0.5, 7.0, 49.0, 50.0, double(kInfinity)}) {
     const Picture blurred = internal::MaskedBlur(flat, mask, sigma);
     for (std::size_t i = 0; i < mask.size(); ++i) {
       ASSERT_EQ(blurred.rgba[4 * i], mask[i] ? 12345 : 0) << sigma;
