@@ -189,6 +189,8 @@ TEST(BlenderMaterials, PureShaders) {
   EXPECT_EQ(diffuse.bsdf, Bsdf::kDiffuse);
   EXPECT_TRUE(diffuse.double_sided) << "culling is the viewport's";
   ExpectColor(diffuse.base_color, {0.2f, 0.4f, 0.8f}, "diffuse");
+  EXPECT_EQ(diffuse.diffuse_roughness, 0.0f);
+  ExpectClose(Named(scene.materials, "Rough").diffuse_roughness, 0.6, "diffuse roughness");
   const Material& glossy = Named(scene.materials, "Glossy");
   EXPECT_EQ(glossy.bsdf, Bsdf::kGlossy);
   ExpectColor(glossy.base_color, {0.9f, 0.7f, 0.3f}, "glossy");
