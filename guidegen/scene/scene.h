@@ -32,7 +32,7 @@ struct TextureUse {
 
 enum class AlphaMode { kOpaque, kMask, kBlend };
 
-// A surface's response to light. The last three are Blender's pure shaders, which glTF lacks: Lambert and GGX without
+// A surface's response to light. The last three are Blender's pure shaders, which glTF lacks: diffuse and GGX without
 // Fresnel, whose colour is the base colour, and a black surface that only emits.
 enum class Bsdf { kMetallicRoughness, kDiffuse, kGlossy, kEmission };
 
@@ -49,7 +49,10 @@ struct Material {
   bool double_sided = true;
   Bsdf bsdf = Bsdf::kMetallicRoughness;
   float metallic = 0.0f;
-  float roughness = 1.0f;                 // glTF's: GGX's α is its square, 0 is a mirror
+  float roughness = 1.0f;  // glTF's: GGX's α is its square, 0 is a mirror
+  // kDiffuse only: Oren and Nayar's, in [0, 1]; 0 is Lambert. A field of its own, because a metallic-roughness material
+  // that becomes kDiffuse becomes Lambert.
+  float diffuse_roughness = 0.0f;
   TextureUse metallic_roughness_texture;  // linear: G multiplies the roughness, B the metalness
   glm::vec3 emission{0.0f};               // radiance, linear, from both sides
   TextureUse emission_texture;

@@ -15,6 +15,7 @@
 #include "guidegen/rays/camera_rays.h"
 #include "tests/support/cli_harness.h"
 #include "tests/support/cycles_passes.h"
+#include "tests/support/numbers.h"
 #include "tests/support/scoped_variable.h"
 
 namespace scumble {
@@ -26,7 +27,6 @@ using testing::Contains;
 using testing::HasSubstr;
 using testing::UnorderedElementsAre;
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr const char* kBlender = "blender -b -noaudio --factory-startup -Y ";
 
 // The scenes of make_cases.py, made and exported once for all tests.
@@ -190,6 +190,8 @@ TEST(BlenderMaterials, PureShaders) {
   EXPECT_EQ(diffuse.bsdf, Bsdf::kDiffuse);
   EXPECT_TRUE(diffuse.double_sided) << "culling is the viewport's";
   ExpectColor(diffuse.base_color, {0.2f, 0.4f, 0.8f}, "diffuse");
+  EXPECT_EQ(diffuse.diffuse_roughness, 0.0f);
+  ExpectClose(Named(scene.materials, "Rough").diffuse_roughness, 0.6, "diffuse roughness");
   const Material& glossy = Named(scene.materials, "Glossy");
   EXPECT_EQ(glossy.bsdf, Bsdf::kGlossy);
   ExpectColor(glossy.base_color, {0.9f, 0.7f, 0.3f}, "glossy");

@@ -166,6 +166,7 @@ def materials():
         mixed("Mixed"),
         bpy.data.materials.new("Plain"),
         new_material("Unlinked", "ShaderNodeBsdfDiffuse")[0],
+        new_material("Rough", "ShaderNodeBsdfDiffuse", Roughness=0.6)[0],
     ]
     by_name = {material.name: material for material in every}
     by_name["Sharp"].node_tree.nodes["Glossy BSDF"].distribution = "SHARP"

@@ -120,6 +120,7 @@ Status ReadBsdf(const tinygltf::Value& value, const std::string& where, Material
   if (type == "DIFFUSE") {
     material.bsdf = Bsdf::kDiffuse;
     material.roughness = 1.0f;
+    if (fields.Has("roughness")) material.diffuse_roughness = static_cast<float>(fields.Number("roughness", 0.0, 1.0));
   } else if (type == "GLOSSY") {
     material.bsdf = Bsdf::kGlossy;
     material.roughness = static_cast<float>(fields.Number("roughness", 0.0, 1.0));

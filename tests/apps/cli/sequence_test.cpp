@@ -51,9 +51,6 @@ class CliSequence : public CliTest {
   static std::string Frame(const std::string& start, int frame) {
     return start + "000" + std::to_string(frame) + ".png";
   }
-  static bool Contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-  }
 };
 
 TEST_F(CliSequence, TheSameBytesHoweverARangeIsCut) {

@@ -24,6 +24,7 @@
 #include "core/io/guides/guide_header.h"
 #include "core/io/guides/own_guides.h"
 #include "tests/support/guide_files.h"
+#include "tests/support/numbers.h"
 #include "tests/support/refusal.h"
 #include "tests/support/temporary_folder.h"
 
@@ -31,8 +32,6 @@ namespace scumble {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr float kInf = std::numeric_limits<float>::infinity();
 
 const std::vector<std::string> kNormalAndA = {"A", "normal.X", "normal.Y", "normal.Z"};
 
@@ -497,7 +496,7 @@ TEST(GuideFile, ShortNormalsAreNormalisedAndZeroOnesRefused) {
     EXPECT_NEAR(glm::length(read->Vec3(Layer::kNormal, 0)), 1.0f, tolerance) << length;
     EXPECT_NEAR(read->Vec3(Layer::kNormal, 1).y, 1.0f, tolerance) << length;
   }
-  for (float bad : {0.0f, 0.01f, 20.0f, kInf, std::numeric_limits<float>::quiet_NaN()}) {
+  for (float bad : {0.0f, 0.01f, 20.0f, kInfinity, std::numeric_limits<float>::quiet_NaN()}) {
     ExpectRefusal(read_with_length(bad), ErrorKind::kInput, {"n.exr", "layer normal", "2 pixels, first at (0, 0)"});
   }
 }
