@@ -31,7 +31,8 @@ struct GuideReadOptions {
   LayerSet required = AlwaysWritten();  // an error names those that are missing, and what is there
   LayerSet optional;                    // read where present
   std::string view_layer;               // which one of several in a multilayer file
-  std::string remedy;  // the caller's remedy without depth and object, shown where nothing else is missing
+  std::string light_layer;  // of a Blender render: the view layer with the passes of light; empty: that one too
+  std::string remedy;       // the caller's remedy without depth and object, shown where nothing else is missing
   std::filesystem::path blender_camera;  // the .camera file of a Blender render; empty: the camera is solved
 };
 
@@ -39,7 +40,8 @@ struct GuideReadOptions {
 // ids are always those of the layers object and material; a Cryptomatte beside them is passed over. The result is
 // validated: normals whose length is off by more than a half float's rounding are normalised, and what
 // GuideSet::Validate refuses is an error. What Blender wrote is converted as core/io/blender/blender_passes.h says: its
-// camera comes from `blender_camera`, or from its Position and Depth passes; names from Cryptomatte.
+// camera comes from `blender_camera`, or from its Position and Depth passes; names from Cryptomatte; luminance and
+// shadow from its passes of light (core/io/blender/render_light.h).
 Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideReadOptions& options = {});
 
 // The content of a guide file, without its pixels.
@@ -50,7 +52,7 @@ struct GuideFileInfo {
   bool from_blender = false;  // rendered by Blender itself: its passes are to be converted
   bool has_cryptomatte = false;
   std::map<std::string, LayerSet> layers;  // complete layers by view layer; "" where names have nothing before them;
-                                           // Cryptomatte counts
+                                           // Cryptomatte and passes of light count
   std::string channels;                    // all names as they stand in the file
   GuideSet header;                         // names, camera and attributes; 0 × 0 pixels
 };

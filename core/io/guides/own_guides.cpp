@@ -62,7 +62,8 @@ std::string NamesOf(const ExrHeader& header) {
 }  // namespace
 
 std::optional<GuideSet> ReadPlainGuides(const std::filesystem::path& path, const GuideReadOptions& options) {
-  if (!options.view_layer.empty() || !options.blender_camera.empty()) return std::nullopt;
+  if (!options.view_layer.empty() || !options.light_layer.empty() || !options.blender_camera.empty())
+    return std::nullopt;
   GuideSet guides;
   Meanings meanings;
   const auto header = ReadPlainExr(path, [&](const ExrHeader& found) -> std::optional<PlaneFor> {
