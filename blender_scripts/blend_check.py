@@ -146,3 +146,62 @@ def check_drivers(unsupported):
         more = f" and {len(curves) - 1} more" if len(curves) > 1 else ""
         unsupported.add(f"{kind_of(thing)} '{thing.name}': its driver {what}{more} does not work here, where scripts "
                         "inside the file are not run: its value may be wrong")
+
+
+# ---- Nothing to draw ------------------------------------------------------------------------------------------------
+
+
+DRAWN = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
+
+
+def counted(things):
+    """'1 mesh is', '3 objects are'."""
+    noun, plural = ("mesh", "meshes") if all(thing.type == "MESH" for thing in things) else ("object", "objects")
+    return f"1 {noun} is" if len(things) == 1 else f"{len(things)} {plural} are"
+
+
+def could_be_drawn(thing):
+    return thing.type in DRAWN or (thing.instance_type == "COLLECTION" and thing.instance_collection is not None)
+
+
+def obstacles(view_layer):
+    """Of each object the collections that keep it from being rendered, each with the reason; only where all ways to the
+    object are barred."""
+    barred, free = {}, set()
+    pending = [(view_layer.layer_collection, None)]
+    while pending:
+        layer, above = pending.pop()
+        bar = above
+        if bar is None and layer.exclude:
+            bar = f"in collection '{layer.collection.name}', which view layer '{view_layer.name}' excludes"
+        if bar is None and layer.collection.hide_render:
+            bar = f"hidden from render in collection '{layer.collection.name}'"
+        # An excluded collection says nothing about those in it, which the view layer may include.
+        pending += [(child, None if bar and layer.exclude else bar) for child in layer.children]
+        for thing in layer.collection.objects:
+            if bar is None:
+                free.add(thing)
+            else:
+                barred.setdefault(thing, bar)
+    return {thing: bar for thing, bar in barred.items() if thing not in free}
+
+
+def check_emptiness(scene, view_layer, unsupported):
+    """For a scene of which nothing was exported: why."""
+    reasons, barred = {}, obstacles(view_layer)
+    for thing in scene.objects:
+        if not could_be_drawn(thing):
+            continue
+        reason = barred.get(thing)
+        if reason is None and thing.hide_render:
+            reason = "hidden from render"
+        reasons.setdefault(reason or "without a surface that the camera sees", []).append(thing)
+    if reasons:
+        ranked = sorted(reasons.items(), key=lambda item: -len(item[1]))
+        unsupported.add("nothing is left to draw: " + ", ".join(f"{counted(things)} {reason}"
+                                                                for reason, things in ranked[:4]))
+        return
+    others = [other.name for other in bpy.data.scenes
+              if other != scene and any(could_be_drawn(thing) for thing in other.objects)]
+    unsupported.add(f"nothing is left to draw: scene '{scene.name}' has no mesh"
+                    + (f"; {listed(others)} of this file has: choose it with --scene" if others else ""))

@@ -71,9 +71,14 @@ def choose_scene(name):
     return bpy.data.scenes[name]
 
 
-def choose_layer(scene):
-    """The first view layer that is rendered."""
-    return next((layer for layer in scene.view_layers if layer.use), scene.view_layers[0])
+def choose_layer(scene, name=None):
+    """The view layer of that name, rendered or not; without a name the first one that is rendered."""
+    if name is None:
+        return next((layer for layer in scene.view_layers if layer.use), scene.view_layers[0])
+    if name not in scene.view_layers:
+        fail(f"scene '{scene.name}' has no view layer '{name}'; there are: "
+             + ", ".join(f"'{layer.name}'" for layer in scene.view_layers))
+    return scene.view_layers[name]
 
 
 # ---- Cameras --------------------------------------------------------------------------------------------------------

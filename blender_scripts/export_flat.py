@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 import bpy
 
-from blend_common import camera_rank, cameras_of, can_be_looked_through, choose_layer, note_crooked_camera
+from blend_common import camera_rank, cameras_of, can_be_looked_through, note_crooked_camera
 
 MESH_TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 SILENT_TYPES = {"EMPTY", "ARMATURE", "LATTICE", "SPEAKER", "LIGHT_PROBE"}
@@ -156,8 +156,7 @@ def note_limits(thing, shown, view_layer, unsupported):
             unsupported.add(f"object '{thing.name}': its hair '{system.name}' is left out")
 
 
-def flatten(scene, unsupported):
-    view_layer = choose_layer(scene)
+def flatten(scene, view_layer, unsupported):
     bpy.context.window.view_layer = view_layer
     show_as_rendered(scene, view_layer)
     depsgraph = view_layer.depsgraph

@@ -2,6 +2,8 @@
 
 import math
 
+import numpy
+
 from export_materials import constant, previous
 
 MOST_BOUNCES = 1024  # of a light: Cycles' default, which limits nothing
@@ -71,6 +73,27 @@ def describe_lamp(placed, unsupported):
     return extras
 
 
+def describe_border(scene, unsupported):
+    """The border of the render, for the extras of each camera: left, bottom, right and top as fractions of its frame.
+    Blender renders whole pixels. With a crop the picture is what lies in the border, so its sides are put where those
+    pixels begin and end at the file's own resolution: a picture of Blender's own size then has Blender's own pixels.
+    Nothing where there is no border."""
+    render = scene.render
+    if not render.use_border:
+        return {}
+    sides = [render.border_min_x, render.border_min_y, render.border_max_x, render.border_max_y]
+    frame = [side * render.resolution_percentage // 100 for side in (render.resolution_x, render.resolution_y)] * 2
+    pixels = [int(numpy.float32(at) * numpy.float32(size)) for at, size in zip(sides, frame)]  # Blender's own rounding
+    width, height = pixels[2] - pixels[0], pixels[3] - pixels[1]
+    if width < 1 or height < 1:
+        unsupported.add("the render's border (Output > Format > Render Region) holds no pixel: Blender renders nothing, "
+                        "the whole frame is drawn instead")
+        return {}
+    if render.use_crop_to_border:
+        sides = [at / size for at, size in zip(pixels, frame)]
+    return {"border": sides, "crop": render.use_crop_to_border, "border_size": f"{width}x{height}"}
+
+
 def describe_camera(placed, scene):
     """The extras of one camera. `angle` and `ortho_scale` measure the side that the sensor fits; `aspect` is the
     render's width / height. Shifts are fractions of the fitted side."""
@@ -82,11 +105,10 @@ def describe_camera(placed, scene):
             "aspect": render.resolution_x * render.pixel_aspect_x / (render.resolution_y * render.pixel_aspect_y)}
 
 
-def world_radiance(scene, unsupported):
+def world_radiance(scene, view_layer, unsupported):
     """Colour times strength of the world's background."""
     world = scene.world
-    layer = next((layer for layer in scene.view_layers if layer.use), scene.view_layers[0])
-    if world is None or not layer.use_sky:
+    if world is None or not view_layer.use_sky:
         return [0.0, 0.0, 0.0]
     for kind in ("diffuse", "glossy"):
         if not getattr(world.cycles_visibility, kind):

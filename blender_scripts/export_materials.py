@@ -133,8 +133,7 @@ def read_plain(kind, node, reader):
             bsdf["roughness"] = 0.0
         elif node.distribution not in GGX:
             reader.complain(f"distribution {node.distribution} is taken for GGX")
-    elif bsdf["roughness"] > 0.0:
-        reader.complain(f"Diffuse roughness {bsdf['roughness']:.3g} (Oren-Nayar) is taken for Lambert")
+    bsdf["roughness"] = min(max(bsdf["roughness"], 0.0), 1.0)  # as Cycles clamps it
     if previous(node.inputs["Normal"]) is not None and not is_normal_map(node.inputs["Normal"]):
         reader.complain(f"node '{previous(node.inputs['Normal']).node.name}' feeds Normal, which is ignored")
     return bsdf, source

@@ -1,7 +1,7 @@
 """Exports a .blend scene as the renderer sees it to .glb, with what glTF lacks in `extras`, key "scumble".
 
     blender -b -noaudio --factory-startup -Y scene.blend -P blender_scripts/export_scene.py -- --output scene.glb
-                                                                  [--frame N | --frames 1-24,30] [--scene NAME]
+                                     [--frame N | --frames 1-24,30] [--scene NAME] [--view-layer NAME]
 
 `scumble guidegen scene.blend` and `stylize scene.blend` run it by themselves. Modifiers, shape keys, armatures and
 geometry nodes are applied as for a render; instances share their mesh; objects hidden from render are left out. The
@@ -10,7 +10,8 @@ active camera comes first. docs/blender.md explains the extras.
 With --frames, `#` in the output's name stands for the frame's number, and the scene is opened anew for each frame. So
 no frame depends on those before it, by remains of an export or by a simulation that was not baked.
 
-Each loss is one line "scumble: unsupported: …" on stderr and one in the scene's extras. Exit codes: 0, 3 when the scene
+Each loss is one line "scumble: unsupported: …" on stderr and one in the scene's extras; each choice among several, which
+nobody asked for, is a line "scumble: note: …". Exit codes: 0, 3 when the scene
 cannot be exported, 5 when this Blender's version is not supported. The reason is a line "scumble: error: …" on stderr.
 """
 
@@ -34,18 +35,21 @@ import export_lamps  # noqa: E402
 import export_materials  # noqa: E402
 import export_rest  # noqa: E402
 import export_stretch  # noqa: E402
-from blend_common import Unsupported, cameras_of, check_version, choose_layer, choose_scene, fail  # noqa: E402
+from blend_common import Unsupported, cameras_of, check_version, choose_layer, choose_scene, fail, say  # noqa: E402
 
 
-def export(scene, output, unsupported):
+def export(scene, view_layer, output, unsupported):
     """All decisions are made before the glTF exporter runs: it gets plain objects with short names of ours, so that its
     output can be identified and completed."""
-    flat = export_flat.flatten(scene, unsupported)
-    has_rest = export_rest.add_rest_positions(flat, choose_layer(scene))
+    flat = export_flat.flatten(scene, view_layer, unsupported)
+    if not flat.meshes:
+        blend_check.check_emptiness(scene, view_layer, unsupported)
+    has_rest = export_rest.add_rest_positions(flat, view_layer)
     materials = export_materials.simplify(flat.materials, unsupported)
-    world = export_lamps.world_radiance(scene, unsupported)
+    world = export_lamps.world_radiance(scene, view_layer, unsupported)
     lamps = [export_lamps.describe_lamp(lamp, unsupported) for lamp in flat.lamps]
-    cameras = [export_lamps.describe_camera(camera, scene) for camera in flat.cameras]
+    border = export_lamps.describe_border(scene, unsupported)
+    cameras = [{**export_lamps.describe_camera(camera, scene), **border} for camera in flat.cameras]
     export_flat.fill_export_scene(flat, {name: entry["material"] for name, entry in materials.items()}, unsupported)
     with tempfile.TemporaryDirectory(prefix="scumble-") as folder:
         raw = Path(folder) / "raw.glb"
@@ -100,8 +104,9 @@ def export_frame(arguments, frame, output, unsupported):
     scene = choose_scene(arguments.scene)
     bpy.context.window.scene = scene
     scene.frame_set(frame if frame is not None else scene.frame_current)
-    blend_check.check_file(choose_layer(scene), unsupported)
-    export(scene, output, unsupported)
+    view_layer = choose_layer(scene, arguments.view_layer)
+    blend_check.check_file(view_layer, unsupported)
+    export(scene, view_layer, output, unsupported)
 
 
 def is_surely_lit(scene):
@@ -110,6 +115,17 @@ def is_surely_lit(scene):
         action = thing.animation_data.action if thing.animation_data else None
         return any(curve.data_path == "hide_render" for curve in (action.fcurves if action else []))
     return any(thing.type == "LIGHT" and not thing.hide_render and not blinks(thing) for thing in scene.objects)
+
+
+def note_choices(arguments):
+    scene = choose_scene(arguments.scene)
+    if arguments.scene is None and len(bpy.data.scenes) > 1:
+        say(f"note: scene '{scene.name}', which was open when the file was saved, of "
+            + ", ".join(f"'{other.name}'" for other in bpy.data.scenes) + ": --scene takes another")
+    rendered = [layer.name for layer in scene.view_layers if layer.use]
+    if arguments.view_layer is None and len(rendered) > 1:
+        say(f"note: view layer '{rendered[0]}', the first of those that are rendered, "
+            + ", ".join(f"'{name}'" for name in rendered) + ": --view-layer takes another")
 
 
 def export_start(arguments):
@@ -160,11 +176,13 @@ def main():
                         help=".glb file for the scene at its first frame, where it has no camera or perhaps no lamp")
     parser.add_argument("--start-always", action="store_true", help="write --start-file in any case")
     parser.add_argument("--scene", help="scene by name; left out: the one that was open when the file was saved")
+    parser.add_argument("--view-layer", help="view layer by name; left out: the first one that is rendered")
     arguments = parser.parse_args(sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else [])
     if arguments.frames is not None and "#" not in arguments.output.name:
         parser.error("with --frames the output's name needs a #, where the frame's number goes")
     check_version(", or export to .glb by hand")
     unsupported = Unsupported()
+    note_choices(arguments)
     opened = not export_start(arguments)
     if arguments.frames is not None:
         unsupported = export_range(arguments, opened)

@@ -71,7 +71,7 @@ def apply_bsdf(tree, principled, bsdf):
     else:
         if bsdf["type"] == "GLOSSY":
             shader.distribution = "GGX"
-        shader.inputs["Roughness"].default_value = bsdf["roughness"] if bsdf["type"] == "GLOSSY" else 0.0
+        shader.inputs["Roughness"].default_value = bsdf.get("roughness", 0.0)
         if principled.inputs["Normal"].is_linked:
             feed(tree, shader.inputs["Normal"], principled.inputs["Normal"])
     take_over(tree, principled.outputs[0], shader.outputs[0])

@@ -1,7 +1,8 @@
 """Renders a scene with Cycles: the cross-check of our guides.
 
     blender -b -noaudio --factory-startup -Y -P render_guides.py -- SCENE OUTPUT.exr --size WIDTHxHEIGHT
-            [--camera NAME] [--frame N] [--samples 4,16,64] [--max-bounces N] [--materials authored|pure]
+            [--camera NAME] [--frame N] [--scene NAME] [--view-layer NAME] [--samples 4,16,64] [--max-bounces N]
+            [--materials authored|pure]
 
 SCENE is a .blend, a .glb or a .gltf. OUTPUT.exr is a multilayer EXR of data: Normal, Depth, Position, DiffCol,
 GlossCol, Emit and Cryptomatte, one sample at the pixel's centre. Beside it is OUTPUT.camera: the camera as text, for
@@ -54,6 +55,8 @@ def parse_arguments():
     parser.add_argument("--size", required=True, type=size, metavar="WIDTHxHEIGHT")
     parser.add_argument("--camera", default="", metavar="NAME", help="left out: the scene's own")
     parser.add_argument("--frame", type=int, metavar="N", help="left out: the one that the .blend was saved at")
+    parser.add_argument("--scene", dest="scene_name", metavar="NAME", help="left out: the one that was open when saved")
+    parser.add_argument("--view-layer", metavar="NAME", help="left out: the first one that is rendered")
     parser.add_argument("--samples", type=counts, default=[], metavar="LIST",
                         help="renders the light too, e.g. 4,16,64")
     parser.add_argument("--max-bounces", type=bounces, default=8, metavar="N", help="0: direct light alone")
@@ -84,10 +87,11 @@ def bounces(text):
 def open_scene(options, unsupported):
     if options.scene.lower().endswith(".blend"):
         bpy.ops.wm.open_mainfile(filepath=options.scene, load_ui=False, use_scripts=False)
-        scene = bpy.context.scene
+        scene = blend_common.choose_scene(options.scene_name)
+        bpy.context.window.scene = scene
         set_size(scene.render, options.size)
         scene.frame_set(scene.frame_current if options.frame is None else options.frame)
-        layer = blend_common.choose_layer(scene)
+        layer = blend_common.choose_layer(scene, options.view_layer)
         blend_check.check_file(layer, unsupported)
         guide_instances.name_apart(scene, layer, unsupported)
     else:
@@ -140,9 +144,9 @@ def set_up_cycles(scene):
         thing.cycles.shadow_terminator_offset = thing.cycles.shadow_terminator_geometry_offset = 0.0
 
 
-def set_up_layer(scene):
+def set_up_layer(scene, name):
     """The layer that is exported, alone."""
-    chosen = blend_common.choose_layer(scene)
+    chosen = blend_common.choose_layer(scene, name)
     for layer in scene.view_layers:
         layer.use = layer == chosen
     chosen.material_override = None
@@ -198,7 +202,7 @@ def main():
         guide_materials.purify()
     set_up_output(scene)
     set_up_cycles(scene)
-    layer = set_up_layer(scene)
+    layer = set_up_layer(scene, options.view_layer)
     unsupported.say()
     guide_camera.write(scene, options.output.with_suffix(".camera"))
     choose_passes(layer, DATA_PASSES)

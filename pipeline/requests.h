@@ -46,6 +46,8 @@ struct BlenderRequest {
   std::string program;       // a path, or a name looked up in PATH; empty: "blender"
   std::optional<int> frame;  // empty: the one that the file was saved at
   bool wants_start = false;  // BlenderAnimation::start in any case
+  std::string scene;         // by name; empty: the one that was open when the file was saved
+  std::string view_layer;    // by name; empty: the first one that is rendered
 };
 
 // Everything that turns a scene into guides.

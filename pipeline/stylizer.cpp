@@ -50,6 +50,7 @@ Expected<SceneRequest> RequestOf(const SceneSettings& settings) {
   }
   request.auto_smooth_degrees = settings.auto_smooth;
   request.blender.frame = settings.frame;
+  request.blender.scene = settings.blender_scene, request.blender.view_layer = settings.view_layer;
   if (settings.frames_per_second != 0.0) {
     const double thousandths = settings.frames_per_second * 1000.0;
     if (!(thousandths >= 0.5 && thousandths <= 1e8)) return UsageError("frames_per_second must be above 0, up to 1e5");

@@ -166,8 +166,8 @@ Status Workspace::State::LoadScene(const SceneRequest& request, std::optional<in
   const bool blender = IsBlenderScene(request.scene);
   std::string text = request.scene + "\n" + request.animation + "\n";
   if (blender) {
-    text += fmt::format("{} {} {}\n", frame ? std::to_string(*frame) : "", request.blender.program,
-                        request.view.has_value());
+    text += fmt::format("{} {} {}\n{}\n{}\n", frame ? std::to_string(*frame) : "", request.blender.program,
+                        request.view.has_value(), request.blender.scene, request.blender.view_layer);
   } else if (request.auto_smooth_degrees) {
     text += fmt::format("auto smooth {}\n", *request.auto_smooth_degrees);
   }

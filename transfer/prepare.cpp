@@ -157,6 +157,10 @@ Status CheckExemplars(const Style& style) {
   return Ok();
 }
 
+Status CheckNotCancelled(const PrepareOptions& options) {
+  return options.is_cancelled && options.is_cancelled() ? Status(CancelledError()) : Ok();
+}
+
 Expected<std::shared_ptr<const PreparedExemplar>> PrepareExemplar(const Style& style, int output_height,
                                                                   const PrepareOptions& options) {
   const TransferSettings& settings = style.transfer;
@@ -181,6 +185,7 @@ Expected<std::shared_ptr<const PreparedExemplar>> PrepareExemplar(const Style& s
                    PreparedExemplar::OfScene(pictures, *first.guides, settings.rim, width, height, first.name));
     prepared = std::make_shared<PreparedExemplar>(std::move(scene));
   }
+  SCUMBLE_RETURN_IF_ERROR(CheckNotCancelled(options));
   SCUMBLE_RETURN_IF_ERROR(
       prepared->SearchBy(settings.nearest, options.table_resolution, options.cache, settings.nearest_error));
   return std::shared_ptr<const PreparedExemplar>(std::move(prepared));
@@ -194,7 +199,10 @@ Expected<PreparedStyle> PrepareInArena(const Style& style, int output_height, co
   }
   SCUMBLE_RETURN_IF_ERROR(CheckExemplars(style));
   std::vector<double> luminances;
-  for (const Exemplar& exemplar : style.exemplars) luminances.push_back(LuminanceOf(exemplar, settings.rim));
+  for (const Exemplar& exemplar : style.exemplars) {
+    SCUMBLE_RETURN_IF_ERROR(CheckNotCancelled(options));
+    luminances.push_back(LuminanceOf(exemplar, settings.rim));
+  }
   PreparedStyle prepared;
   prepared.settings = settings;
   prepared.required = RequiredLayers(style);
@@ -203,6 +211,7 @@ Expected<PreparedStyle> PrepareInArena(const Style& style, int output_height, co
   prepared.blend_radius = ScaledRadius(settings.blend_radius, settings.reference_height, output_height);
   prepared.flat_reach = ScaledSize(kFlatReach, 1.0, settings.reference_height, output_height);
   SCUMBLE_ASSIGN(prepared.exemplar, PrepareExemplar(style, output_height, options));
+  SCUMBLE_RETURN_IF_ERROR(CheckNotCancelled(options));
   if (!settings.guide_weights.ArePlain()) {
     SCUMBLE_ASSIGN(GuideSpace space, GuideSpace::Build(settings.guide_weights, style.exemplars, prepared.exemplar,
                                                        settings.nearest_error));
@@ -212,17 +221,21 @@ Expected<PreparedStyle> PrepareInArena(const Style& style, int output_height, co
   if (settings.colorize > 0.0 && settings.colorize_mode == ColorizeMode::kOklab) {
     prepared.reference_lightness = internal::ReferenceLightness(*prepared.exemplar);
   }
+  SCUMBLE_RETURN_IF_ERROR(CheckNotCancelled(options));
   if (settings.hybrid > 0.0) {
     // In pixels of the file; the exemplar was resized by scale and height, and the base layer with it.
     const Picture& file = style.exemplars.front().picture;
     const double ratio = static_cast<double>(prepared.exemplar->size()) / std::max(file.width, file.height);
-    prepared.base_layers = MakeBaseLayers(*prepared.exemplar, settings.hybrid * ratio);
+    prepared.base_layers =
+        std::make_shared<PreparedExemplar>(MakeBaseLayers(*prepared.exemplar, settings.hybrid * ratio));
   }
+  SCUMBLE_RETURN_IF_ERROR(CheckNotCancelled(options));
   if (settings.shadow == ShadowMode::kPaint) {
     std::vector<const Picture*> pictures;
     for (const Exemplar& exemplar : style.exemplars) pictures.push_back(&exemplar.picture);
     prepared.shadow.emplace(prepared.exemplar, pictures);
   }
+  SCUMBLE_RETURN_IF_ERROR(CheckNotCancelled(options));
   if (settings.edge == EdgeMode::kExemplar) {
     if (!style.exemplars.front().is_sphere) {
       return UsageError("transfer.edge = \"exemplar\" continues the painted edge of a sphere; " +
@@ -233,6 +246,7 @@ Expected<PreparedStyle> PrepareInArena(const Style& style, int output_height, co
     const auto has_edge = [](const RimPaint& rim) { return rim.HasEdge(); };
     if (!std::all_of(prepared.rims.begin(), prepared.rims.end(), has_edge)) prepared.rims.clear();
   }
+  SCUMBLE_RETURN_IF_ERROR(CheckNotCancelled(options));
   prepared.paper = style.paper;
   if (style.paper.picture) {
     prepared.paper.picture = ScaledPaper(*style.paper.picture, settings.reference_height, output_height);

@@ -123,7 +123,7 @@ class Run {
            std::ranges::all_of(styles, [](const PreparedStyle* style) {
              const TransferSettings& settings = style->settings;
              return settings.method == Method::kStyleBlit && !settings.coherent && settings.match_step <= 1 &&
-                    !style->space && style->base_layers.empty() && style->rims.empty() &&
+                    !style->space && !style->base_layers && style->rims.empty() &&
                     style->blend_radius <= internal::kMostBandRadius;
            });
   }
@@ -253,7 +253,7 @@ class Run {
     scratch_.times.match_ms += watch.Lap();
 
     const internal::EdgeRules edges = EdgesOf(style, map_ ? std::span<const std::uint8_t>() : scratch_.active);
-    const int rows = painted.y1 - painted.y0;
+    const int rows = (painted.y1 - painted.y0) * (style.base_layers ? 2 : 1);  // that votes will report
     internal::RowProgress vote_progress(options_.progress, part(kMatchShare), part(1.0), rows);
     internal::VoteInput votes{
         scratch_.field, scratch_.active, *style.exemplar, style.blend_radius, IsEdgeAware(style) ? &edges : nullptr,
@@ -261,11 +261,11 @@ class Run {
     const internal::ColorizeInput tint{guides_, scratch_.active, TintOf(style)};
     if (tint.tint.active())
       votes.finished = [&](int y, int x0, int x1) { internal::ColorizeRow(tint, y, x0, x1, out_); };
-    if (style.base_layers.empty()) {
+    if (!style.base_layers) {
       if (!internal::Vote(votes, out_, vote_progress)) return CancelledError();
     } else {
       const internal::HybridInput hybrid{
-          votes, guides_, style.illumination, input.luminance, style.base_layers, input.space, input.brightness};
+          votes, guides_, style.illumination, input.luminance, *style.base_layers, input.space, input.brightness};
       if (!internal::VoteHybrid(hybrid, out_, vote_progress)) return CancelledError();
     }
     scratch_.times.vote_ms += watch.Lap();

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -39,8 +40,8 @@ struct PreparedStyle {
   Illumination illumination;
   float reference_lightness =
       0.0f;  // Oklab's, of paint that takes on base colours as they are; only for tints in Oklab
-  std::shared_ptr<const GuideSpace> space;  // the space of the match; null: normals alone, with weight 1
-  std::vector<Picture> base_layers;         // by exemplar, see MakeBaseLayers; only where transfer.hybrid is above 0
+  std::shared_ptr<const GuideSpace> space;              // the space of the match; null: normals alone, with weight 1
+  std::shared_ptr<const PreparedExemplar> base_layers;  // by MakeBaseLayers; null where transfer.hybrid is 0
   Paper paper;
   // By exemplar; only where transfer.edge is "exemplar" and the paint of every exemplar ends near its rim.
   std::vector<RimPaint> rims;
@@ -56,6 +57,8 @@ struct PrepareOptions {
   int table_resolution = LookUpTable::kResolution;  // cells a side of look-up tables, 1 … 16384
   TableCache* cache = nullptr;                      // null: none
   int threads = 0;                                  // 0: all
+  // Asked between the steps; true ends them with kCancelled. Null: nothing cancels it.
+  std::function<bool()> is_cancelled = {};
 };
 
 // Resizes exemplars and paper for outputs of `output_height` pixels; several exemplars become one size, the first's.

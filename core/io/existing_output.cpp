@@ -114,6 +114,9 @@ Status CheckWholeGuides(const std::filesystem::path& path, const GuideShape& sha
   if (held != shape.layers) {
     return InputError(path.string() + " holds " + held.ToString() + ", not " + shape.layers.ToString());
   }
+  if (info.has_cryptomatte != shape.cryptomatte) {
+    return InputError(path.string() + (shape.cryptomatte ? " has no Cryptomatte" : " has a Cryptomatte"));
+  }
   const bool has_color = std::any_of(AllLayers().begin(), AllLayers().end(),
                                      [&](const LayerInfo& layer) { return layer.is_color && held.Has(layer.layer); });
   if (has_color && info.has_half != shape.half) {

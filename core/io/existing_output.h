@@ -30,14 +30,15 @@ int PictureChannels(const std::filesystem::path& path);
 // Decodes the whole picture. The error names the defect; a missing file is one. The picture's content is not checked.
 Status CheckWholePicture(const std::filesystem::path& path, const PictureShape& shape);
 
-// The shape of a guide file, which must hold exactly these layers, colours as half floats if `half`. The settings are
-// those of the guides' attribute scumble:settings.
+// The shape of a guide file, which must hold exactly these layers, colours as half floats if `half`, and a Cryptomatte
+// or none. The settings are those of the guides' attribute scumble:settings.
 struct GuideShape {
   int width = 0;
   int height = 0;
   LayerSet layers;
   bool half = false;
   std::string settings;
+  bool cryptomatte = false;
 };
 Status CheckWholeGuides(const std::filesystem::path& path, const GuideShape& shape);
 

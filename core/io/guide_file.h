@@ -13,6 +13,7 @@ namespace scumble {
 struct GuideWriteOptions {
   bool half = false;                // colour layers as 16-bit half floats; data layers stay 32-bit float
   std::string compression = "zip";  // none, rle, zips, zip or piz: lossless only
+  bool cryptomatte = false;         // objects and materials as Cryptomatte too, beside the layers of ids
 };
 
 // Lossless, and the fastest to write and read: background is packed, surfaces hardly.
@@ -30,14 +31,17 @@ struct GuideReadOptions {
   LayerSet required = AlwaysWritten();  // an error names those that are missing, and what is there
   LayerSet optional;                    // read where present
   std::string view_layer;               // which one of several in a multilayer file
-  std::string remedy;  // the caller's remedy without depth and object, shown where nothing else is missing
+  std::string light_layer;  // of a Blender render: the view layer with the passes of light; empty: that one too
+  std::string remedy;       // the caller's remedy without depth and object, shown where nothing else is missing
   std::filesystem::path blender_camera;  // the .camera file of a Blender render; empty: the camera is solved
 };
 
-// Reads only the channels that are asked for; matches them by name (ParseChannelName). The result is validated:
-// normals whose length is off by more than a half float's rounding are normalised, and what GuideSet::Validate
-// refuses is an error. What Blender wrote is converted as core/io/blender/blender_passes.h says: its camera comes from
-// `blender_camera`, or from its Position and Depth passes; names from Cryptomatte.
+// Reads only the channels that are asked for; matches them by name (ParseChannelName). Of guides that WriteGuides made,
+// ids are always those of the layers object and material; a Cryptomatte beside them is passed over. The result is
+// validated: normals whose length is off by more than a half float's rounding are normalised, and what
+// GuideSet::Validate refuses is an error. What Blender wrote is converted as core/io/blender/blender_passes.h says: its
+// camera comes from `blender_camera`, or from its Position and Depth passes; names from Cryptomatte; luminance and
+// shadow from its passes of light (core/io/blender/render_light.h).
 Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideReadOptions& options = {});
 
 // The content of a guide file, without its pixels.
@@ -46,10 +50,11 @@ struct GuideFileInfo {
   int height = 0;
   bool has_half = false;      // some channel is stored in half floats
   bool from_blender = false;  // rendered by Blender itself: its passes are to be converted
-  std::map<std::string, LayerSet>
-      layers;            // complete layers by view layer; "" where names have nothing before them; Cryptomatte counts
-  std::string channels;  // all names as they stand in the file
-  GuideSet header;       // names, camera and attributes; 0 × 0 pixels
+  bool has_cryptomatte = false;
+  std::map<std::string, LayerSet> layers;  // complete layers by view layer; "" where names have nothing before them;
+                                           // Cryptomatte and passes of light count
+  std::string channels;                    // all names as they stand in the file
+  GuideSet header;                         // names, camera and attributes; 0 × 0 pixels
 };
 Expected<GuideFileInfo> InspectGuides(const std::filesystem::path& path);
 

@@ -34,7 +34,7 @@ std::string NameFor(const fs::path& path, bool is_folder) {
 
 // Debian's toml++ throws; nothing else here does.
 Expected<toml::table> ParseToml(std::string_view text, const std::string& file) {
-  SCUMBLE_RETURN_IF_ERROR(internal::CheckKeyParts(text, file));
+  SCUMBLE_RETURN_IF_ERROR(internal::CheckTomlText(text, file));
   try {
     return toml::parse(text, file);
   } catch (const toml::parse_error& error) {

@@ -136,9 +136,11 @@ Status SetJitterFps(Style& style, const KeyValue& value, const std::filesystem::
   return Ok();
 }
 
+constexpr const char* kColor = "a colour is # and six hexadecimal digits, two each of red, green and blue: \"#f4efe6\"";
+
 Status SetPaper(Style& style, const KeyValue& value, const std::filesystem::path& folder) {
   const auto* text = std::get_if<std::string>(&value);
-  if (!text) return UsageError("expected a picture's name, a colour \"#rrggbb\", or \"\" for transparent");
+  if (!text) return UsageError(std::string("expected a picture's name, a colour, or \"\" for transparent; ") + kColor);
   style.paper = {};
   if (text->empty()) return Ok();
   if (text->front() == '#') {
@@ -146,11 +148,15 @@ Status SetPaper(Style& style, const KeyValue& value, const std::filesystem::path
     const char *begin = text->data() + 1, *end = text->data() + text->size();
     const auto parsed = std::from_chars(begin, end, rgb, 16);
     if (end - begin != 6 || parsed.ec != std::errc() || parsed.ptr != end) {
-      return UsageError("'" + *text + "' is not a colour like \"#f4efe6\"");
+      return UsageError(kColor);
     }
     const auto channel = [&](int shift) { return static_cast<std::uint16_t>(((rgb >> shift) & 255u) * 257u); };
     style.paper.color = {channel(16), channel(8), channel(0)};
     return Ok();
+  }
+  std::error_code failed;
+  if (!text->ends_with('/') && !std::filesystem::exists(folder / *text, failed) && !failed) {
+    return InputError("cannot read " + (folder / *text).string() + ": there is no such file; " + kColor);
   }
   SCUMBLE_ASSIGN(style.paper.picture, ReadPicture(folder / *text));
   return Ok();

@@ -1,13 +1,14 @@
 #include "core/style/toml_keys.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace scumble::internal {
 namespace {
 
-// The place after the string that begins at `begin` with a quote of either kind, by TOML 1.0's rules. A string that
-// does not end properly stops the parser, so any result will do there.
-std::size_t EndOfString(std::string_view text, std::size_t begin) {
+// The place after the string that begins at `begin` with a quote of either kind, by TOML 1.0's rules; empty if it is
+// not closed.
+std::optional<std::size_t> EndOfString(std::string_view text, std::size_t begin) {
   const char quote = text[begin];
   const std::string three(3, quote);
   const bool has_escapes = quote == '"', is_long = text.substr(begin, 3) == three;
@@ -18,21 +19,29 @@ std::size_t EndOfString(std::string_view text, std::size_t begin) {
       i += 3;
       for (int more = 0; more < 2 && i < text.size() && text[i] == quote; ++more) ++i;  // up to two belong to the text
       return i;
-    } else if (!is_long && (text[i] == quote || text[i] == '\n')) {
+    } else if (!is_long && text[i] == quote) {
       return i + 1;
+    } else if (!is_long && text[i] == '\n') {
+      return std::nullopt;
     }
   }
-  return text.size();
+  return std::nullopt;
 }
 
 }  // namespace
 
-Status CheckKeyParts(std::string_view text, const std::string& file) {
+Status CheckTomlText(std::string_view text, const std::string& file) {
   constexpr std::string_view kAround = "=[]{},\n";  // the characters around a key
+  const auto at_line = [&](std::size_t i) {
+    const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(i), '\n');
+    return file + ":" + std::to_string(line) + ": ";
+  };
   std::size_t parts = 1;
   for (std::size_t i = 0; i < text.size();) {
     if (text[i] == '"' || text[i] == '\'') {
-      i = EndOfString(text, i);
+      const std::optional<std::size_t> end = EndOfString(text, i);
+      if (!end) return InputError(at_line(i) + "not valid TOML: the string that begins here is not closed");
+      i = *end;
       continue;
     }
     if (text[i] == '#') {
@@ -41,8 +50,7 @@ Status CheckKeyParts(std::string_view text, const std::string& file) {
     }
     if (kAround.find(text[i]) != std::string_view::npos) parts = 1;
     if (text[i] == '.' && ++parts > kMostKeyParts) {
-      const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(i), '\n');
-      return InputError(file + ":" + std::to_string(line) + ": a key of more than " + std::to_string(kMostKeyParts) +
+      return InputError(at_line(i) + "a key of more than " + std::to_string(kMostKeyParts) +
                         " parts; a style's have up to four, as transfer.guide_weights.lpe.LDE");
     }
     ++i;

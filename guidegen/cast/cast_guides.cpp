@@ -31,11 +31,13 @@ bool Continue(const Progress& progress, double share) { return !progress || prog
 // The share of the progress for casting where light paths follow, which nearly always take longer.
 constexpr double kCastShare = 0.05;
 
-// False if the caller cancelled. Lists covered pixels by tile where `pixels` is given.
-bool CastTiles(const TileCaster& caster, const GuidegenOptions& options, double end, GuidegenResult& result,
-               std::vector<std::vector<PathPixel>>* pixels) {
-  const std::size_t columns = std::size_t(options.width + kTileSide - 1) / kTileSide;
-  const std::size_t rows = std::size_t(options.height + kTileSide - 1) / kTileSide;
+// Casts the tiles that the window meets. False if the caller cancelled. Lists covered pixels by tile where `pixels` is
+// given.
+bool CastTiles(const TileCaster& caster, const GuidegenOptions& options, const PixelWindow& window, double end,
+               GuidegenResult& result, std::vector<std::vector<PathPixel>>* pixels) {
+  const int left = window.x0 / kTileSide, top = window.y0 / kTileSide;
+  const std::size_t columns = std::size_t((window.x1 + kTileSide - 1) / kTileSide - left);
+  const std::size_t rows = std::size_t((window.y1 + kTileSide - 1) / kTileSide - top);
   const std::size_t strips = (columns + kStripTiles - 1) / kStripTiles;  // in a row
   ProgressGate gate(options.progress, strips * rows, 0.0, end);
   if (pixels) pixels->resize(columns * rows);
@@ -52,8 +54,8 @@ bool CastTiles(const TileCaster& caster, const GuidegenOptions& options, double 
       std::array<Tile, kStripTiles> tiles;
       for (std::size_t k = 0; k < count; ++k) {
         Tile& tile = tiles[k];
-        tile.x0 = int(first + k) * kTileSide;
-        tile.y0 = int(row) * kTileSide;
+        tile.x0 = (left + int(first + k)) * kTileSide;
+        tile.y0 = (top + int(row)) * kTileSide;
         tile.width = std::min(kTileSide, options.width - tile.x0);
         tile.height = std::min(kTileSide, options.height - tile.y0);
       }
@@ -70,6 +72,28 @@ bool CastTiles(const TileCaster& caster, const GuidegenOptions& options, double 
     AddWork(meter.Since(), result.work);
   });
   return !gate.cancelled();
+}
+
+// Fills what lies outside the window with background.
+void ClearOutside(const PixelWindow& window, GuideSet& guides) {
+  const int width = guides.width(), height = guides.height();
+  if (window == PixelWindow{0, 0, width, height}) return;
+  for (const LayerInfo& info : AllLayers()) {
+    for (int c = 0; guides.Has(info.layer) && c < ChannelCount(info.layer); ++c) {
+      const auto plane = guides.Plane(info.layer, c);
+      const auto clear = [&](int x0, int x1, int y) {
+        std::fill(plane.begin() + std::ptrdiff_t(guides.Index(x0, y)),
+                  plane.begin() + std::ptrdiff_t(guides.Index(x0, y)) + (x1 - x0), BackgroundValue(info.layer));
+      };
+      for (int y = 0; y < height; ++y) {
+        if (y < window.y0 || y >= window.y1) {
+          clear(0, width, y);
+        } else {
+          clear(0, window.x0, y), clear(window.x1, width, y);
+        }
+      }
+    }
+  }
 }
 
 // Planes without initial values: tiles fill them, background included.
@@ -109,8 +133,15 @@ Expected<GuidegenResult> CastInArena(LazyScene& objects, const View& view, const
   const TileCaster caster(scene, view, options, result.guides);
   std::vector<std::vector<PathPixel>> pixels;
   const bool paths = !follower.empty();
-  if (!CastTiles(caster, options, paths ? kCastShare : 1.0, result, paths ? &pixels : nullptr)) {
+  const PixelWindow& window = view.camera.window();
+  if (!CastTiles(caster, options, window, paths ? kCastShare : 1.0, result, paths ? &pixels : nullptr)) {
     return CancelledError();
+  }
+  ClearOutside(window, result.guides);
+  for (std::vector<PathPixel>& of_tile : pixels) {
+    std::erase_if(of_tile, [&](const PathPixel& pixel) {
+      return !window.Contains(int(pixel.index) % options.width, int(pixel.index) / options.width);
+    });
   }
   if (paths) {
     const LightPathTracer tracer(scene, view, follower, options.max_bounces);

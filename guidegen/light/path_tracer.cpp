@@ -203,7 +203,7 @@ bool LightPathTracer::Scatter(const Vertex& vertex, const Lobes& lobes, const Qu
   flight.throughput *= sampled.weight / probability;
   flight.direction = sampled.direction;
   flight.density = sampled.density * probability;
-  flight.widest = std::min(flight.widest, sampled.density);
+  flight.widest = std::min(flight.widest, sampled.blur_density);
   flight.first = bounce == 0;
   if (flight.throughput == glm::dvec3(0.0)) return false;
   if (bounce < kFirstRoulette) return true;

@@ -18,7 +18,7 @@ namespace scumble {
 namespace {
 
 // Above the rounding of corners in text or floats, and below what anybody means to model.
-constexpr double kRounding = 0.01;  // degrees
+constexpr double kAngleRounding = 0.01;  // degrees
 // A face lower than this share of its length or its distance from the origin has a normal of rounding noise: corners
 // are rounded by 2⁻²⁴ of their distance.
 constexpr double kSliver = 0x1.0p-21;
@@ -311,7 +311,7 @@ CornerNormals AutoSmoothNormals(const SmoothingInput& input, double degrees) {
   const CornersByPlace by_place(input);
   std::vector<std::uint32_t> leaders(by_place.corners.size());
   std::vector<glm::vec3> normals(leaders.size());
-  const double cosine = degrees + kRounding < 180.0 ? CosDegrees(degrees + kRounding) : -1.0;
+  const double cosine = degrees + kAngleRounding < 180.0 ? CosDegrees(degrees + kRounding) : -1.0;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, input.positions.size(), 4096), [&](const auto& range) {
     PlaceSmoother smoother(input, faces, cosine);
     for (std::size_t place = range.begin(); place < range.end(); ++place) {

@@ -27,6 +27,15 @@ std::string FindFault(const Camera& camera) {
   if (!std::isfinite(camera.shift_x) || !std::isfinite(camera.shift_y)) {
     return "has a shift that is not finite: give it one around 0";
   }
+  if (const auto& border = camera.border) {
+    const auto fits = [](double from, double to) { return from >= 0.0 && from < to && to <= 1.0; };
+    if (!fits(border->left, border->right) || !fits(border->bottom, border->top)) {
+      std::ostringstream fault;
+      fault << "has a border from " << border->left << ", " << border->bottom << " to " << border->right << ", "
+            << border->top << ": give it sides from 0 to 1, left before right and bottom before top";
+      return fault.str();
+    }
+  }
   if (!(std::max(camera.z_near, 0.0) < camera.z_far) || std::isnan(camera.z_near)) {
     return "has its near plane at " + std::to_string(camera.z_near) + " and its far plane at " +
            std::to_string(camera.z_far) + ": the near plane must come first";
@@ -44,6 +53,13 @@ glm::dvec2 HalfExtent(const Camera& camera, double half, double picture_aspect) 
   const bool keep_horizontal = camera.fit == CameraFit::kVertical && camera.aspect && *camera.aspect > picture_aspect;
   const double half_width = half * (keep_horizontal ? *camera.aspect : picture_aspect);
   return {half_width, keep_horizontal ? half_width / picture_aspect : half};
+}
+
+PixelWindow WindowOf(const std::optional<CameraBorder>& border, int width, int height) {
+  if (!border || border->crop) return {0, 0, width, height};
+  const auto at = [](double share, int side) { return static_cast<int>(float(share) * float(side)); };
+  return {at(border->left, width), height - at(border->top, height), at(border->right, width),
+          height - at(border->bottom, height)};
 }
 
 }  // namespace
@@ -72,9 +88,15 @@ Expected<CameraRays> CameraRays::Make(const Camera& camera, int width, int heigh
   rays.far_depth_ = camera.z_far;
 
   const double half = camera.orthographic ? camera.ymag : std::tan(glm::radians(camera.yfov_degrees) / 2.0);
-  rays.half_extent_ = HalfExtent(camera, half, double(width) / height);
-  const bool across = MeasuresWidth(camera, double(width) / height);
-  rays.shift_ = 2.0 * (across ? rays.half_extent_.x : rays.half_extent_.y) * glm::dvec2(camera.shift_x, camera.shift_y);
+  rays.window_ = WindowOf(camera.border, width, height);
+  // Of the frame, which is larger than the picture where that is cropped.
+  const CameraBorder shown = camera.border && camera.border->crop ? *camera.border : CameraBorder();
+  const glm::dvec2 share(shown.right - shown.left, shown.top - shown.bottom);
+  const double aspect = double(width) / height * (share.y / share.x);
+  const glm::dvec2 frame = HalfExtent(camera, half, aspect);
+  rays.half_extent_ = frame * share;
+  rays.shift_ = 2.0 * (MeasuresWidth(camera, aspect) ? frame.x : frame.y) * glm::dvec2(camera.shift_x, camera.shift_y) +
+                frame * glm::dvec2(shown.left + shown.right - 1.0, shown.bottom + shown.top - 1.0);
   rays.step_ = rays.half_extent_ / glm::dvec2(width, height);
   const glm::dvec2 farthest = rays.half_extent_ + glm::abs(rays.shift_);
   const double most = std::max(farthest.x, farthest.y);

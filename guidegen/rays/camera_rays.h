@@ -34,6 +34,14 @@ class CameraPose {
   glm::dvec3 eye_{0.0};
 };
 
+// Pixels of a picture: columns x0 … x1 − 1, rows y0 … y1 − 1.
+struct PixelWindow {
+  int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+
+  bool operator==(const PixelWindow&) const = default;
+  bool Contains(int x, int y) const { return x >= x0 && x < x1 && y >= y0 && y < y1; }
+};
+
 // A camera in front of a picture of a certain size. Immutable; free to use from any thread.
 class CameraRays : public CameraPose {
  public:
@@ -42,6 +50,10 @@ class CameraRays : public CameraPose {
 
   // The ray through a point of the picture, in pixels from the top left corner.
   ViewRay Through(double x, double y) const;
+
+  // The pixels that are drawn: those of the camera's border, or all. Blender cuts the product of a border and the
+  // picture's side, in floats, to a whole number. May be empty.
+  const PixelWindow& window() const { return window_; }
 
   // Whether rays differ in their origin; otherwise in their direction.
   bool orthographic() const { return orthographic_; }
@@ -62,6 +74,7 @@ class CameraRays : public CameraPose {
   bool orthographic_ = false;
   int width_ = 1;
   int height_ = 1;
+  PixelWindow window_;
   glm::dvec2 half_extent_{1.0};  // at depth 1 in perspective, in metres otherwise
   glm::dvec2 step_{1.0};         // half a pixel, in the same unit
   glm::dvec2 shift_{0.0};        // of the picture's centre, in the same unit

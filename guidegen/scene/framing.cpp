@@ -73,6 +73,13 @@ std::string FramingNote(const Scene& scene, const ViewAngles& view, bool asked_f
   return note.str();
 }
 
+std::string BorderNote(const Camera& camera) {
+  const CameraBorder& border = *camera.border;
+  if (!border.crop) return "drawn within the render border alone, the rest is background";
+  return "the picture is the render border, to which it is cropped" +
+         (camera.border_size.empty() ? "" : ": " + camera.border_size + " pixels in the file");
+}
+
 }  // namespace
 
 Camera FramingCamera(const Scene& scene, const ViewAngles& view, double aspect) {
@@ -136,6 +143,7 @@ Expected<PreparedView> PrepareView(Scene& scene, const std::string& camera_name,
       prepared.notes.push_back("seen by camera '" + prepared.camera.name + "', the first of " + Names(scene.cameras));
     }
   }
+  if (prepared.camera.border) prepared.notes.push_back(BorderNote(prepared.camera));
   if (needs_light && !HasLight(scene)) {
     scene.lights.push_back(KeyLight(prepared.camera));
     std::ostringstream note;

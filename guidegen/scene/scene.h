@@ -32,7 +32,7 @@ struct TextureUse {
 
 enum class AlphaMode { kOpaque, kMask, kBlend };
 
-// A surface's response to light. The last three are Blender's pure shaders, which glTF lacks: Lambert and GGX without
+// A surface's response to light. The last three are Blender's pure shaders, which glTF lacks: diffuse and GGX without
 // Fresnel, whose colour is the base colour, and a black surface that only emits.
 enum class Bsdf { kMetallicRoughness, kDiffuse, kGlossy, kEmission };
 
@@ -49,7 +49,10 @@ struct Material {
   bool double_sided = true;
   Bsdf bsdf = Bsdf::kMetallicRoughness;
   float metallic = 0.0f;
-  float roughness = 1.0f;                 // glTF's: GGX's α is its square, 0 is a mirror
+  float roughness = 1.0f;  // glTF's: GGX's α is its square, 0 is a mirror
+  // kDiffuse only: Oren and Nayar's, in [0, 1]; 0 is Lambert. A field of its own, because a metallic-roughness material
+  // that becomes kDiffuse becomes Lambert.
+  float diffuse_roughness = 0.0f;
   TextureUse metallic_roughness_texture;  // linear: G multiplies the roughness, B the metalness
   glm::vec3 emission{0.0f};               // radiance, linear, from both sides
   TextureUse emission_texture;
@@ -80,6 +83,18 @@ struct Instance {
 // The side of the picture that a camera's extent measures: a fixed one, or the longer one of any picture.
 enum class CameraFit { kVertical, kHorizontal, kLonger };
 
+// The part of a camera's frame that is drawn, as Blender's render region: sides as fractions of the frame, from its
+// left and its bottom; 0 ≤ left < right ≤ 1, 0 ≤ bottom < top ≤ 1.
+struct CameraBorder {
+  double left = 0.0;
+  double bottom = 0.0;
+  double right = 1.0;
+  double top = 1.0;
+  // The picture is what lies in the border: the frame is as many times wider and higher as the border is narrower and
+  // lower. Otherwise the picture is the frame, and all outside the border's whole pixels is background.
+  bool crop = false;
+};
+
 struct Camera {
   std::string name;
   glm::dmat4 world_from_camera{1.0};  // looks down its −Z, +Y up; rotation and translation only
@@ -95,6 +110,8 @@ struct Camera {
   std::optional<double> aspect;
   double z_near = 0.0;
   double z_far = std::numeric_limits<double>::infinity();
+  std::optional<CameraBorder> border;  // empty: the whole frame is drawn
+  std::string border_size;             // "960x540": a cropped border's pixels in the file that it is from; may be empty
 };
 
 enum class LightType { kPoint, kSpot, kSun, kArea };

@@ -74,6 +74,7 @@ SurfaceBsdf::SurfaceBsdf(const PlacedObject& object, std::uint32_t primitive, co
   const glm::dvec3 base = NotNegative(glm::dvec3(SurfaceColor(object, primitive, point.barycentric)));
   if (material.bsdf == Bsdf::kDiffuse) {
     diffuse_ = base;
+    diffuse_roughness_ = std::clamp(double(material.diffuse_roughness), 0.0, 1.0);
     return;
   }
   double roughness = material.roughness;
@@ -109,6 +110,15 @@ double SurfaceBsdf::Coupling(double cosine) const {
   return passes(eye) * passes(cosine) / (1.0 - kMeanFresnel);
 }
 
+// What the diffuse lobe reflects, over what Lambert's does.
+double SurfaceBsdf::DiffuseWeight(const glm::dvec3& to_light, double cosine) const {
+  if (!(diffuse_roughness_ > 0.0)) return Coupling(cosine);
+  const double eye = std::max(glm::dot(normal_, to_eye_), 0.0);
+  double slant = glm::dot(to_light, to_eye_) - cosine * eye;
+  if (slant > 0.0) slant /= std::max(cosine, eye);
+  return pi * (1.0 + diffuse_roughness_ * slant) / (pi + (pi / 2.0 - 2.0 / 3.0) * diffuse_roughness_);
+}
+
 double SurfaceBsdf::DiffuseShare() const {
   if (!HasDiffuse()) return 0.0;
   return std::min(Brightness(diffuse_), 1.0) * Coupling(1.0) + 1e-6;
@@ -122,7 +132,7 @@ double SurfaceBsdf::SpecularShare() const {
 SurfaceBsdf::Value SurfaceBsdf::Diffuse(const glm::dvec3& to_light) const {
   const double cosine = glm::dot(normal_, to_light);
   if (!(cosine > 0.0) || !(glm::dot(facing_, to_light) > 0.0)) return {};
-  return {diffuse_ * (Coupling(cosine) * cosine / pi), cosine / pi};
+  return {diffuse_ * (DiffuseWeight(to_light, cosine) * cosine / pi), cosine / pi};
 }
 
 SurfaceBsdf::Value SurfaceBsdf::Specular(const glm::dvec3& to_light) const {
@@ -146,8 +156,10 @@ SurfaceBsdf::Bounce SurfaceBsdf::SampleDiffuse(double u, double v) const {
   Bounce bounce;
   bounce.direction = glm::normalize(x * disc.x + y * disc.y + normal_ * cosine);
   if (!(cosine > 0.0) || !(glm::dot(facing_, bounce.direction) > 0.0)) return bounce;
-  bounce.weight = diffuse_ * Coupling(cosine);
+  bounce.weight = diffuse_ * DiffuseWeight(bounce.direction, cosine);
   bounce.density = cosine / pi;
+  // Cycles samples a rough diffuse lobe evenly, which is noisier.
+  bounce.blur_density = diffuse_roughness_ > 0.0 ? 0.5 / pi : bounce.density;
   return bounce;
 }
 
@@ -176,6 +188,7 @@ SurfaceBsdf::Bounce SurfaceBsdf::SampleSpecular(double u, double v) const {
   if (!(along > 0.0) || !(cosine > 0.0) || !(glm::dot(facing_, bounce.direction) > 0.0)) return bounce;
   bounce.weight = Fresnel(along) * (mirror_ ? 1.0 : SmithG1(cosine, alpha_));
   bounce.density = mirror_ ? std::numeric_limits<double>::infinity() : Specular(bounce.direction).density;
+  bounce.blur_density = bounce.density;
   if (!(bounce.density > 0.0)) bounce.weight = glm::dvec3(0.0);
   return bounce;
 }

@@ -1,4 +1,9 @@
-// A surface's response to light: a Lambert lobe and a GGX lobe, each with its own event of light-path expressions.
+// A surface's response to light: a diffuse lobe and a GGX lobe, each with its own event of light-path expressions.
+//
+// The diffuse lobe is Lambert's. With a diffuse roughness σ > 0 it is Oren & Nayar's in the form of Fujii, "A tiny
+// improvement of Oren-Nayar reflectance model", 2012, as in Cycles 3.4: color · (a + b·t), where
+//   a = 1 / (π + (π/2 − 2/3) σ),  b = σ·a,  s = l·v − (n·l)(n·v),  t = s for s ≤ 0, else s / max(n·l, n·v).
+// White returns πa of the light to an eye that faces it (0.78 at σ = 1), and all of it to a grazing eye, never more.
 //
 // Walter et al., "Microfacet models for refraction", EGSR 2007; Heitz, "Sampling the GGX distribution of visible
 // normals", JCGT 2018. Masking and shadowing are Smith's, separable, as in glTF 2.0 and in Cycles 3.4. Light between
@@ -20,6 +25,8 @@ class SurfaceBsdf {
     glm::dvec3 direction{0.0};
     glm::dvec3 weight{0.0};
     double density = 0.0;  // per solid angle; infinite for a mirror
+    // The density with which Cycles would have sampled it: by this a path blurs what follows.
+    double blur_density = 0.0;
   };
 
   // The reflection towards a direction, times the cosine there.
@@ -48,6 +55,7 @@ class SurfaceBsdf {
   Bounce SampleSpecular(double u, double v) const;
 
  private:
+  double DiffuseWeight(const glm::dvec3& to_light, double cosine) const;
   double Coupling(double cosine) const;
   glm::dvec3 Fresnel(double cosine) const;
 
@@ -60,6 +68,7 @@ class SurfaceBsdf {
   bool fresnel_ =
       false;  // f0 grows to 1 at grazing angles, and the diffuse lobe gets the light that the coat transmits
   bool mirror_ = false;
+  double diffuse_roughness_ = 0.0;
   double alpha_ = 1.0;
 };
 

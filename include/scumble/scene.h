@@ -20,6 +20,8 @@ struct SceneSettings {
   std::optional<SceneView> view;   // instead of a camera
   std::optional<int> frame;        // of an animation; empty: at rest
   std::string animation;           // by name, where a file has several; "*": all; empty: the first
+  std::string blender_scene;       // of a .blend, by name; empty: the one that was open when it was saved
+  std::string view_layer;          // of a .blend, by name; empty: the first one that is rendered
   double frames_per_second = 0.0;  // 0: a .blend's own, otherwise 24
   // Degrees between faces, 0 … 180, up to which they are smooth where the file gives no normals; 0: flat. Empty: glTF
   // is flat, OBJ as its smoothing groups say, other OBJ and PLY smooth up to 60.

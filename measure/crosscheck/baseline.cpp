@@ -75,12 +75,17 @@ Expected<BaselineScene> ReadScene(const nlohmann::json& json, const std::string&
       int frame = 0;
       if (!ReadInt(value, -2147483647, frame)) return Wrong(file, here, "is no whole number");
       scene.setup.frame = frame;
+    } else if (key == "blender_scene" || key == "view_layer") {
+      if (!value.is_string()) return Wrong(file, here, "is no text");
+      (key == "view_layer" ? scene.setup.view_layer : scene.setup.blender_scene) = value.get<std::string>();
     } else if (key == "limits") {
       SCUMBLE_RETURN_IF_ERROR(ReadLimits(value, file, here, scene));
       has_limits = true;
     } else {
-      return Wrong(file, here,
-                   "is no key of a baseline's scene: expected size, samples, max_bounces, camera, frame, limits");
+      return Wrong(
+          file, here,
+          "is no key of a baseline's scene: expected size, samples, max_bounces, camera, frame, blender_scene, "
+          "view_layer, limits");
     }
   }
   if (!has_size || !has_samples || !has_bounces || !has_limits) {
@@ -144,6 +149,8 @@ std::string BaselineToJson(const Baseline& baseline) {
         {"size", SizeText(scene.setup)}, {"samples", scene.setup.samples}, {"max_bounces", scene.setup.max_bounces}};
     if (!scene.setup.camera.empty()) item["camera"] = scene.setup.camera;
     if (scene.setup.frame) item["frame"] = *scene.setup.frame;
+    if (!scene.setup.blender_scene.empty()) item["blender_scene"] = scene.setup.blender_scene;
+    if (!scene.setup.view_layer.empty()) item["view_layer"] = scene.setup.view_layer;
     item["limits"] = OrderedJson::object();
     for (const auto& [figure, limit] : scene.limits) item["limits"][figure] = limit;
   }
@@ -169,6 +176,8 @@ std::string BaselineMismatch(const Baseline& baseline, const std::string& scene,
   compare("--max-bounces", std::to_string(was.max_bounces), std::to_string(setup.max_bounces));
   compare("--camera", name(was.camera), name(setup.camera));
   compare("--frame", number(was.frame), number(setup.frame));
+  compare("--scene", name(was.blender_scene), name(setup.blender_scene));
+  compare("--view-layer", name(was.view_layer), name(setup.view_layer));
   if (differs.empty()) return "";
   return "the baseline of " + scene + " was measured with " + differs +
          ": run it so, or measure it anew with --write-baseline";

@@ -75,8 +75,10 @@ struct CrosscheckSetup {
   int height = 0;
   int samples = 0;  // of a pixel in the light layers; 0: data layers alone were compared
   int max_bounces = 0;
-  std::string camera;        // empty: the scene's first
-  std::optional<int> frame;  // of a .blend; empty: the one that it was saved at
+  std::string camera;              // empty: the scene's first
+  std::optional<int> frame;        // of a .blend; empty: the one that it was saved at
+  std::string blender_scene = {};  // of a .blend; empty: the one that was open when it was saved
+  std::string view_layer = {};     // of a .blend; empty: the first one that is rendered
   bool operator==(const CrosscheckSetup&) const = default;
 };
 

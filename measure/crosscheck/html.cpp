@@ -161,6 +161,8 @@ std::string SetupLine(const CrosscheckReport& report) {
   std::string line = fmt::format("{}×{} pixels, {} compared", setup.width, setup.height, report.compared);
   if (!setup.camera.empty()) line += ", camera " + EscapeHtml(setup.camera);
   if (setup.frame) line += fmt::format(", frame {}", *setup.frame);
+  if (!setup.blender_scene.empty()) line += ", scene " + EscapeHtml(setup.blender_scene);
+  if (!setup.view_layer.empty()) line += ", view layer " + EscapeHtml(setup.view_layer);
   if (setup.samples == 0) return line + "; data layers alone, light was not compared";
   return line + fmt::format("; light with {} and {}, {}", internal::Counted(setup.samples, "sample"),
                             internal::Counted(setup.max_bounces, "bounce"),

@@ -17,6 +17,8 @@ std::string SetupText(const CrosscheckSetup& setup) {
   std::string text = fmt::format("{}×{}", setup.width, setup.height);
   if (!setup.camera.empty()) text += ", camera " + setup.camera;
   if (setup.frame) text += fmt::format(", frame {}", *setup.frame);
+  if (!setup.blender_scene.empty()) text += ", scene " + setup.blender_scene;
+  if (!setup.view_layer.empty()) text += ", view layer " + setup.view_layer;
   if (setup.samples > 0) {
     text += fmt::format(", {}, {}", internal::Counted(setup.samples, "sample"),
                         internal::Counted(setup.max_bounces, "bounce"));
@@ -102,6 +104,8 @@ Json ReportJson(const CrosscheckReport& report) {
   if (!report.baseline_mismatch.empty()) json["baseline_mismatch"] = report.baseline_mismatch;
   if (!report.setup.camera.empty()) json["camera"] = report.setup.camera;
   if (report.setup.frame) json["frame"] = *report.setup.frame;
+  if (!report.setup.blender_scene.empty()) json["blender_scene"] = report.setup.blender_scene;
+  if (!report.setup.view_layer.empty()) json["view_layer"] = report.setup.view_layer;
   json["too_thin"] = report.too_thin;
   json["skipped"] = report.skipped;
   json["problems"] = report.problems;

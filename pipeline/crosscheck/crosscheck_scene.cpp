@@ -47,8 +47,11 @@ Status MakeOurs(const CrosscheckRequest& request, const std::string& path, const
   options.size = request.size;
   options.camera = request.camera;
   options.key_light = false;  // Blender would not let one shine
-  if (IsBlenderScene(path)) options.blender = {request.blender, request.frame};
+  if (IsBlenderScene(path)) {
+    options.blender = {request.blender, request.frame, false, request.blender_scene, request.view_layer};
+  }
   SCUMBLE_ASSIGN(Scene scene, OpenScene(options, context));
+  for (Camera& camera : scene.cameras) camera.border.reset();
   sides.unsupported = scene.warnings;
   SCUMBLE_ASSIGN(SceneGuides data, MakeGuidesOf(scene, options, {Layer::kPosition, Layer::kAlbedo}, context,
                                                 Within(progress, 0.0, 0.02), false));
@@ -81,6 +84,7 @@ Expected<BothSides> MakeBothSides(const CrosscheckRequest& request, const std::s
   SCUMBLE_RETURN_IF_ERROR(MakeOurs(request, path, counts, context, progress, sides));
   ReferenceOptions options{request.blender, path,   request.size.width, request.size.height, request.camera,
                            request.frame,   counts, request.max_bounces};
+  options.blender_scene = request.blender_scene, options.view_layer = request.view_layer;
   SCUMBLE_ASSIGN(sides.reference,
                  RenderReference(options, context, Within(progress, counts.empty() ? 0.02 : 0.3, 1.0)));
   for (const std::string& line : sides.reference.unsupported) AddUnknown(line, sides.unsupported);
@@ -134,6 +138,7 @@ Expected<CrosscheckReport> CrosscheckScene(const CrosscheckRequest& request, con
   report.setup.max_bounces = request.samples > 0 ? request.max_bounces : 0;
   report.setup.camera = request.camera;
   report.setup.frame = request.frame;
+  report.setup.blender_scene = request.blender_scene, report.setup.view_layer = request.view_layer;
   report.unsupported = std::move(sides.unsupported);
   report.warnings = std::move(sides.warnings);
   report.scumble_version = SCUMBLE_VERSION;

@@ -18,12 +18,15 @@ struct CrosscheckRequest {
   int samples = 64;          // of each pixel of light; 0: data layers alone
   int max_bounces = 8;
   std::string blender = "blender";  // a path, or a name looked up in PATH
+  std::string blender_scene;        // of a .blend, by name; empty: the one that was open when it was saved
+  std::string view_layer;           // of a .blend, by name; empty: the first one that is rendered
   std::string keep;                 // folder for the guides of both sides; empty: they are not kept
   bool fast_io = false;             // of those
   bool heat_maps = false;           // pictures of the differences in the report
 };
 
-// Renders the scene with Cycles and with guidegen, and compares layer by layer. kUnavailable where Blender is missing,
+// Renders the scene with Cycles and with guidegen, and compares layer by layer, in the whole frame: a render border is
+// ignored on both sides. kUnavailable where Blender is missing,
 // kInput where the scene cannot be rendered or compared.
 Expected<CrosscheckReport> CrosscheckScene(const CrosscheckRequest& request, const std::string& scene,
                                            const RunContext& context);

@@ -9,6 +9,7 @@
 
 #include "core/io/guide_file.h"
 #include "pipeline/scene/blender_process.h"
+#include "pipeline/scene/blender_scene.h"
 
 namespace scumble {
 namespace {
@@ -64,6 +65,9 @@ std::vector<std::string> Arguments(const ReferenceOptions& options, const RunCon
                    {"-P", script.string(), "--", fs::absolute(options.scene).string(), picture.string(), "--size",
                     fmt::format("{}x{}", options.width, options.height), "--materials", "pure"});
   if (!options.camera.empty()) arguments.insert(arguments.end(), {"--camera", options.camera});
+  BlenderRequest names;
+  names.scene = options.blender_scene, names.view_layer = options.view_layer;
+  AddBlenderNames(names, arguments);
   if (options.frame) arguments.insert(arguments.end(), {"--frame", std::to_string(*options.frame)});
   if (!options.samples.empty()) {
     arguments.insert(arguments.end(), {"--samples", fmt::format("{}", fmt::join(options.samples, ",")), "--max-bounces",

@@ -22,6 +22,8 @@ struct ReferenceOptions {
   std::optional<int> frame;
   std::vector<int> samples;  // of the light layers, ascending; empty: data layers alone
   int max_bounces = 8;
+  std::string blender_scene = {};  // of a .blend, by name
+  std::string view_layer = {};
 };
 
 struct Reference {

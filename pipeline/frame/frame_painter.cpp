@@ -9,6 +9,7 @@ Expected<PreparedStyle> PrepareStyle(const Style& style, int height, const RunCo
   PrepareOptions options;
   options.cache = &cache;
   options.threads = context.threads;
+  options.is_cancelled = context.is_cancelled;
   return Prepare(style, height, options);
 }
 

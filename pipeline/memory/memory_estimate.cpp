@@ -129,18 +129,20 @@ void AddStyle(const Style& style, int height, MemoryNeed& need) {
 // The sources of all pixels and what their match and votes look at.
 void AddSources(const PictureWork& work, const Size& size, MemoryNeed& need) {
   const Bytes pixels = PixelsOf(size);
-  bool keeps = work.keeps_field, lit = false;
+  bool keeps = work.keeps_field, lit = false, hybrid = false;
   Bytes of_pixel = 0, transient = 0;
   int step = 1;
   for (const Style& style : work.styles) {
     keeps = keeps || KeepsSources(style, RadiusOf(style, size.height));
     lit = lit || LooksAtLight(style);
+    hybrid = hybrid || style.transfer.hybrid > 0.0;
     step = std::max(step, style.transfer.match_step);
     if (style.transfer.coherent) transient = std::max(transient, kSurfaceSeeds);
   }
   if (step > 1) of_pixel += kGuideOffset, transient = std::max(transient, kMatched / Bytes(step * step) + 1);
   if (keeps) of_pixel += kSource, transient += kSlopes;
-  if (lit) transient += kFloat;  // exposed
+  if (lit) transient += kFloat;     // exposed
+  if (hybrid) transient += kPaint;  // the votes on base layers
   if (work.has_map) of_pixel += 2;
   if (of_pixel > 0) need.Take("sources", of_pixel * pixels);
   const Bytes tiles = (Bytes(size.width) + 511) / 512;
@@ -183,8 +185,11 @@ void AddGuides(const Size& size, const LayerSet& layers, const SceneRequest& opt
   need.TakeTransient("light paths", (2 * kPathPixel + (open_ended ? kSum * path_layers : 0)) * pixels);
 }
 
-void AddGuideFile(const Size& size, const LayerSet& layers, MemoryNeed& need) {
-  need.TakeTransient("guide file", PlanesOf(size, Made(layers)));
+void AddGuideFile(const Size& size, const LayerSet& layers, bool cryptomatte, MemoryNeed& need) {
+  // Ids of objects and materials and a plane of zeros, and all eight channels in the file.
+  constexpr Bytes kMattePlanes = 3 + 8;
+  need.TakeTransient("guide file",
+                     PlanesOf(size, Made(layers)) + (cryptomatte ? kMattePlanes * kFloat * PixelsOf(size) : 0));
 }
 
 void AddGuidesBehind(const Size& size, const LayerSet& layers, MemoryNeed& need) {

@@ -27,7 +27,7 @@ void AddScene(const Scene& scene, const TexturePixels& more, MemoryNeed& need);
 void AddGuides(const Size& size, const LayerSet& layers, const SceneRequest& options, MemoryNeed& need);
 
 // A guide file of these layers, for a moment: it is packed in memory before it is written.
-void AddGuideFile(const Size& size, const LayerSet& layers, MemoryNeed& need);
+void AddGuideFile(const Size& size, const LayerSet& layers, bool cryptomatte, MemoryNeed& need);
 
 // A second set of guides and its file, for a sequence that writes one frame while it makes the next.
 void AddGuidesBehind(const Size& size, const LayerSet& layers, MemoryNeed& need);

@@ -42,8 +42,8 @@ Expected<RunReport> GuidegenSequence(const GuidegenRequest& request, const Seque
   work.check = [&](int, const std::string& output) -> Status {
     const Expected<GuideFileInfo> info = InspectGuides(output);
     SCUMBLE_ASSIGN(LayerSet layers, layers_for(info ? SceneStyleRequestsOf(info->header) : SceneStyleRequests()));
-    return CheckWholeGuides(output,
-                            {size.width, size.height, layers.Add(AlwaysWritten()), request.scene.half, settings});
+    return CheckWholeGuides(output, {size.width, size.height, layers.Add(AlwaysWritten()), request.scene.half, settings,
+                                     request.write.cryptomatte});
   };
   work.begin = [&](std::span<const int> frames, const Progress& progress) { return scene.Start(frames, progress); };
   work.make = [&](int frame, const std::string& output, const Progress& progress) -> Expected<FrameWrite> {
@@ -112,10 +112,10 @@ Expected<RunReport> RunGuidegen(GuidegenRequest request, const SequenceListener&
     context.EndStage("style");
   }
   if (!plan_only) SCUMBLE_RETURN_IF_ERROR(CheckFiles(files, request, sequence, styles));
-  request.scene.more_memory = [behind = sequence && !plan_only](const Size& size, const LayerSet& layers,
-                                                                MemoryNeed& need) {
+  request.scene.more_memory = [behind = sequence && !plan_only, cryptomatte = request.write.cryptomatte](
+                                  const Size& size, const LayerSet& layers, MemoryNeed& need) {
     if (behind) AddGuidesBehind(size, layers, need);
-    AddGuideFile(size, layers, need);
+    AddGuideFile(size, layers, cryptomatte, need);
   };
   if (sequence && !plan_only)
     return GuidegenSequence(request, *sequence, layers_for, motion, styles, listener, context);

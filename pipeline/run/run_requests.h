@@ -20,9 +20,10 @@ namespace scumble {
 
 // Guides and styles to pictures.
 struct TransferRequest {
-  std::string guides;      // .exr; a place for the frame's number, ####, for a range
-  std::string view_layer;  // of a multilayer file; empty: the only one
-  std::string camera;      // the .camera file of a Blender render; empty: found from its Position pass
+  std::string guides;       // .exr; a place for the frame's number, ####, for a range
+  std::string view_layer;   // of a multilayer file; empty: the only one
+  std::string light_layer;  // of a Blender render, the view layer with its passes of light; empty: `view_layer`
+  std::string camera;       // the .camera file of a Blender render; empty: found from its Position pass
   StyleRequest style;
   PictureRequest picture;
   BudgetRequest budget;

@@ -19,6 +19,7 @@ namespace {
 GuideReadOptions ReadOptions(const TransferRequest& request, const StyleSet& styles) {
   GuideReadOptions read;
   read.view_layer = request.view_layer;
+  read.light_layer = request.light_layer;
   read.blender_camera = request.camera;
   if (styles.first().transfer.edge_aware)
     read.remedy = "; --set transfer.edge_aware=false does without depth and object";

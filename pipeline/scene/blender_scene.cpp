@@ -59,17 +59,27 @@ Expected<std::vector<std::string>> ExportCommand(const std::string& path, const 
   SCUMBLE_ASSIGN(const fs::path script, FindBlenderScript("export_scene.py", ExportTask(path, options), context));
   if (!output.has_parent_path())
     return OutputError("no folder can be made for temporary files: set TMPDIR to one that can");
-  return std::vector<std::string>{NameOfProgram(options),
-                                  "-b",
-                                  "-noaudio",
-                                  "--factory-startup",
-                                  "-Y",  // the file's own scripts do not run
-                                  fs::absolute(path).string(),
-                                  "-P",
-                                  script.string(),
-                                  "--",
-                                  "--output",
-                                  output.string()};
+  std::vector<std::string> command{NameOfProgram(options),
+                                   "-b",
+                                   "-noaudio",
+                                   "--factory-startup",
+                                   "-Y",  // the file's own scripts do not run
+                                   fs::absolute(path).string(),
+                                   "-P",
+                                   script.string(),
+                                   "--",
+                                   "--output",
+                                   output.string()};
+  AddBlenderNames(options, command);
+  return command;
+}
+
+// Choices that the script made where nobody asked.
+void PassNotesOn(const fs::path& log, const std::string& path, const RunContext& context) {
+  constexpr std::string_view kMark = "scumble: note: ";
+  for (const std::string& line : LinesOf(log)) {
+    if (line.starts_with(kMark)) context.Note(path + ": " + line.substr(kMark.size()));
+  }
 }
 
 Expected<Scene> LoadExport(const fs::path& exported, const std::string& path) {
@@ -127,6 +137,12 @@ bool IsBlenderScene(const std::string& path) {
   return ending == ".blend";
 }
 
+// With an equals sign: a name that starts with a dash would look like an option.
+void AddBlenderNames(const BlenderRequest& options, std::vector<std::string>& arguments) {
+  if (!options.scene.empty()) arguments.push_back("--scene=" + options.scene);
+  if (!options.view_layer.empty()) arguments.push_back("--view-layer=" + options.view_layer);
+}
+
 Expected<Scene> LoadBlenderScene(const std::string& path, const BlenderRequest& options, const RunContext& context,
                                  BlenderAnimation* animation) {
   const ScratchFolder scratch(context);
@@ -138,6 +154,7 @@ Expected<Scene> LoadBlenderScene(const std::string& path, const BlenderRequest& 
                (options.frame ? " at frame " + std::to_string(*options.frame) : std::string()));
   SCUMBLE_RETURN_IF_ERROR(
       CheckProgramEnd(RunProgram(arguments, log, context), ExportTask(path, options), log, exported));
+  PassNotesOn(log, path, context);
   if (animation) SCUMBLE_RETURN_IF_ERROR(LoadBlenderAnimation(scratch, path, *animation));
   return LoadExport(exported, path);
 }
@@ -198,7 +215,10 @@ Expected<Scene> BlenderRange::Await(int frame) {
     if (end) SCUMBLE_RETURN_IF_ERROR(CheckProgramEnd(*end, *task_, In(*scratch_, "log"), exported));
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
-  if (!has_animation_) SCUMBLE_RETURN_IF_ERROR(LoadBlenderAnimation(*scratch_, task_->scene, animation_));
+  if (!has_animation_) {
+    PassNotesOn(In(*scratch_, "log"), task_->scene, context_);
+    SCUMBLE_RETURN_IF_ERROR(LoadBlenderAnimation(*scratch_, task_->scene, animation_));
+  }
   has_animation_ = true;
   Expected<Scene> scene = LoadExport(exported, task_->scene);
   fs::remove(exported, failed);

@@ -29,10 +29,14 @@ struct BlenderAnimation {
                                // camera, perhaps no lamp, or it was asked for
 };
 
+// Adds the request's scene and view layer to the arguments of one of our scripts.
+void AddBlenderNames(const BlenderRequest& options, std::vector<std::string>& arguments);
+
 // Runs Blender on blender_scripts/export_scene.py in the background, without the scripts inside the file, and loads the
-// temporary .glb that it makes. Notes it. What the export cannot express is among the scene's warnings. `animation` is
-// filled where it is not null. kUnavailable where Blender or the script is missing or the version is not supported,
-// kInput where the export fails, with Blender's reason. Cancelling ends Blender.
+// temporary .glb that it makes. Notes it, and what the script chose among several scenes and view layers. What the
+// export cannot express is among the scene's warnings. `animation` is filled where it is not null. kUnavailable where
+// Blender or the script is missing or the version is not supported, kInput where the export fails, with Blender's
+// reason. Cancelling ends Blender.
 Expected<Scene> LoadBlenderScene(const std::string& path, const BlenderRequest& options, const RunContext& context,
                                  BlenderAnimation* animation = nullptr);
 

@@ -85,8 +85,17 @@ Status CheckSceneRequest(const SceneRequest& request) {
     if (request.animation.empty()) return Ok();
     return UsageError("--animation is for glTF files; " + request.scene + " has a time of its own: leave it out");
   }
-  if (request.blender.program.empty()) return Ok();
-  return UsageError("--blender is for .blend scenes; " + request.scene + " is read without Blender: leave it out");
+  return CheckWithoutBlender(request.scene, request.blender);
+}
+
+Status CheckWithoutBlender(const std::string& path, const BlenderRequest& blender) {
+  for (const auto& [option, value] :
+       {std::pair("--blender", &blender.program), {"--scene", &blender.scene}, {"--view-layer", &blender.view_layer}}) {
+    if (value->empty()) continue;
+    return UsageError(std::string(option) + " is for .blend scenes; " + path +
+                      " is read without Blender: leave it out");
+  }
+  return Ok();
 }
 
 Expected<SceneGuides> MakeGuidesOf(Scene& scene, const SceneRequest& options, const LayerSet& layers,
@@ -129,6 +138,8 @@ std::string GuideSettings(const SceneRequest& options) {
   add("animation", options.animation);
   add("auto smooth", options.auto_smooth_degrees ? fmt::format("{}", *options.auto_smooth_degrees) : "");
   add("fps", options.fps && *options.fps != FrameRate() ? FrameRateToText(*options.fps) : "");
+  if (!options.blender.scene.empty()) add("scene", options.blender.scene);
+  if (!options.blender.view_layer.empty()) add("view_layer", options.blender.view_layer);
   // All of them always: what a file does not name differs.
   return text + fmt::format("; robust {}; samples {}; bounces {}; noise {}", options.robust ? "yes" : "no",
                             SamplesOf(options), options.max_bounces, options.noise);

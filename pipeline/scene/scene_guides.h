@@ -56,6 +56,9 @@ void PassOnNotes(const Scene& scene, const std::string& file, const RunContext& 
 // Finds mistakes in the request before a large scene is loaded: kUsage or kInput.
 Status CheckSceneRequest(const SceneRequest& request);
 
+// Ok, or a kUsage error where options for Blender are given for a file that is read without it.
+Status CheckWithoutBlender(const std::string& path, const BlenderRequest& blender);
+
 // Loads the scene, a .blend through Blender; passes on its warnings if `warns`. CastScene decodes its textures, as
 // far as they are needed.
 Expected<Scene> OpenScene(const SceneRequest& options, const RunContext& context, BlenderAnimation* animation = nullptr,

@@ -163,6 +163,7 @@ class Trade {
     SCUMBLE_RETURN_IF_ERROR(CheckMemory(need, context_, "take a smaller --size"));
     PrepareOptions options;
     options.threads = context_.threads;
+    options.is_cancelled = context_.is_cancelled;
     SCUMBLE_RETURN_IF_ERROR(scumble::Prepare(style, stage_.height * factor, options));
     return Ok();
   }

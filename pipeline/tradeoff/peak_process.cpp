@@ -31,6 +31,8 @@ std::vector<std::pair<std::string, std::string>> SceneArguments(const TradeSetup
   if (scene.normal_frame == NormalFrame::kEye) given.emplace_back("--normal-frame", "eye");
   add("--isa", scene.isa, usual.isa);
   add("--blender", scene.blender.program, usual.blender.program);
+  add("--scene", scene.blender.scene, usual.blender.scene);
+  add("--view-layer", scene.blender.view_layer, usual.blender.view_layer);
   if (setup.frame) given.emplace_back("--frame", std::to_string(*setup.frame));
   if (scene.fps) given.emplace_back("--fps", FrameRateToText(*scene.fps));
   add("--animation", scene.animation, usual.animation);

@@ -118,6 +118,7 @@ Expected<VariantPainter> VariantPainter::Prepare(const TradeSetup& setup, const 
   prepare.table_resolution = variant.table_resolution;
   prepare.cache = nullptr;  // what a table costs would not be seen where it is kept
   prepare.threads = context.threads;
+  prepare.is_cancelled = context.is_cancelled;
   Stopwatch watch;
   SCUMBLE_ASSIGN(painter.prepared_, scumble::Prepare(style, painter.guides_->guides.height(), prepare));
   painter.prepare_ms_ = watch.Lap();

@@ -15,6 +15,7 @@
 #include "guidegen/rays/camera_rays.h"
 #include "tests/support/cli_harness.h"
 #include "tests/support/cycles_passes.h"
+#include "tests/support/numbers.h"
 #include "tests/support/scoped_variable.h"
 
 namespace scumble {
@@ -26,7 +27,6 @@ using testing::Contains;
 using testing::HasSubstr;
 using testing::UnorderedElementsAre;
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr const char* kBlender = "blender -b -noaudio --factory-startup -Y ";
 
 // The scenes of make_cases.py, made and exported once for all tests.
@@ -35,8 +35,9 @@ class Cases : public testing::Environment {
   void SetUp() override {
     folder_ = new TemporaryFolder;
     Shell(kBlender + ("-P " + Source("tests/blender/make_cases.py")) + " -- --output " + folder_->path().string());
-    for (const char* name : {"lamps", "materials", "objects", "deformed", "cameras", "rendered", "broken"})
+    for (const char* name : {"lamps", "materials", "objects", "deformed", "cameras", "rendered", "broken", "bordered"})
       Export(name, "", name);
+    Export("bordered", " --scene Cropped", "cropped");
     Export("objects", " --frame 6", "objects6");
     Export("deformed", " --frame 6", "deformed6");
     expected_ = nlohmann::json::parse(std::ifstream(*folder_ / "expected.json"), nullptr, false);
@@ -189,6 +190,8 @@ TEST(BlenderMaterials, PureShaders) {
   EXPECT_EQ(diffuse.bsdf, Bsdf::kDiffuse);
   EXPECT_TRUE(diffuse.double_sided) << "culling is the viewport's";
   ExpectColor(diffuse.base_color, {0.2f, 0.4f, 0.8f}, "diffuse");
+  EXPECT_EQ(diffuse.diffuse_roughness, 0.0f);
+  ExpectClose(Named(scene.materials, "Rough").diffuse_roughness, 0.6, "diffuse roughness");
   const Material& glossy = Named(scene.materials, "Glossy");
   EXPECT_EQ(glossy.bsdf, Bsdf::kGlossy);
   ExpectColor(glossy.base_color, {0.9f, 0.7f, 0.3f}, "glossy");
@@ -423,6 +426,36 @@ TEST(BlenderRenders, CyclesSeesTheSameSurfaces) {
   }
 }
 
+// At 250x170 the border runs from 53.25 to 194.25 and from below from 21.6 to 136.5.
+TEST(BlenderRenders, BordersAreThoseOfItsOwnPictures) {
+  Cases::Render("bordered", "Auto:250x170 Shifted:250x170 Ortho:250x170");
+  const Scene bordered = Loaded("bordered"), cropped = Loaded("cropped");
+  for (const std::string camera : {"Auto", "Shifted", "Ortho"}) {
+    const auto cast = [&](const Scene& scene, int width, int height) {
+      GuidegenOptions options;
+      options.width = width, options.height = height;
+      options.layers.Add(Layer::kPosition);
+      const auto ours = RenderGuides(scene, Named(scene.cameras, camera), options);
+      EXPECT_TRUE(ours) << ours.error().message;
+      return ours->guides;
+    };
+    const GuideSet frame = cast(bordered, 250, 170);
+    ExpectLikeCycles(frame, ReadCycles(Cases::File("Bordered-" + camera + "-250x170.exr")), camera);
+    std::set<int> columns, rows;
+    for (std::size_t i = 0; i < frame.pixel_count(); ++i) {
+      if (frame.Plane(Layer::kCoverage)[i] > 0.0f) columns.insert(int(i) % 250), rows.insert(int(i) / 250);
+    }
+    EXPECT_EQ(*columns.begin(), 53) << camera;
+    EXPECT_EQ(*columns.rbegin(), 193) << camera;
+    EXPECT_EQ(*rows.rbegin(), 169 - 21) << camera;
+    const Camera& crop = Named(cropped.cameras, camera);
+    ASSERT_TRUE(crop.border && crop.border->crop);
+    EXPECT_EQ(crop.border_size, "141x115");
+    ExpectLikeCycles(cast(cropped, 141, 115), ReadCycles(Cases::File("Cropped-" + camera + "-250x170.exr")),
+                     camera + " cropped");
+  }
+}
+
 // The program beside its scripts, wherever it was built.
 class BlenderVerbs : public CliTest {
  protected:
@@ -553,6 +586,52 @@ TEST_F(BlenderVerbs, StylesOfTheFileAreHeeded) {
   EXPECT_EQ(Bytes("r2.png"), Bytes("p.png"));
 }
 
+TEST_F(BlenderVerbs, ScenesAndViewLayersAreChosenByName) {
+  const auto objects = [&](const Arguments& more, const std::vector<std::string>& notes) {
+    const CommandResult run = RunHere(With({"info", Blend("layers"), "--json"}, more));
+    EXPECT_EQ(run.code, 0) << run.err;
+    for (const std::string& note : notes) EXPECT_THAT(run.err, HasSubstr(note));
+    EXPECT_EQ(run.err.find("takes another") == std::string::npos, notes.empty()) << run.err;
+    return run.Json();
+  };
+  const auto names = [](std::vector<std::string> list) { return nlohmann::json(list); };
+  EXPECT_EQ(
+      objects({}, {"scene 'Shot', which was open when the file was saved, of 'Bare', 'Other', 'Shot': --scene takes",
+                   "view layer 'Fore', the first of those that are rendered, 'Fore', 'Rear': --view-layer takes"})
+          .at("objects"),
+      names({"Near"}));
+  EXPECT_EQ(objects({"--scene", "Shot", "--view-layer", "Rear"}, {}).at("objects"), names({"Far", "Farther"}));
+  EXPECT_EQ(objects({"--scene", "Other"}, {}).at("objects"), names({"Alone"}));
+  const auto empty = [&](const Arguments& which, const std::string& why) {
+    const auto warnings = objects(which, {}).at("warnings").get<std::vector<std::string>>();
+    EXPECT_THAT(warnings, Contains("nothing is left to draw: " + why));
+  };
+  empty({"--scene", "Shot", "--view-layer", "Spare"},
+        "3 meshes are hidden from render in collection 'Car', 2 meshes are in collection 'Back', which view layer "
+        "'Spare' "
+        "excludes, 1 mesh is hidden from render, 1 mesh is in collection 'Front', which view layer 'Spare' excludes");
+  empty({"--scene", "Bare"}, "scene 'Bare' has no mesh; 'Other', 'Shot' of this file has: choose it with --scene");
+  const Arguments tail = {"--size", "32", "-o", "g.exr"};
+  ExpectErrorHere(With({"guidegen", Blend("layers"), "--scene", "Nope"}, tail), 3,
+                  {"there is no scene 'Nope'; there are: 'Bare', 'Other', 'Shot'"});
+  ExpectErrorHere(With({"guidegen", Blend("layers"), "--view-layer=-nope"}, tail), 3,
+                  {"scene 'Shot' has no view layer '-nope'; there are: 'Spare', 'Fore', 'Rear'"});
+}
+
+// The crop's guides are the picture that Blender renders, and a sequence takes the same names.
+TEST_F(BlenderVerbs, BordersAndNamesReachGuidesAndSequences) {
+  const Arguments guidegen = {"guidegen", Blend("bordered"), "--scene", "Cropped", "--size", "141x115"};
+  const CommandResult run = RunHere(With(guidegen, {"-o", "one.exr"}));
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("to which it is cropped: 141x115 pixels in the file"));
+  ASSERT_EQ(RunHere(With(guidegen, {"--frames", "1-2", "-o", "r#.exr"})).code, 0);
+  EXPECT_EQ(Layers("r1.exr"), Layers("one.exr"));
+  const Arguments other = {"guidegen", Blend("bordered"), "--size", "141x115", "--frames", "1-2", "-o", "r#.exr"};
+  const CommandResult again = RunHere(With(other, {"--resume"}));
+  EXPECT_THAT(again.out, HasSubstr("2 made, 0 kept")) << "another scene is another setting";
+  EXPECT_THAT(again.err, HasSubstr("the rest is background"));
+}
+
 TEST_F(BlenderVerbs, FailuresAreReadable) {
   const Arguments tail = {"--size", "32", "-o", "g.exr"};
   WriteText("bad.blend", "no scene at all");
@@ -572,6 +651,16 @@ TEST_F(BlenderVerbs, FailuresAreReadable) {
 TEST_F(BlenderVerbs, OptionsForBlenderNeedABlendFile) {
   WriteText("s.gltf", TriangleGltf(false));
   ExpectErrorHere({"guidegen", "s.gltf", "--blender", "blender", "-o", "g.exr"}, 2, {"--blender", "s.gltf"});
+  for (const std::string option : {"--scene", "--view-layer"}) {
+    for (const std::string verb : {"guidegen", "stylize", "tradeoff", "info", "crosscheck"}) {
+      Arguments arguments = {verb, "s.gltf", option, "Shot"};
+      if (verb == "stylize" || verb == "tradeoff") arguments = With(arguments, {"--style", "oil"});
+      if (verb == "stylize" || verb == "guidegen") arguments = With(arguments, {"-o", "g.exr"});
+      ExpectErrorHere(arguments, 2, {option + " is for .blend scenes; s.gltf"});
+      arguments[3] = "";
+      ExpectErrorHere(arguments, 2, {option});
+    }
+  }
 }
 
 TEST_F(BlenderVerbs, WithoutTheScriptTheyAreNotBuiltIn) {

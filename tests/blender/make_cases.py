@@ -166,6 +166,7 @@ def materials():
         mixed("Mixed"),
         bpy.data.materials.new("Plain"),
         new_material("Unlinked", "ShaderNodeBsdfDiffuse")[0],
+        new_material("Rough", "ShaderNodeBsdfDiffuse", Roughness=0.6)[0],
     ]
     by_name = {material.name: material for material in every}
     by_name["Sharp"].node_tree.nodes["Glossy BSDF"].distribution = "SHARP"
@@ -395,6 +396,52 @@ def rendered():
     return {thing.name: thing.pass_index for thing in bpy.data.objects if thing.type == "MESH"}
 
 
+def bordered():
+    """The scene of rendered(), twice: with a border in the frame, and cropped to it."""
+    rendered()
+    scene = bpy.context.scene
+    scene.name = "Bordered"
+    render = scene.render
+    render.resolution_x, render.resolution_y, render.resolution_percentage = 500, 340, 50
+    render.use_border = True
+    render.border_min_x, render.border_max_x = 0.213, 0.777
+    render.border_min_y, render.border_max_y = 0.127, 0.803
+    bpy.ops.scene.new(type="LINK_COPY")
+    cropped = bpy.context.scene
+    cropped.name = "Cropped"
+    cropped.render.use_crop_to_border = True
+    bpy.context.window.scene = scene
+    return None
+
+
+def layers():
+    """Two scenes; in the first one three view layers and a collection that is hidden from render."""
+    scene = bpy.context.scene
+    scene.name = "Shot"
+    grey = new_material("Grey", "ShaderNodeBsdfDiffuse")[0]
+    for name, things in (("Front", ["Near"]), ("Back", ["Far", "Farther"]), ("Car", ["Body", "Wheel", "Door"])):
+        collection = bpy.data.collections.new(name)
+        scene.collection.children.link(collection)
+        for number, thing in enumerate(things):
+            cube(thing, (2.0 * number, 0, 0), grey, collection)
+    bpy.data.collections["Car"].hide_render = True
+    cube("Ghost", (0, 3, 0), grey).hide_render = True
+    first = scene.view_layers[0]
+    first.name, first.use = "Spare", False
+    for name, excluded in (("Fore", ["Back"]), ("Rear", ["Front"])):
+        layer = scene.view_layers.new(name)
+        for other in excluded:
+            layer.layer_collection.children[other].exclude = True
+    for other in ("Front", "Back"):
+        first.layer_collection.children[other].exclude = True
+    for name, thing in (("Other", "Alone"), ("Bare", None)):
+        other = bpy.data.scenes.new(name)
+        if thing:
+            cube(thing, (0, 0, 0), grey, other.collection)
+    bpy.context.window.scene = scene
+    return None
+
+
 # ---- Files that lack something --------------------------------------------------------------------------------------
 
 
@@ -444,7 +491,7 @@ def broken(folder):
 
 
 CASES = {"lamps": lamps, "materials": materials, "objects": objects, "deformed": deformed, "cameras": cameras,
-         "rendered": rendered}
+         "rendered": rendered, "bordered": bordered, "layers": layers}
 FILES = {"broken": broken}  # these write their files themselves
 
 

@@ -4,7 +4,7 @@ one scene for each other difficulty of a lighting pass.
     blender -b -noaudio --factory-startup -P tests/blender/make_matrix.py -- --output FOLDER [--only NAME,NAME]
 
 FOLDER gets NAME.blend for each scene, and matrix.json: for each NAME its layers, the picture's size, and the samples
-that its noise needs.
+that its noise needs; 0: light is not compared.
 """
 
 import argparse
@@ -242,6 +242,18 @@ def emissive():
     ball("Lantern", (0.4, 0.2, 1.5), 0.25, material("emission", (0.4, 0.6, 1.0), strength=15))
 
 
+def rough():
+    """Diffuse roughness from a quarter to all of it, in direct light at every angle, in bounced light, and before a rough
+    metal, whose highlights on diffuse surfaces Cycles blurs by the densities of the path."""
+    materials = diffuse_set()
+    for step, name in enumerate(("Side", "Back", "Floor", "Ball", "Ring", "Box")):
+        node = materials[name].node_tree.nodes["Diffuse BSDF"]
+        node.inputs["Roughness"].default_value = (0.25, 0.5, 1.0, 1.0, 0.75, 1.0)[step]
+    materials["Small"] = material("glossy", (0.9, 0.9, 0.9), 0.5)
+    room(materials)
+    lamp("AREA", 400, HIGH, shape="SQUARE", size=1.2)
+
+
 def world_only():
     room(diffuse_set())
     world((0.6, 0.75, 1.0), 1.5)
@@ -316,6 +328,7 @@ def camera_scene(**settings):
 DIFFUSE_LAYERS = ["full", "LDE", "LDDE", "LD12E"]
 SCENES = {  # builder, layers, size, samples
     "emissive": (emissive, DIFFUSE_LAYERS, LANDSCAPE, 256),
+    "rough": (rough, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 128),
     "world": (world_only, DIFFUSE_LAYERS, LANDSCAPE, 128),
     "mixed": (mixed, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 128),
     "stretched": (stretched, DIFFUSE_LAYERS, LANDSCAPE, 64),
@@ -327,9 +340,12 @@ SCENES = {  # builder, layers, size, samples
 for fit in ("AUTO", "HORIZONTAL", "VERTICAL"):
     for way, pixels in (("landscape", LANDSCAPE), ("portrait", PORTRAIT)):
         SCENES[f"fit_{fit.lower()}_{way}"] = (
-            camera_scene(sensor_fit=fit, sensor_height=30.0, shift_x=0.05), ["full", "LDE"], pixels, 64)
+            camera_scene(sensor_fit=fit, sensor_height=30.0, shift_x=0.05), [], pixels, 0)
+TEXTURES_UNDER = ("area_square", "sun")  # a texture is read alike under any lamp
 for lamp_name, add_lamp in LAMPS.items():
     for surface, (make_set, about, samples) in SURFACES.items():
+        if surface == "textured" and lamp_name not in TEXTURES_UNDER:
+            continue
         if surface == "glossy" and lamp_name in ("point", "spot"):
             make_set = glossy_set_for_points
 

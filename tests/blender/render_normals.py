@@ -1,4 +1,5 @@
-"""Has Cycles render the data passes of a scene through each of its cameras: CAMERA-WIDTHxHEIGHT.exr, multilayer.
+"""Has Cycles render the data passes of a scene through each of its cameras: CAMERA-WIDTHxHEIGHT.exr, multilayer. In a
+file of several scenes it does so with each: SCENE-CAMERA-WIDTHxHEIGHT.exr.
 
     blender -b -noaudio --factory-startup scene.blend -P tests/blender/render_normals.py -- --output FOLDER
                                                                                --view CAMERA:WIDTHxHEIGHT …
@@ -35,14 +36,16 @@ def main():
     parser.add_argument("--output", required=True, type=Path)
     parser.add_argument("--view", required=True, nargs="+")
     arguments = parser.parse_args(sys.argv[sys.argv.index("--") + 1:])
-    scene = bpy.context.scene
-    prepare(scene)
-    for view in arguments.view:
-        camera, size = view.split(":")
-        scene.camera = bpy.data.objects[camera]
-        scene.render.resolution_x, scene.render.resolution_y = (int(side) for side in size.split("x"))
-        scene.render.filepath = str(arguments.output / f"{camera}-{size}.exr")
-        bpy.ops.render.render(write_still=True)
+    for scene in bpy.data.scenes:
+        bpy.context.window.scene = scene
+        prepare(scene)
+        prefix = scene.name + "-" if len(bpy.data.scenes) > 1 else ""
+        for view in arguments.view:
+            camera, size = view.split(":")
+            scene.camera = bpy.data.objects[camera]
+            scene.render.resolution_x, scene.render.resolution_y = (int(side) for side in size.split("x"))
+            scene.render.filepath = str(arguments.output / f"{prefix}{camera}-{size}.exr")
+            bpy.ops.render.render(write_still=True)
 
 
 if __name__ == "__main__":

@@ -1,10 +1,12 @@
 // Guides from renders that a user makes by hand in Blender, through the real Blender: the solved camera against the one
 // that Blender had, names and coverage. tests/blender/render_plain.py renders them.
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <set>
 
 #include "core/io/blender/blender_camera.h"
+#include "core/io/channel_file.h"
 #include "tests/support/cli_harness.h"
 
 namespace scumble {
@@ -119,6 +121,58 @@ TEST(BlenderRender, CoverageIsThatOfATransparentFilm) {
     ASSERT_EQ(a > 0.0f, opaque.Plane(Layer::kDepth)[i] < 100.0f) << "an edge has the depth of what it is the edge of";
   }
   EXPECT_GT(partial, 100u);
+}
+
+// Blender's compositor shows our guides under their names, but for ids, which it has as Cryptomatte.
+class BlenderCompositor : public CliTest {};
+
+TEST_F(BlenderCompositor, ShowsOurGuidesAndTheirMattes) {
+  GuideSet guides = Ball(48);
+  guides.attributes["scumble:generator"] = "test";
+  const std::vector<std::string> names = {"The \"ring\"", "Back\\slash β"};
+  const std::vector<std::uint32_t> ids = IdsForNames(names);
+  guides.object_names = {{ids[0], names[0]}, {ids[1], names[1]}};
+  guides.material_names = {{5, "Red \"paint\""}};
+  for (const LayerInfo& info : AllLayers()) guides.Add(info.layer);
+  for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
+    const bool covered = guides.Plane(Layer::kCoverage)[i] > 0.0f;
+    if (covered && i % 3 == 0) guides.Plane(Layer::kCoverage)[i] = 0.25f;
+    guides.Plane(Layer::kObject)[i] = covered ? float(ids[i % 48 < 20 ? 0 : 1]) : 0.0f;
+    guides.Plane(Layer::kMaterial)[i] = covered && i > 600 ? 5.0f : 0.0f;
+  }
+  GuideWriteOptions options;
+  options.cryptomatte = true;
+  ASSERT_TRUE(WriteGuides(At("g.exr"), guides, options));
+  const std::string command = "blender -b -noaudio --factory-startup -P " SCUMBLE_SOURCE_DIR
+                              "/tests/blender/read_guides.py -- --input " +
+                              At("g.exr").string() + " --output " + Work().string() +
+                              " --matte 'CryptoObject:The \"ring\"' 'CryptoObject:Back\\slash β' "
+                              "'CryptoMaterial:Red \"paint\"' 'CryptoObject:Nobody' > " +
+                              At("log").string() + " 2>&1";
+  ASSERT_EQ(std::system(command.c_str()), 0) << Bytes("log");
+  const auto json = nlohmann::json::parse(Bytes("read.json"), nullptr, false);
+  const auto passes = json.at("passes").get<std::vector<std::string>>();
+  for (const char* name : {"normal", "depth", "position", "pref", "motion", "albedo", "luminance", "shadow"}) {
+    EXPECT_EQ(std::count(passes.begin(), passes.end(), name), 1) << name << " " << json;
+  }
+  const auto read = ReadChannels(At("read0001.exr"));
+  ASSERT_TRUE(read) << read.error().message;
+  const auto plane = [&](const std::string& name) {
+    const std::vector<float>* const found = read->Find(name);
+    EXPECT_TRUE(found) << name << ": " << testing::PrintToString(read->names);
+    return found ? *found : std::vector<float>(guides.pixel_count());
+  };
+  const auto expect_matte = [&](const std::string& matte, Layer layer, std::uint32_t id) {
+    const auto found = plane(matte);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const bool is = id != 0 && guides.Plane(layer)[i] == float(id);
+      ASSERT_EQ(found[i], is ? guides.Plane(Layer::kCoverage)[i] : 0.0f) << matte << " at " << i;
+    }
+  };
+  expect_matte("matte0.V", Layer::kObject, ids[0]);
+  expect_matte("matte1.V", Layer::kObject, ids[1]);
+  expect_matte("matte2.V", Layer::kMaterial, 5);
+  expect_matte("matte3.V", Layer::kObject, 0);
 }
 
 class BlenderTransfer : public CliTest {};

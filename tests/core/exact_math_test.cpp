@@ -8,13 +8,12 @@
 #include <limits>
 
 #include "core/image/hash.h"
+#include "tests/support/numbers.h"
 
 namespace scumble {
 namespace {
 
 constexpr double kStated = 4e-16;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 double Between(double low, double high, int i) {
   return low + (high - low) * (static_cast<double>(Hash(7, i) >> 11) / 9007199254740992.0);

@@ -14,12 +14,10 @@
 #include "core/image/guides.h"
 #include "core/image/hash.h"
 #include "core/image/layers.h"
+#include "tests/support/numbers.h"
 
 namespace scumble {
 namespace {
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInf = std::numeric_limits<float>::infinity();
 
 // ---- colour ----------------------------------------------------------------------------------------------------
 
@@ -45,12 +43,12 @@ TEST(Color, KnownValues) {
 
 TEST(Color, EncodingClampsWhatNoIntegerHolds) {
   EXPECT_EQ(Srgb16FromLinear(-1.0f), 0);
-  EXPECT_EQ(Srgb16FromLinear(-kInf), 0);
+  EXPECT_EQ(Srgb16FromLinear(-kInfinity), 0);
   EXPECT_EQ(Srgb16FromLinear(kNan), 0);
   EXPECT_EQ(Srgb16FromLinear(1.0f), 65535);
   EXPECT_EQ(Srgb16FromLinear(std::nextafter(1.0f, 0.0f)), 65535);
   EXPECT_EQ(Srgb16FromLinear(65504.0f), 65535);
-  EXPECT_EQ(Srgb16FromLinear(kInf), 65535);
+  EXPECT_EQ(Srgb16FromLinear(kInfinity), 65535);
   EXPECT_EQ(Srgb16FromLinear(std::numeric_limits<float>::denorm_min()), 0);
 }
 
@@ -278,7 +276,7 @@ TEST(GuideSets, AddFillsWithTheBackground) {
     EXPECT_FALSE(guides.Has(info.layer));
     guides.Add(info.layer);
     for (int c = 0; c < ChannelCount(info.layer); ++c) {
-      for (float value : guides.Plane(info.layer, c)) EXPECT_EQ(value, info.layer == Layer::kDepth ? kInf : 0.0f);
+      for (float value : guides.Plane(info.layer, c)) EXPECT_EQ(value, info.layer == Layer::kDepth ? kInfinity : 0.0f);
     }
   }
   guides.Plane(Layer::kDepth)[3] = 5.0f;
@@ -315,17 +313,17 @@ TEST(GuideSets, EveryDefectIsNamedCountedAndLocated) {
       {"coverage below 0", set(Layer::kCoverage, 0, -0.5f), {"layer A"}},
       {"coverage NaN", set(Layer::kCoverage, 0, kNan), {"layer A"}},
       {"normal NaN", set(Layer::kNormal, 1, kNan), {"layer normal", "NaN"}},
-      {"normal infinite", set(Layer::kNormal, 0, kInf), {"layer normal"}},
+      {"normal infinite", set(Layer::kNormal, 0, kInfinity), {"layer normal"}},
       {"normal zero", set(Layer::kNormal, 2, 0.0f), {"layer normal", "zero"}},
       {"normal packed", set(Layer::kNormal, 2, 0.4f), {"layer normal", "[-1, 1]"}},
       {"depth NaN", set(Layer::kDepth, 0, kNan), {"layer depth", "NaN"}},
       {"depth negative", set(Layer::kDepth, 0, -1.0f), {"layer depth", "negative"}},
       {"id NaN", set(Layer::kObject, 0, kNan), {"layer object", "NaN", "16777216"}},
-      {"id infinite", set(Layer::kMaterial, 0, kInf), {"layer material", "above 2^24"}},
+      {"id infinite", set(Layer::kMaterial, 0, kInfinity), {"layer material", "above 2^24"}},
       {"id negative", set(Layer::kMaterial, 0, -1.0f), {"layer material", "negative"}},
       {"id beyond a float's whole numbers", set(Layer::kObject, 0, 16777218.0f), {"layer object"}},
       {"id beyond 32 bits", set(Layer::kObject, 0, 1e30f), {"layer object"}},
-      {"colour infinite", set(Layer::kAlbedo, 1, kInf), {"layer albedo", "infinite"}},
+      {"colour infinite", set(Layer::kAlbedo, 1, kInfinity), {"layer albedo", "infinite"}},
       {"colour NaN", set(Layer::kLuminance, 0, kNan), {"layer luminance", "NaN"}},
   };
   for (const Defect& defect : defects) {
@@ -348,7 +346,7 @@ TEST(GuideSets, ABadPixelCountsOnceWhateverItsChannels) {
   const Status one = guides.Validate("g");
   ASSERT_FALSE(one);
   EXPECT_NE(one.error().message.find("1 pixel, first at (3, 1)"), std::string::npos) << one.error().message;
-  guides.Plane(Layer::kAlbedo, 2)[2] = kInf;
+  guides.Plane(Layer::kAlbedo, 2)[2] = kInfinity;
   const Status two = guides.Validate("g");
   ASSERT_FALSE(two);
   EXPECT_NE(two.error().message.find("2 pixels, first at (2, 0)"), std::string::npos) << two.error().message;
@@ -358,8 +356,8 @@ TEST(GuideSets, TheBackgroundMayHoldAnything) {
   GuideSet guides = ValidGuides();
   guides.Plane(Layer::kCoverage)[6] = 0.0f;
   guides.Plane(Layer::kNormal, 0)[6] = kNan;
-  guides.Plane(Layer::kDepth)[6] = -kInf;
-  guides.Plane(Layer::kObject)[6] = kInf;
+  guides.Plane(Layer::kDepth)[6] = -kInfinity;
+  guides.Plane(Layer::kObject)[6] = kInfinity;
   guides.Plane(Layer::kMaterial)[6] = kNan;
   guides.Plane(Layer::kAlbedo)[6] = kNan;
   EXPECT_TRUE(guides.Validate("g"));
@@ -370,7 +368,8 @@ TEST(GuideSets, TheBackgroundMayHoldAnything) {
 TEST(GuideSets, IdsAreThoseThatFloatsHold) {
   for (const float whole : {1.0f, 7168.0f, 16777215.0f, 16777216.0f}) EXPECT_EQ(IdOf(whole), std::uint32_t(whole));
   EXPECT_EQ(IdOf(3.75f), 3u);
-  for (const float none : {0.0f, -0.0f, -1.0f, 16777218.0f, 0x1p32f, 0x1p33f + 7168.0f, 1e30f, kInf, -kInf, kNan}) {
+  for (const float none :
+       {0.0f, -0.0f, -1.0f, 16777218.0f, 0x1p32f, 0x1p33f + 7168.0f, 1e30f, kInfinity, -kInfinity, kNan}) {
     EXPECT_EQ(IdOf(none), 0u) << none;
   }
 }

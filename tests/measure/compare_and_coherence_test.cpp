@@ -14,13 +14,11 @@
 #include "measure/compare/compare.h"
 #include "measure/compare/heat_map.h"
 #include "measure/mosaic/coherence.h"
+#include "tests/support/numbers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace scumble {
 namespace {
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInf = std::numeric_limits<float>::infinity();
 
 ChannelImage Row(const std::string& name, const std::vector<std::string>& names,
                  const std::vector<std::vector<float>>& planes) {
@@ -74,7 +72,7 @@ TEST(Compare, PeakIsAtLeastOneAndCountsNegativeValues) {
 }
 
 TEST(Compare, IdenticalIsEqual) {
-  const CompareReport report = CompareRows({1, kInf, -kInf, 0.0f}, {1, kInf, -kInf, -0.0f});
+  const CompareReport report = CompareRows({1, kInfinity, -kInfinity, 0.0f}, {1, kInfinity, -kInfinity, -0.0f});
   EXPECT_EQ(report.verdict, Verdict::kEqual);
   EXPECT_EQ(report.stats.different, 0u);
   EXPECT_FALSE(report.stats.worst);
@@ -97,7 +95,7 @@ TEST(Compare, WorstPixelIsNamedInTheWholePicture) {
 }
 
 TEST(Compare, NanIsADifferenceEvenWhereBothHaveIt) {
-  for (const float other : {kNan, 1.0f, kInf}) {
+  for (const float other : {kNan, 1.0f, kInfinity}) {
     const CompareReport report = CompareRows({kNan, 1.0f}, {other, 1.0f}, Lenient());
     EXPECT_EQ(report.verdict, Verdict::kFail);
     EXPECT_EQ(report.stats.incomparable, 1u);
@@ -109,9 +107,9 @@ TEST(Compare, NanIsADifferenceEvenWhereBothHaveIt) {
 }
 
 TEST(Compare, InfinityEqualsOnlyItself) {
-  EXPECT_EQ(CompareRows({kInf}, {kInf}, Lenient()).verdict, Verdict::kEqual);
-  EXPECT_EQ(CompareRows({kInf}, {-kInf}, Lenient()).verdict, Verdict::kFail);
-  EXPECT_EQ(CompareRows({kInf}, {3.0e38f}, Lenient()).verdict, Verdict::kFail);
+  EXPECT_EQ(CompareRows({kInfinity}, {kInfinity}, Lenient()).verdict, Verdict::kEqual);
+  EXPECT_EQ(CompareRows({kInfinity}, {-kInfinity}, Lenient()).verdict, Verdict::kFail);
+  EXPECT_EQ(CompareRows({kInfinity}, {3.0e38f}, Lenient()).verdict, Verdict::kFail);
 }
 
 TEST(Compare, AbsoluteThresholdIsStrict) {

@@ -12,7 +12,7 @@ namespace scumble {
 namespace {
 
 // Each pixel a grey of its own, coming back every `tile_x` × `tile_y` pixels; 0: never.
-Picture Noise(int size, int tile_x, int tile_y) {
+Picture TiledNoise(int size, int tile_x, int tile_y) {
   Picture picture(size, size);
   for (int y = 0; y < size; ++y) {
     for (int x = 0; x < size; ++x) {
@@ -25,18 +25,18 @@ Picture Noise(int size, int tile_x, int tile_y) {
 }
 
 TEST(Autocorrelation, ATiledPicturePeaksAtItsTile) {
-  const AutocorrelationPeak peak = HighestAutocorrelation(Noise(96, 20, 300), {0, 0, 96, 96});
+  const AutocorrelationPeak peak = HighestAutocorrelation(TiledNoise(96, 20, 300), {0, 0, 96, 96});
   EXPECT_NEAR(peak.value, 1.0, 1e-6);
   EXPECT_EQ(std::abs(peak.dx) % 20, 0);
   EXPECT_EQ(peak.dy, 0);
-  const AutocorrelationPeak tall = HighestAutocorrelation(Noise(96, 300, 31), {3, 1, 90, 90});
+  const AutocorrelationPeak tall = HighestAutocorrelation(TiledNoise(96, 300, 31), {3, 1, 90, 90});
   EXPECT_NEAR(tall.value, 1.0, 1e-6);
   EXPECT_EQ(tall.dx, 0);
   EXPECT_EQ(tall.dy, 31);
 }
 
 TEST(Autocorrelation, ARandomPictureHasNoPeakAndAFlatOneNone) {
-  EXPECT_LT(HighestAutocorrelation(Noise(96, 0, 0), {0, 0, 96, 96}).value, 0.12);
+  EXPECT_LT(HighestAutocorrelation(TiledNoise(96, 0, 0), {0, 0, 96, 96}).value, 0.12);
   Picture flat(64, 64);
   EXPECT_EQ(HighestAutocorrelation(flat, {0, 0, 64, 64}).value, 0.0);
   EXPECT_EQ(HighestAutocorrelation(flat, {0, 0, 4, 4}).value, 0.0) << "no shift is left";
@@ -63,10 +63,10 @@ TEST(Autocorrelation, SubtractingABlurLeavesRepeatedStrokesAndDropsPatchesOfTone
   EXPECT_GT(HighestAutocorrelation(patches, all).value, 0.6) << "patches alone look like repetition";
   EXPECT_LT(HighestAutocorrelation(patches, all, high).value, 0.25);
   // Repeated white noise keeps its peak: both copies lose the same blur, but at the rim.
-  const AutocorrelationPeak tiled = HighestAutocorrelation(Noise(128, 20, 300), all, high);
+  const AutocorrelationPeak tiled = HighestAutocorrelation(TiledNoise(128, 20, 300), all, high);
   EXPECT_GT(tiled.value, 0.99);
   EXPECT_EQ(std::abs(tiled.dx) % 20, 0);
-  EXPECT_LT(HighestAutocorrelation(Noise(128, 0, 0), all, high).value, 0.1);
+  EXPECT_LT(HighestAutocorrelation(TiledNoise(128, 0, 0), all, high).value, 0.1);
   Picture flat(64, 64);
   EXPECT_EQ(HighestAutocorrelation(flat, {0, 0, 64, 64}, high).value, 0.0);
 }
@@ -85,8 +85,8 @@ TEST(ToneSpread, IsTheDeviationOfTheBlurredLightness) {
   EXPECT_NEAR(ToneSpread(halves, {0, 0, 200, 100}, 8.0), std::sqrt(0.25 - 8.0 / std::sqrt(3.14159265) / 200.0), 2e-3);
   // White noise keeps 1 / (2 σ √π) of its deviation.
   const PictureRegion all{0, 0, 256, 256};
-  const double noise = ToneSpread(Noise(256, 0, 0), all, 0.0);
-  EXPECT_NEAR(ToneSpread(Noise(256, 0, 0), all, 3.0) / noise, 1.0 / (2.0 * 3.0 * std::sqrt(3.14159265)), 0.012);
+  const double noise = ToneSpread(TiledNoise(256, 0, 0), all, 0.0);
+  EXPECT_NEAR(ToneSpread(TiledNoise(256, 0, 0), all, 3.0) / noise, 1.0 / (2.0 * 3.0 * std::sqrt(3.14159265)), 0.012);
   EXPECT_EQ(ToneSpread(Picture(50, 50), {5, 5, 40, 40}, 4.0), 0.0);
 }
 
@@ -119,7 +119,7 @@ TEST(SourceRepetition, CountsHowOftenASourceShows) {
 TEST(Seams, AreTheExcessAlongBorders) {
   const Wall wall(16, true);
   // White noise: neighbours differ as much inside as across.
-  const SeamStrength noise = MeasureSeams(Noise(64, 0, 0), wall.Planes());
+  const SeamStrength noise = MeasureSeams(TiledNoise(64, 0, 0), wall.Planes());
   EXPECT_EQ(noise.border_pairs, 2u * 3 * 64);
   EXPECT_NEAR(noise.excess, 0.0, 0.1);
   // A ramp inside each tile that jumps back at its end: 15 steps across against 1 inside, along rows only.

@@ -112,6 +112,10 @@ class CliTest : public testing::Test {
     return result;
   }
 
+  static bool Contains(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+  }
+
   // Runs, expects success, and returns the result.
   CommandResult RunOk(const Arguments& arguments) {
     CommandResult result = Run(arguments);

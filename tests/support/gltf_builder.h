@@ -142,7 +142,7 @@ class RefusedScenes : public LoaderTest {
     EXPECT_FALSE(scene.ok());
     if (scene) return "";
     EXPECT_EQ(scene.error().kind, ErrorKind::kInput);
-    EXPECT_THAT(scene.error().message, testing::HasSubstr(path.filename().string()));
+    EXPECT_THAT(scene.error().message, ::testing::HasSubstr(path.filename().string()));
     EXPECT_LT(scene.error().message.size(), 1000u);
     return scene.error().message;
   }

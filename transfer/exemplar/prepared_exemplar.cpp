@@ -152,6 +152,17 @@ Expected<PreparedExemplar> PreparedExemplar::OfScene(std::span<const Picture* co
   return exemplar;
 }
 
+PreparedExemplar PreparedExemplar::WithPictures(std::vector<Picture> pictures) const {
+  SCUMBLE_CHECK_EQ(pictures.size(), pictures_.size());
+  for (const Picture& picture : pictures) {
+    SCUMBLE_CHECK_EQ(picture.width, width());
+    SCUMBLE_CHECK_EQ(picture.height, height());
+  }
+  PreparedExemplar other(*this);
+  other.pictures_ = std::move(pictures);
+  return other;
+}
+
 const SourceVariation& PreparedExemplar::source_variation() const {
   std::call_once(source_variation_->made, [this] { source_variation_->value.emplace(*this); });
   return *source_variation_->value;

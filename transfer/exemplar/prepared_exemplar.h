@@ -56,6 +56,9 @@ class PreparedExemplar {
   static Expected<PreparedExemplar> OfScene(std::span<const Picture* const> pictures, const GuideSet& guides,
                                             double rim, int width, int height, const std::string& name);
 
+  // This exemplar with other pictures of its size and count.
+  PreparedExemplar WithPictures(std::vector<Picture> pictures) const;
+
   // The search of NearestNeighbour from now on; call it before the exemplar is shared. kAuto is the formula for a
   // sphere and a table for a scene. kAnalytic is a kUsage error for a scene. Tables have `resolution`² cells and are
   // searched for in `cache` first, which may be null. Sources of a tree may be (1 + error) times as far as the nearest.

@@ -12,8 +12,8 @@
 namespace scumble::internal {
 namespace {
 
-constexpr int kStep =
-    24;  // 24; // rows of a step, which are started, matched and voted on together; their data stay in the second cache
+// Rows of a step, which are started, matched and voted on together; their data stay in the second cache.
+constexpr int kStep = 24;
 constexpr int kLeastRange = 16;  // rows of a range that another thread may take over
 
 // The remaining rows, distributed over workers. Each worker goes down its own range of rows; a worker that is done

@@ -39,17 +39,17 @@ DarkPlace DarkestPlace(const PreparedExemplar& exemplar) {
   for (int e = 0; e < exemplar.count(); ++e) {
     for (int y = reach; y < exemplar.height() - reach; y += step) {
       for (int x = reach; x < exemplar.width() - reach; x += step) {
-        double sum = 0.0, weight = 0.0;
+        double sum = 0.0, alpha = 0.0, count = 0.0;
         bool inside = true;
         for (int v = y - reach; v <= y + reach && inside; v += step) {
           for (int u = x - reach; u <= x + reach && inside; u += step) {
             inside = exemplar.Usable(u, v);
             const std::uint16_t* texel = exemplar.picture(e).At(u, v);
-            sum += static_cast<double>(texel[3]) * LuminanceOf(texel);
-            weight += texel[3];
+            sum += static_cast<double>(texel[3]) * LuminanceOf(texel) + (65535 - texel[3]);
+            alpha += texel[3], count += 65535.0;
           }
         }
-        if (inside && weight > 0.0 && sum / weight < least) least = sum / weight, darkest = {{x, y}, e, reach};
+        if (inside && alpha > 0.0 && sum / count < least) least = sum / count, darkest = {{x, y}, e, reach};
       }
     }
   }
@@ -60,7 +60,8 @@ DarkPlace DarkestPlace(const PreparedExemplar& exemplar) {
   for (int e = 0; e < exemplar.count(); ++e) {
     for (const Source& source : usable) {
       const std::uint16_t* texel = exemplar.picture(e).At(source.x, source.y);
-      if (texel[3] > 0 && LuminanceOf(texel) < least) least = LuminanceOf(texel), pixel = {source, e, 0};
+      const double alpha = texel[3] / 65535.0, light = alpha * LuminanceOf(texel) + (1.0 - alpha);
+      if (alpha > 0.0 && light < least) least = light, pixel = {source, e, 0};
     }
   }
   return pixel;
@@ -74,14 +75,42 @@ ShadowPaint::ShadowPaint(std::shared_ptr<const PreparedExemplar> exemplar, std::
     if (!exemplar_->is_sphere()) break;
     papers.push_back(FindBarePaper(*picture));
   }
+  const auto cut_out = [](const BarePaper& paper) { return paper.kind == BarePaper::Kind::kTransparent; };
   const auto covered = [](const BarePaper& paper) { return paper.kind == BarePaper::Kind::kCovered; };
   if (papers.empty() || std::any_of(papers.begin(), papers.end(), covered)) {
     RankDarkPaint();
     return;
   }
+  // What lies under a cut-out is unknown, and white paper inside it is as opaque as paint.
+  const bool any_cut_out = std::any_of(papers.begin(), papers.end(), cut_out);
+  for (BarePaper& paper : papers) {
+    if (cut_out(paper)) paper = {BarePaper::Kind::kPaper, glm::vec3(1.0f)};
+  }
+  Lift(papers);
+  if (any_cut_out && !ShowsBareGround())
+    RankDarkPaint();
+  else
+    FindTones(papers);
+}
+
+void ShadowPaint::Lift(std::span<const BarePaper> papers) {
   for (int e = 0; e < exemplar_->count(); ++e)
     pictures_.push_back(LiftPaint(papers[std::size_t(e)], exemplar_->picture(e)));
-  FindTones(papers);
+}
+
+// Whether enough of the lifted paint is transparent to make a scale of tones.
+bool ShadowPaint::ShowsBareGround() const {
+  constexpr std::uint16_t kBare = 3277;  // 5%
+  constexpr double kLeastBare = 0.05;
+  double bare = 0.0, count = 0.0;
+  for (const Picture& picture : pictures_) {
+    for (int y = 0; y < picture.height; ++y) {
+      for (int x = 0; x < picture.width; ++x) {
+        if (exemplar_->Usable(x, y)) count += 1.0, bare += picture.At(x, y)[3] < kBare;
+      }
+    }
+  }
+  return bare >= kLeastBare * count;
 }
 
 // The mean luminance of white light reflected by the paint over its paper, in a square. Negative: part of it is not
@@ -102,9 +131,8 @@ float ShadowPaint::ToneAt(int e, int x, int y, int reach, float paper) const {
 
 void ShadowPaint::FindTones(std::span<const BarePaper> papers) {
   const auto paper_of = [&](int e) {
-    const BarePaper& paper = papers[std::size_t(e)];
-    const glm::vec3 c = paper.color;
-    return paper.kind == BarePaper::Kind::kPaper ? Luminance(c.x, c.y, c.z) : 1.0f;
+    const glm::vec3 c = papers[std::size_t(e)].color;
+    return Luminance(c.x, c.y, c.z);
   };
   const float darkest = ToneAt(dark_.exemplar, dark_.center.x, dark_.center.y, dark_.reach, paper_of(dark_.exemplar));
   const int reach = std::max(1, 1 << level_), step = std::max(1, reach / 2);

@@ -19,18 +19,20 @@ struct DarkPlace {
   int reach = 0;  // pixels around the centre that count as dark
 };
 
-// The square of usable paint, an eighth of the exemplar's shorter side wide, with the lowest mean luminance, in any
-// lighting condition; ties to the first in (exemplar, y, x). If an exemplar is too fragmented for that, its darkest
-// pixel.
+// The square of usable paint, an eighth of the exemplar's shorter side wide, with the lowest mean luminance over white,
+// in any lighting condition; ties to the first in (exemplar, y, x). If an exemplar is too fragmented for that, its
+// darkest pixel.
 DarkPlace DarkestPlace(const PreparedExemplar& exemplar);
 
 // Paint for shadows of every strength, 0 none … 1 full. Full shadow is the darkest place's paint.
 //
 // Where the exemplars are spheres painted on bare paper (bare_paper.h), an intermediate strength uses the artist's own
 // paint of that tone, lifted off its paper. It comes from places of the sphere whose mean luminance over the paper is
-// that share of the way from bare paper to the darkest place, in linear light. Where paint covers everything, there is
-// no such scale. Then the darkest place's paint gets the strength as its mean opacity, with less where the texels
-// around are darker, so that its strokes show. Immutable.
+// that share of the way from bare paper to the darkest place, in linear light. A sphere that is cut out of its picture
+// counts as painted on white, if white or nothing shows between its strokes.
+//
+// Where paint covers everything, there is no such scale. Then the darkest place's paint gets the strength as its mean
+// opacity, with less where the texels around are darker, so that its strokes show. Immutable.
 class ShadowPaint {
  public:
   // `originals` are the pictures that the exemplar was prepared from, in its order.
@@ -56,6 +58,8 @@ class ShadowPaint {
     Source center;
     int exemplar;
   };
+  void Lift(std::span<const BarePaper> papers);
+  bool ShowsBareGround() const;
   float ToneAt(int exemplar, int x, int y, int reach, float paper) const;
   void FindTones(std::span<const BarePaper> papers);
   void FindPlaces();

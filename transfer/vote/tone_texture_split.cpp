@@ -8,14 +8,21 @@
 
 namespace scumble {
 
-std::vector<Picture> MakeBaseLayers(const PreparedExemplar& exemplar, double sigma) {
+PreparedExemplar MakeBaseLayers(const PreparedExemplar& exemplar, double sigma) {
   std::vector<std::uint8_t> usable(std::size_t(exemplar.width()) * exemplar.height());
   for (const Source& at : exemplar.UsablePixels()) usable[std::size_t(at.y) * exemplar.width() + at.x] = 1;
   std::vector<Picture> base_layers;
   for (int k = 0; k < exemplar.count(); ++k) {
-    base_layers.push_back(internal::MaskedBlur(exemplar.picture(k), usable, sigma));
+    Picture base = internal::MaskedBlur(exemplar.picture(k), usable, sigma);
+    for (std::size_t i = 0; i < base.rgba.size(); i += 4) {
+      const std::uint32_t alpha = base.rgba[i + 3];
+      for (std::size_t c = i; c < i + 3 && alpha > 0; ++c) {
+        base.rgba[c] = static_cast<std::uint16_t>(std::min(65535u, (base.rgba[c] * 65535u + alpha / 2) / alpha));
+      }
+    }
+    base_layers.push_back(std::move(base));
   }
-  return base_layers;
+  return exemplar.WithPictures(std::move(base_layers));
 }
 
 }  // namespace scumble
@@ -25,11 +32,9 @@ namespace {
 
 using Color = std::array<std::int64_t, 4>;  // premultiplied, of 65535
 
-std::int64_t FloorDivide(std::int64_t a, std::int64_t b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
-
-Color TexelAt(const Picture& tone, Source at) {
-  const std::uint16_t* texel = tone.At(at.x, at.y);
-  return {texel[0], texel[1], texel[2], texel[3]};
+Color TexelAt(const Picture& picture, Source at) {
+  const std::uint16_t* texel = picture.At(at.x, at.y);
+  return {Premultiplied(texel, 0), Premultiplied(texel, 1), Premultiplied(texel, 2), texel[3]};
 }
 
 // The base layer for a normal, interpolated. Otherwise neighbours across a texel's border would differ by a whole step,
@@ -60,7 +65,7 @@ Color ToneFor(const PreparedExemplar& exemplar, const Picture& tone, glm::vec3 n
 // The base layer at a pixel's own nearest neighbour in exemplar k.
 Color ToneAt(const HybridInput& input, std::size_t pixel, int k) {
   const glm::vec3 normal = input.guides.Vec3(Layer::kNormal, pixel);
-  const Picture& tone = input.base_layers[std::size_t(k)];
+  const Picture& tone = input.base.picture(k);
   if (!input.space) return ToneFor(input.votes.exemplar, tone, normal);
   float extra_values[GuideSpace::kMaxExtra];
   input.space->Read(input.guides, pixel, input.brightness, extra_values);
@@ -79,29 +84,25 @@ void Store(const Color& color, std::uint16_t* out) {
 }  // namespace
 
 bool VoteHybrid(const HybridInput& input, Picture& out, RowProgress& progress) {
-  const VoteInput& votes = input.votes;
-  const PreparedExemplar& exemplar = votes.exemplar;
-  std::optional<SupportRegions> regions;
-  if (votes.edges) regions.emplace(*votes.edges, votes.active, votes.radius, votes.region);
-  return ForEachRow(votes.region, progress, [&](int y) {
-    for (int x = votes.region.x0; x < votes.region.x1; ++x) {
-      const std::size_t p = votes.field.Index(x, y);
-      if (!votes.active[p]) continue;
-      Color texture{};
-      std::int64_t count = 0;
-      ForEachVote(votes, regions ? &*regions : nullptr, x, y, [&](int from, Source at) {
-        const std::uint16_t* paint = exemplar.picture(from).At(at.x, at.y);
-        const std::uint16_t* tone = input.base_layers[std::size_t(from)].At(at.x, at.y);
-        for (int c = 0; c < 4; ++c) texture[c] += std::int64_t(Premultiplied(paint, c)) - tone[c];
-        ++count;
-      });
+  const VoteInput& paint = input.votes;
+  const Region& region = paint.region;
+  Picture base_votes(out.width, out.height);
+  const VoteInput base{paint.field, paint.active, input.base, paint.radius, paint.edges, region};
+  if (!Vote(base, base_votes, progress)) return false;
+  VoteInput both = paint;
+  both.finished = [&](int y, int x0, int x1) {
+    for (int x = x0; x < x1; ++x) {
+      const std::size_t p = paint.field.Index(x, y);
+      if (!paint.active[p]) continue;
       const int own = input.illumination.Choose(input.luminance.empty() ? 0.0f : input.luminance[p]);
       Color color = ToneAt(input, p, own);
-      for (int c = 0; c < 4; ++c) color[c] += FloorDivide(texture[c] + count / 2, count);
+      const Color paint_vote = TexelAt(out, {x, y}), base_vote = TexelAt(base_votes, {x, y});
+      for (int c = 0; c < 4; ++c) color[c] += paint_vote[c] - base_vote[c];
       Store(color, out.At(x, y));
     }
-    if (votes.finished) votes.finished(y, votes.region.x0, votes.region.x1);
-  });
+    if (paint.finished) paint.finished(y, x0, x1);
+  };
+  return Vote(both, out, progress);
 }
 
 }  // namespace scumble::internal

@@ -16,9 +16,8 @@
 
 namespace scumble {
 
-// The base layer of each picture of an exemplar: MaskedBlur over its usable pixels, premultiplied. The detail layer is
-// the picture minus its base layer.
-std::vector<Picture> MakeBaseLayers(const PreparedExemplar& exemplar, double sigma);
+// The exemplar with a base layer in place of each picture: MaskedBlur over its usable pixels, straight alpha.
+PreparedExemplar MakeBaseLayers(const PreparedExemplar& exemplar, double sigma);
 
 }  // namespace scumble
 
@@ -28,18 +27,19 @@ struct HybridInput {
   VoteInput votes;
   const GuideSet& guides;
   const Illumination& illumination;
-  std::span<const float> luminance;      // exposed; empty where the illumination is not active
-  std::span<const Picture> base_layers;  // base layers, by exemplar
-  const GuideSpace* space = nullptr;     // the space of the search; null: normals alone
-  float brightness = 1.0f;               // of the scene's radiance in that space
+  std::span<const float> luminance;   // exposed; empty where the illumination is not active
+  const PreparedExemplar& base;       // of the votes' exemplar, by MakeBaseLayers
+  const GuideSpace* space = nullptr;  // the space of the search; null: normals alone
+  float brightness = 1.0f;            // of the scene's radiance in that space
 };
 
 // Every active pixel of the region becomes the base layer at its own nearest neighbour, in the exemplar that suits its
-// own light, plus the mean of the detail layers that the chunks around it vote for: with Vote's votes. On a sphere the
-// base layer is read between texels (bilinearly, in 1/256 of a texel). On scenes, and with weights on other guides than
-// normals, it is read at the nearest neighbour itself. Sums are integers with premultiplied colours; nothing is clamped
-// before the end. If the base layer is constant and the paint opaque, this equals Vote to the bit. Writes straight
-// alpha into `out`; other pixels stay. False: cancelled.
+// own light, plus the detail that the chunks around it vote for: Vote on the paint, minus Vote on the base layers, with
+// the votes of one window. On a sphere the own base layer is read between texels (bilinearly, in 1/256 of a texel). On
+// scenes, and with weights on other guides than normals, it is read at the nearest neighbour itself. Sums and
+// differences are of integers with premultiplied colours; nothing is clamped before the end. If the base layer is
+// constant and the paint opaque, this equals Vote to the bit. Takes a second picture of `out`'s size while it runs.
+// Writes straight alpha into `out`; other pixels stay. Reports each row of the region twice. False: cancelled.
 bool VoteHybrid(const HybridInput& input, Picture& out, RowProgress& progress);
 
 }  // namespace scumble::internal

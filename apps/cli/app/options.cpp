@@ -128,9 +128,24 @@ void AddCastOptions(CLI::App& verb, SceneOptions& options) {
                   "Embree's instruction set: sse2, sse4.2, avx, avx2 or avx512; left out: the best of this machine. "
                   "Name one where several machines must give the same bytes")
       ->type_name("NAME");
-  verb.add_option("--blender", options.request.blender.program,
-                  "the Blender that exports a .blend scene; left out: blender in PATH")
+  AddBlenderOptions(verb, options.request.blender);
+}
+
+void AddBlenderOptions(CLI::App& verb, BlenderRequest& request) {
+  verb.add_option("--blender", request.program, "the Blender that exports a .blend scene; left out: blender in PATH")
       ->type_name("PATH")
+      ->check(RefuseEmpty);
+  AddSceneNameOptions(verb, request.scene, request.view_layer);
+}
+
+void AddSceneNameOptions(CLI::App& verb, std::string& scene, std::string& view_layer) {
+  verb.add_option("--scene", scene,
+                  "which scene of a .blend, by name; left out: the one that was open when it was saved")
+      ->type_name("NAME")
+      ->check(RefuseEmpty);
+  verb.add_option("--view-layer", view_layer,
+                  "which view layer of a .blend's scene, by name; left out: the first one that is rendered")
+      ->type_name("NAME")
       ->check(RefuseEmpty);
 }
 

@@ -62,6 +62,10 @@ void AddSampleOptions(CLI::App& verb, SceneOptions& options);
 void AddLightPathOptions(CLI::App& verb, SceneOptions& options);
 // A scene, the picture's size and its view.
 void AddViewOptions(CLI::App& verb, SceneOptions& options);
+// --scene and --view-layer, of commands that read .blend files.
+void AddSceneNameOptions(CLI::App& verb, std::string& scene, std::string& view_layer);
+// Those and --blender.
+void AddBlenderOptions(CLI::App& verb, BlenderRequest& request);
 // The animation to play.
 void AddAnimationOption(CLI::App& verb, SceneOptions& options);
 // Options of ray casting.

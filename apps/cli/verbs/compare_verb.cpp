@@ -9,7 +9,7 @@
 #include <string>
 
 #include "apps/cli/app/options.h"
-#include "core/io/channel_file.h"
+#include "apps/cli/verbs/compare_files.h"
 #include "core/io/picture_file.h"
 #include "measure/compare/compare.h"
 #include "measure/compare/heat_map.h"
@@ -22,6 +22,7 @@ Status CheckHeatMap(const CompareVerb& verb) {
   if (verb.heat_map.empty()) return Ok();
   RunInputs files;
   files.Reads("the first file", verb.a), files.Reads("the second file", verb.b);
+  if (!verb.camera.empty()) files.Reads("the camera", verb.camera);
   if (!verb.motion.empty()) files.Reads("the guides", verb.motion);
   if (!verb.motion_next.empty()) files.Reads("the next frame's guides", verb.motion_next);
   SCUMBLE_RETURN_IF_ERROR(CheckPictureTarget(verb.heat_map));
@@ -32,11 +33,10 @@ Expected<ExitCode> RunCompareVerb(const CompareVerb& verb, const Globals& global
   SCUMBLE_RETURN_IF_ERROR(CheckHeatMap(verb));
   if (verb.flip) return CompareByFlip(verb, globals);
   if (!verb.motion.empty()) return CompareByFlicker(verb, globals);
-  SCUMBLE_ASSIGN(const ChannelImage a, ReadChannels(verb.a));
-  SCUMBLE_ASSIGN(const ChannelImage b, ReadChannels(verb.b));
-  SCUMBLE_ASSIGN(const CompareReport report, Compare(a, b, verb.options));
+  SCUMBLE_ASSIGN(const ComparedFiles files, ReadToCompare(verb, globals));
+  SCUMBLE_ASSIGN(const CompareReport report, Compare(files.a, files.b, verb.options));
   if (!verb.heat_map.empty()) {
-    SCUMBLE_ASSIGN(const HeatMap map, DifferenceHeatMap(a, b, {0.0, verb.options.layers}));
+    SCUMBLE_ASSIGN(const HeatMap map, DifferenceHeatMap(files.a, files.b, {0.0, verb.options.layers}));
     SCUMBLE_RETURN_IF_ERROR(WritePicture(verb.heat_map, map.picture));
     globals.Note(map.full_scale > 0.0
                      ? fmt::format("{}: yellow is a difference of {:.3g}", verb.heat_map, map.full_scale)
@@ -84,6 +84,12 @@ void AddCompareVerb(CLI::App& app, Globals& globals, Action& chosen) {
   sub->add_option("--layer", verb->options.layers, "compare this layer alone, as normal; repeatable")
       ->type_name("NAME")
       ->allow_extra_args(false);
+  sub->add_option("--view-layer", verb->view_layer,
+                  "view layer of multilayer files; guides are then compared by what they mean, not by channel name")
+      ->type_name("NAME");
+  sub->add_option("--camera", verb->camera,
+                  "the .camera file of a Blender render; left out: found from its Position pass")
+      ->type_name("FILE");
   sub->add_option("-o,--heat-map", verb->heat_map,
                   "picture of the differences to write: dark where equal, yellow where most")
       ->type_name("FILE");

@@ -13,6 +13,8 @@ namespace scumble {
 struct CompareVerb {
   std::string a;
   std::string b;
+  std::string view_layer;  // of files that have several; empty: channels are compared by name where they can be
+  std::string camera;      // of a Blender render that is read as guides; empty: found from its Position pass
   CompareOptions options;
   std::string heat_map;
   std::string motion;

@@ -59,6 +59,9 @@ Status CheckScenes(const CrosscheckVerb& verb) {
     if (verb.request.frame && !IsBlenderScene(scene)) {
       return UsageError("--frame is for .blend scenes; " + scene + " has no frames: leave it out");
     }
+    BlenderRequest blender;
+    blender.scene = verb.request.blender_scene, blender.view_layer = verb.request.view_layer;
+    if (!IsBlenderScene(scene)) SCUMBLE_RETURN_IF_ERROR(CheckWithoutBlender(scene, blender));
     if (!names.insert(NameInBaseline(scene)).second && !(verb.baseline.empty() && verb.write_baseline.empty())) {
       return UsageError(NameInBaseline(scene) +
                         " is the file name of two scenes, and a baseline knows scenes by it: check them in "
@@ -98,9 +101,10 @@ Expected<Baseline> ReadBaseline(const std::string& path) {
 }
 
 CrosscheckSetup SetupOf(const CrosscheckVerb& verb) {
-  return {verb.request.size.width, verb.request.size.height,
-          verb.request.samples,    verb.request.samples > 0 ? verb.request.max_bounces : 0,
-          verb.request.camera,     verb.request.frame};
+  return {verb.request.size.width,    verb.request.size.height,
+          verb.request.samples,       verb.request.samples > 0 ? verb.request.max_bounces : 0,
+          verb.request.camera,        verb.request.frame,
+          verb.request.blender_scene, verb.request.view_layer};
 }
 
 // A scene that the baseline does not apply to is an error, unless this run measures it anew.
@@ -131,6 +135,8 @@ std::string RepeatCommand(const CrosscheckVerb& verb) {
   if (verb.request.samples > 0) command += fmt::format(" --max-bounces {}", verb.request.max_bounces);
   if (!verb.request.camera.empty()) command += " --camera=" + Quoted(verb.request.camera);
   if (verb.request.frame) command += fmt::format(" --frame {}", *verb.request.frame);
+  if (!verb.request.blender_scene.empty()) command += " --scene=" + Quoted(verb.request.blender_scene);
+  if (!verb.request.view_layer.empty()) command += " --view-layer=" + Quoted(verb.request.view_layer);
   if (verb.request.blender != "blender") command += " --blender " + Quoted(verb.request.blender);
   if (!verb.baseline.empty()) command += " --baseline " + Quoted(verb.baseline);
   return command;
@@ -274,6 +280,7 @@ void AddCrosscheckVerb(CLI::App& app, Globals& globals, Action& chosen) {
       ->type_name("PATH")
       ->check(RefuseEmpty)
       ->capture_default_str();
+  AddSceneNameOptions(*sub, verb->request.blender_scene, verb->request.view_layer);
   sub->add_option("-o,--output", verb->html, "report to write: one .html file, pictures included")->type_name("FILE");
   AddGlobalOptions(*sub, globals);
   sub->callback([verb, &globals, &chosen] { chosen = [verb, &globals] { return RunCrosscheckVerb(*verb, globals); }; });

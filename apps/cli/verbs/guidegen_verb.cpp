@@ -18,6 +18,7 @@ struct GuidegenVerb {
   std::string layers;
   std::string compression = "zip";
   bool fast_io = false;
+  bool cryptomatte = false;
   std::string output;
   SequenceOptions sequence;
 };
@@ -36,7 +37,7 @@ Expected<GuidegenRequest> ToRequest(const GuidegenVerb& verb) {
   SCUMBLE_ASSIGN(request.scene, ToRequest(verb.scene));
   SCUMBLE_ASSIGN(request.sequence, ToRequest(verb.sequence));
   if (!verb.style.style.empty()) request.style = verb.style;
-  request.write = {request.scene.half, verb.fast_io ? kFastCompression : verb.compression};
+  request.write = {request.scene.half, verb.fast_io ? kFastCompression : verb.compression, verb.cryptomatte};
   request.output = verb.output;
   request.explain = verb.scene.explain;
   return request;
@@ -75,6 +76,9 @@ void AddGuidegenVerb(CLI::App& app, Globals& globals, Action& chosen) {
       sub->add_option("--compression", verb->compression, "none, rle, zips, zip or piz; all are lossless");
   compression->type_name("NAME")->capture_default_str();
   AddFastIoOption(*sub, verb->fast_io)->excludes(compression);
+  sub->add_flag("--cryptomatte", verb->cryptomatte,
+                "write objects and materials as Cryptomatte too, with their names, for compositors; transfer reads the "
+                "ids in any case");
   sub->add_option("-o,--output", verb->output, "guide file to write, .exr; required unless --explain is given")
       ->type_name("FILE");
   AddSequenceOptions(*sub, verb->sequence);

@@ -14,6 +14,7 @@
 #include "guidegen/load/load_scene.h"
 #include "guidegen/scene_textures.h"
 #include "pipeline/frame/paint_picture.h"
+#include "pipeline/scene/scene_guides.h"
 #include "pipeline/style/style_locations.h"
 #include "pipeline/style/style_set.h"
 
@@ -151,9 +152,9 @@ Expected<Json> Describe(const InfoVerb& verb, const Globals& globals) {
   const std::string& path = verb.path;
   std::string ending = std::filesystem::path(path).extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
-  if (ending == ".exr") return DescribeGuides(path);
   if (ending == ".blend") return DescribeBlenderScene(path, verb.blender, globals);
-  if (!verb.blender.program.empty()) return UsageError("--blender is for .blend scenes; leave it out for " + path);
+  SCUMBLE_RETURN_IF_ERROR(CheckWithoutBlender(path, verb.blender));
+  if (ending == ".exr") return DescribeGuides(path);
   if (ending == ".glb" || ending == ".gltf" || ending == ".obj" || ending == ".ply") return DescribeSceneFile(path);
   return DescribeStyle(path, globals);
 }
@@ -169,10 +170,7 @@ void AddInfoVerb(CLI::App& app, Globals& globals, Action& chosen) {
          "or picture of a painted sphere")
       ->type_name("FILE")
       ->required();
-  sub->add_option("--blender", verb->blender.program,
-                  "the Blender that exports a .blend scene; left out: blender in PATH")
-      ->type_name("PATH")
-      ->check(RefuseEmpty);
+  AddBlenderOptions(*sub, verb->blender);
   AddGlobalOptions(*sub, globals);
   sub->callback([=, &globals, &chosen] {
     chosen = [=, &globals]() -> Expected<ExitCode> {

@@ -72,15 +72,16 @@ Status CheckNames(const SphereVerb& verb, std::size_t lights) {
     return UsageError(fmt::format("{} --name for {} --light: expected one each", verb.names.size(), lights));
   }
   for (const std::string& name : verb.names) {
-    const bool plain = std::all_of(
-        name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_' || c >= 0x80; });
+    const bool plain = std::all_of(name.begin(), name.end(), [](unsigned char c) {
+      return std::isalnum(c) || c == '-' || c == '_' || c == ' ' || c >= 0x80;
+    });
     constexpr std::string_view kTemplate = "template";
     const bool ours = name.size() >= kTemplate.size() &&
                       name.compare(name.size() - kTemplate.size(), kTemplate.size(), kTemplate) == 0;
-    if (name.empty() || name[0] == '-' || !plain || ours) {
-      return UsageError("--name " + name +
-                        ": expected the name of the painting without its ending, of letters, digits, "
-                        "- and _, that does not end in 'template'");
+    if (name.empty() || name[0] == '-' || name.front() == ' ' || name.back() == ' ' || !plain || ours) {
+      return UsageError("--name '" + name +
+                        "': expected the name of the painting without its ending: letters, digits, -, _, and spaces "
+                        "between them, not with 'template' at its end");
     }
     if (std::count(verb.names.begin(), verb.names.end(), name) > 1) {
       return UsageError("--name " + name + " stands there twice: each light has a painting of its own");

@@ -14,7 +14,7 @@ namespace scumble {
 namespace {
 
 struct TransferVerb {
-  std::string guides, view_layer, camera;
+  std::string guides, view_layer, light_layer, camera;
   StyleRequest style;
   PictureOptions picture;
   BudgetOptions budget;
@@ -26,7 +26,7 @@ Expected<TransferRequest> ToRequest(const CLI::App& sub, const TransferVerb& ver
     return InputError(verb.guides +
                       " is a scene: transfer takes guides; use `scumble stylize`, or `scumble guidegen` first");
   }
-  TransferRequest request{verb.guides, verb.view_layer, verb.camera, verb.style, {}, {}, {}};
+  TransferRequest request{verb.guides, verb.view_layer, verb.light_layer, verb.camera, verb.style, {}, {}, {}};
   SCUMBLE_ASSIGN(request.picture, ToRequest(verb.picture, globals));
   SCUMBLE_ASSIGN(request.budget, ToRequest(sub, verb.budget));
   SCUMBLE_ASSIGN(request.sequence, ToRequest(verb.sequence));
@@ -48,6 +48,11 @@ void AddTransferVerb(CLI::App& app, Globals& globals, Action& chosen) {
       app.add_subcommand("transfer", "guides + style -> picture, from a guide file of guidegen or a Blender render");
   sub->add_option("guides", verb->guides, "guide file: .exr")->type_name("FILE")->required();
   sub->add_option("--view-layer", verb->view_layer, "which view layer of a multilayer file")->type_name("NAME");
+  sub->add_option("--light-layer", verb->light_layer,
+                  "the view layer of a Blender render whose passes Diffuse Direct and Shadow give the light, as one "
+                  "with a white material override; left out: that of all else")
+      ->type_name("NAME")
+      ->check(RefuseEmpty);
   sub->add_option("--camera", verb->camera,
                   "the .camera file of a Blender render; left out: found from its Position pass")
       ->type_name("FILE");

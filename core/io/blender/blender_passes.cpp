@@ -44,6 +44,31 @@ void FindCoverage(const BlenderMattes& mattes, GuideSet& guides) {
   for (std::size_t i = 0; i < shown.size(); ++i) coverage[i] = coverage[i] > 0.0f ? shown[i] : 0.0f;
 }
 
+// Adds what shadow catchers cover to the coverage, and returns it. `mattes` may be empty.
+std::vector<float> CoverCatchers(const BlenderMattes& mattes, GuideSet& guides) {
+  constexpr float kNoise = 0.01f;  // of the sums
+  const auto coverage = guides.Plane(Layer::kCoverage);
+  std::vector<float> caught(coverage.size(), 0.0f);
+  for (std::size_t i = 0; i < caught.size(); ++i) {
+    const float film = coverage[i];
+    // Objects count once, catchers twice. An opaque film's coverage has both.
+    float beyond = 0.0f;
+    if (mattes.empty()) {
+      beyond = SquaredLength(guides.Vec3(Layer::kNormal, i)) > 2.25f ? 2.0f * (1.0f - 0.5f * film) : 0.0f;
+    } else {
+      for (std::size_t r = 1; r < mattes.begin()->second.ranks.size(); r += 2) {
+        const std::vector<float>& rank = mattes.begin()->second.ranks[r];
+        if (!rank.empty() && rank[i] > 0.0f) beyond += rank[i];
+      }
+      beyond -= film;
+    }
+    if (!(beyond > kNoise)) continue;
+    caught[i] = std::min(1.0f, film >= 1.0f ? beyond : 0.5f * beyond);
+    coverage[i] = std::min(1.0f, film + caught[i]);
+  }
+  return caught;
+}
+
 Expected<GuideCamera> FindCamera(const std::string& name, const GuideSet& guides) {
   for (const auto& [layer, pass] : {std::pair{Layer::kPosition, "Position"}, {Layer::kDepth, "Z (Depth)"}}) {
     if (guides.Has(layer)) continue;
@@ -175,17 +200,20 @@ void ClearBackground(GuideSet& guides) {
 }  // namespace
 
 Status ConvertBlenderPasses(const std::optional<GuideCamera>& camera, const BlenderMattes& mattes,
-                            const std::string& name, GuideSet& guides) {
+                            const BlenderLight& light, const std::string& name, GuideSet& guides) {
   if (guides.Has(Layer::kPosition)) ConvertPositions(guides);
   guides.camera = camera;
   if (!camera) {
     SCUMBLE_ASSIGN(guides.camera, FindCamera(name, guides));
   }
   FindCoverage(mattes, guides);
+  std::vector<float> catchers;
+  if (guides.Has(Layer::kShadow) && light.count(LightPass::kShadowCatcher)) catchers = CoverCatchers(mattes, guides);
   ConvertNormals(*guides.camera, guides);
   SCUMBLE_RETURN_IF_ERROR(NameIds(mattes, name, guides));
   FillEdges(guides);
   ClearBackground(guides);
+  ConvertBlenderLight(light, catchers, guides);
   return Ok();
 }
 
@@ -196,7 +224,9 @@ std::string BlenderPassesFor(const LayerSet& missing) {
                                                        {Layer::kObject, "Cryptomatte Object"},
                                                        {Layer::kMaterial, "Cryptomatte Material"},
                                                        {Layer::kPosition, "Position"},
-                                                       {Layer::kAlbedo, "Diffuse Color"}};
+                                                       {Layer::kAlbedo, "Diffuse Color"},
+                                                       {Layer::kLuminance, "Diffuse Direct"},
+                                                       {Layer::kShadow, "Shadow"}};
   std::string passes;
   LayerSet left = missing;
   for (const auto& [layer, pass] : kPasses) {

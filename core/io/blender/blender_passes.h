@@ -8,6 +8,7 @@
 
 #include "core/image/guides.h"
 #include "core/image/status.h"
+#include "core/io/blender/render_light.h"
 #include "core/io/guides/cryptomatte.h"
 
 namespace scumble {
@@ -36,8 +37,11 @@ using BlenderMattes = std::map<Layer, Matte>;  // kObject, kMaterial
 //     has them, of the same object if there is one. Covered pixels without a normal, as a volume's, do so with the
 //     normal, and become background where there is none.
 // Layers that the set lacks are left out; A and normal must be there. `name` stands for the file.
+//   - luminance and shadow come from passes of light (core/io/blender/render_light.h). Where the pass Shadow Catcher is
+//     among them, shadow catchers are covered. A transparent film has none of their alpha; their other data count
+//     double in a pixel's sums: Cryptomatte's coverage shows them, or a normal of length 2 without it.
 Status ConvertBlenderPasses(const std::optional<GuideCamera>& camera, const BlenderMattes& mattes,
-                            const std::string& name, GuideSet& guides);
+                            const BlenderLight& light, const std::string& name, GuideSet& guides);
 
 // Which passes to switch on for layers that are missing, for the end of a message.
 std::string BlenderPassesFor(const LayerSet& missing);

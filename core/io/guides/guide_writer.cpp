@@ -2,6 +2,7 @@
 #include "core/io/exr/scanline_exr.h"
 #include "core/io/file/atomic_file.h"
 #include "core/io/guide_file.h"
+#include "core/io/guides/cryptomatte_writer.h"
 #include "core/io/guides/guide_header.h"
 
 namespace scumble {
@@ -12,8 +13,8 @@ namespace {
 const glm::dmat4 kExrFromView{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1};
 const glm::dmat4 kNdcFromClip{0.5, 0, 0, 0, 0, -0.5, 0, 0, 0, 0, 1, 0, 0.5, 0.5, 0, 1};
 
-// Its channels are the guides' own planes.
-internal::ExrImage ImageOf(const GuideSet& guides, const GuideWriteOptions& options) {
+// Its channels are the guides' own planes, and those of `mattes`.
+internal::ExrImage ImageOf(const GuideSet& guides, const GuideWriteOptions& options, internal::MattePlanes& mattes) {
   internal::ExrImage image;
   image.width = guides.width(), image.height = guides.height();
   image.compression = options.compression;
@@ -40,6 +41,7 @@ internal::ExrImage ImageOf(const GuideSet& guides, const GuideWriteOptions& opti
     image.matrices["worldToCamera"] = kExrFromView * guides.camera->view_from_world;
     image.matrices["worldToNDC"] = kNdcFromClip * guides.camera->clip_from_view * guides.camera->view_from_world;
   }
+  if (options.cryptomatte) mattes.AddTo(guides, image);
   return image;
 }
 
@@ -47,7 +49,9 @@ internal::ExrImage ImageOf(const GuideSet& guides, const GuideWriteOptions& opti
 
 Status WriteGuides(const std::filesystem::path& path, const GuideSet& guides, const GuideWriteOptions& options) {
   SCUMBLE_RETURN_IF_ERROR(CheckGuideTarget(path, options));
-  SCUMBLE_ASSIGN(const std::vector<std::byte> encoded, internal::EncodeExr(path.string(), ImageOf(guides, options)));
+  internal::MattePlanes mattes;
+  SCUMBLE_ASSIGN(const std::vector<std::byte> encoded,
+                 internal::EncodeExr(path.string(), ImageOf(guides, options, mattes)));
   return WriteFileAtomically(path, encoded);
 }
 

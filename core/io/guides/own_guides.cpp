@@ -16,12 +16,15 @@ namespace {
 
 using Meanings = std::map<std::string, ChannelMeaning>;  // by the channel's name
 
-// Empty if a channel belongs to a view layer, has no meaning here, or has another channel's meaning.
+// Empty if a channel belongs to a view layer, has no meaning here, or has another channel's meaning. A Cryptomatte
+// beside our own ids says nothing new, so it has no meaning and is passed over.
 std::optional<Meanings> MeaningsOf(const ExrHeader& header) {
   const auto software = header.texts.find("Software");
   if (software != header.texts.end() && software->second.starts_with("Blender")) return std::nullopt;
+  const bool is_ours = header.texts.count("scumble:generator") > 0;
   Meanings meanings;
   for (const auto& [name, half] : header.channels) {
+    if (is_ours && ParseMatteChannel(name)) continue;
     const std::optional<ChannelMeaning> meaning = ParseChannelName(name);
     if (!meaning || !meaning->prefix.empty() || ParseMatteChannel(name)) return std::nullopt;
     const bool is_taken = std::any_of(meanings.begin(), meanings.end(), [&](const auto& other) {
@@ -59,7 +62,8 @@ std::string NamesOf(const ExrHeader& header) {
 }  // namespace
 
 std::optional<GuideSet> ReadPlainGuides(const std::filesystem::path& path, const GuideReadOptions& options) {
-  if (!options.view_layer.empty() || !options.blender_camera.empty()) return std::nullopt;
+  if (!options.view_layer.empty() || !options.light_layer.empty() || !options.blender_camera.empty())
+    return std::nullopt;
   GuideSet guides;
   Meanings meanings;
   const auto header = ReadPlainExr(path, [&](const ExrHeader& found) -> std::optional<PlaneFor> {
@@ -74,7 +78,9 @@ std::optional<GuideSet> ReadPlainGuides(const std::filesystem::path& path, const
       if (complete.Has(info.layer) && (is_required || options.optional.Has(info.layer))) guides.Add(info.layer);
     }
     return PlaneFor([&](const std::string& name) {
-      const ChannelMeaning& meaning = meanings.at(name);
+      const auto meant = meanings.find(name);
+      if (meant == meanings.end()) return std::span<float>();
+      const ChannelMeaning& meaning = meant->second;
       return guides.Has(meaning.layer) ? guides.Plane(meaning.layer, meaning.component) : std::span<float>();
     });
   });
@@ -97,8 +103,12 @@ std::optional<GuideFileInfo> InspectPlainGuides(const std::filesystem::path& pat
     return PlaneFor([](const std::string&) { return std::span<float>(); });
   });
   if (!header) return std::nullopt;
-  GuideFileInfo info{header->width, header->height, false, false, {}, NamesOf(*header), {}};
-  for (const auto& [name, half] : header->channels) info.has_half = info.has_half || half;
+  GuideFileInfo info;
+  info.width = header->width, info.height = header->height, info.channels = NamesOf(*header);
+  for (const auto& [name, half] : header->channels) {
+    info.has_half = info.has_half || half;
+    info.has_cryptomatte = info.has_cryptomatte || ParseMatteChannel(name);
+  }
   info.layers[""] = CompleteLayers(*meanings);
   TakeHeader(header->texts, info.header);
   return info;

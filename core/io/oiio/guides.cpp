@@ -5,6 +5,7 @@
 
 #include "core/io/blender/blender_camera.h"
 #include "core/io/blender/blender_passes.h"
+#include "core/io/blender/render_light.h"
 #include "core/io/format_dispatch.h"
 #include "core/io/guide_file.h"
 #include "core/io/guides/guide_header.h"
@@ -29,10 +30,18 @@ struct FoundMatte {
   MatteChannel meaning;
 };
 
+// A channel of a pass of light.
+struct FoundLight {
+  int subimage;
+  int channel;
+  LightChannel meaning;
+};
+
 struct FileContents {
   OIIO::ImageSpec spec;  // of the first part
   std::vector<FoundChannel> channels;
   std::vector<FoundMatte> mattes;
+  std::vector<FoundLight> lights;
   std::map<std::string, std::string> manifests;  // by the matte's name: "ViewLayer.CryptoObject"
   std::string all_names;                         // for messages
   bool has_half = false;
@@ -69,6 +78,8 @@ Expected<FileContents> Survey(OIIO::ImageInput& input, const std::string& name) 
         contents.mattes.push_back({subimage, c, spec.channelformat(c) == OIIO::TypeDesc::FLOAT, *matte});
       } else if (auto meaning = ParseChannelName(channel)) {
         contents.channels.push_back({subimage, c, *meaning});
+      } else if (auto light = ParseLightChannel(channel)) {
+        contents.lights.push_back({subimage, c, *light});
       }
     }
     FindManifests(spec, contents);
@@ -264,6 +275,61 @@ void ReadMattesToo(const FileContents& contents, const std::string& prefix, Blen
   }
 }
 
+// Whether a view layer has all three channels of a pass.
+bool HasPass(const FileContents& contents, const std::string& prefix, LightPass pass) {
+  std::set<int> components;
+  for (const FoundLight& found : contents.lights) {
+    if (found.meaning.prefix == prefix && found.meaning.pass == pass) components.insert(found.meaning.component);
+  }
+  return components.size() == 3;
+}
+
+// The passes of a Blender render that make a layer.
+std::vector<LightPass> LightFor(const FileContents& contents, const std::string& prefix, Layer layer) {
+  std::vector<LightPass> passes;
+  for (const LightPass pass : LightPassesFor(layer)) {
+    if (contents.from_blender && HasPass(contents, prefix, pass)) passes.push_back(pass);
+  }
+  return passes;
+}
+
+// The view layer that the light is read from: the one that is named, or that of all else.
+Expected<std::string> ChooseLightLayer(const FileContents& contents, const GuideReadOptions& options,
+                                       const std::string& prefix, const std::string& name) {
+  if (options.light_layer.empty()) return prefix;
+  if (!contents.from_blender) {
+    return InputError(name +
+                      " is no Blender render: its light is in the layers luminance and shadow, and it needs no "
+                      "--light-layer");
+  }
+  std::set<std::string> prefixes;
+  for (const FoundLight& found : contents.lights) prefixes.insert(found.meaning.prefix);
+  if (prefixes.count(options.light_layer)) return options.light_layer;
+  std::string list;
+  for (const std::string& one : prefixes) list += (list.empty() ? "'" : ", '") + one + "'";
+  return InputError(
+      name + " has no view layer '" + options.light_layer + "' with passes of light; " +
+      (list.empty() ? "none has: switch on View Layer > Passes > Diffuse Direct, Shadow" : "there are " + list));
+}
+
+// The passes of the wanted layers that the file does not hold as such; their planes are to be read.
+BlenderLight LightOf(const FileContents& contents, const std::string& prefix, const LayerSet& wanted,
+                     const LayerSet& complete, std::vector<PlaneRead>& reads) {
+  BlenderLight light;
+  for (const Layer layer : {Layer::kLuminance, Layer::kShadow}) {
+    if (!wanted.Has(layer) || complete.Has(layer)) continue;
+    for (const LightPass pass : LightFor(contents, prefix, layer)) {
+      for (const FoundLight& found : contents.lights) {
+        if (found.meaning.prefix != prefix || found.meaning.pass != pass) continue;
+        auto& plane = light[pass][std::size_t(found.meaning.component)];
+        plane.resize(std::size_t(contents.spec.full_width) * contents.spec.full_height);
+        reads.push_back({found.subimage, found.channel, plane});
+      }
+    }
+  }
+  return light;
+}
+
 // Layers that guidegen always writes need no option.
 std::string RemedyFor(const LayerSet& missing) {
   std::string asked;
@@ -287,6 +353,7 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
                       options.blender_camera.string());
   }
   SCUMBLE_ASSIGN(const std::string prefix, ChoosePrefix(contents, options.view_layer, name));
+  SCUMBLE_ASSIGN(const std::string light_layer, ChooseLightLayer(contents, options, prefix, name));
   LayerSet wanted = options.required;
   wanted.Add(options.optional);
   std::optional<GuideCamera> camera;
@@ -305,7 +372,8 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
   LayerSet complete = CompleteLayers(channels);
   LayerSet missing = options.required;
   for (const LayerInfo& info : AllLayers()) {
-    if (complete.Has(info.layer) || mattes.count(info.layer)) missing.Remove(info.layer);
+    const bool lit = !LightFor(contents, light_layer, info.layer).empty();
+    if (complete.Has(info.layer) || mattes.count(info.layer) || lit) missing.Remove(info.layer);
   }
   const bool solves_camera = contents.from_blender && !camera;
   if (solves_camera && !missing.empty()) {  // name at once the layers that the next run would lack
@@ -331,8 +399,8 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
   }
   GuideSet guides(contents.spec.full_width, contents.spec.full_height);
   for (const LayerInfo& info : AllLayers()) {
-    const bool from_matte = wanted.Has(info.layer) && mattes.count(info.layer);
-    if (complete.Has(info.layer) || from_matte) guides.Add(info.layer);
+    const bool made = mattes.count(info.layer) || !LightFor(contents, light_layer, info.layer).empty();
+    if (complete.Has(info.layer) || (made && wanted.Has(info.layer))) guides.Add(info.layer);
   }
   std::vector<PlaneRead> reads;
   for (const FoundChannel& found : channels) {
@@ -340,10 +408,11 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
     reads.push_back({found.subimage, found.channel, guides.Plane(found.meaning.layer, found.meaning.component)});
   }
   ReadMattesToo(contents, prefix, mattes, reads);
+  const BlenderLight light = LightOf(contents, light_layer, wanted, complete, reads);
   SCUMBLE_RETURN_IF_ERROR(ReadPlanes(*input, reads, name));
   ReadHeader(contents.spec, guides);
   if (contents.from_blender) {
-    SCUMBLE_RETURN_IF_ERROR(ConvertBlenderPasses(camera, mattes, name, guides));
+    SCUMBLE_RETURN_IF_ERROR(ConvertBlenderPasses(camera, mattes, light, name, guides));
     for (const Layer layer : {Layer::kDepth, Layer::kPosition}) {
       if (!wanted.Has(layer)) guides.Remove(layer);
     }
@@ -365,19 +434,19 @@ Expected<GuideFileInfo> InspectGuides(const std::filesystem::path& path) {
   SCUMBLE_ASSIGN(const FileContents contents, Survey(*input, name));
   LayerSet all;
   for (const LayerInfo& info : AllLayers()) all.Add(info.layer);
-  GuideFileInfo info{contents.spec.full_width,
-                     contents.spec.full_height,
-                     contents.has_half,
-                     contents.from_blender,
-                     {},
-                     contents.all_names,
-                     {}};
+  GuideFileInfo info{contents.spec.full_width, contents.spec.full_height,
+                     contents.has_half,        contents.from_blender,
+                     !contents.mattes.empty(), {},
+                     contents.all_names,       {}};
   std::set<std::string> prefixes = ViewLayers(contents);
   if (prefixes.empty()) prefixes.insert("");
   for (const std::string& prefix : prefixes) {
     info.layers[prefix] = CompleteLayers(SelectChannels(contents, prefix, all));
     for (const FoundMatte& found : contents.mattes) {
       if (info.from_blender && found.meaning.prefix == prefix) info.layers[prefix].Add(found.meaning.layer);
+    }
+    for (const Layer layer : {Layer::kLuminance, Layer::kShadow}) {
+      if (!LightFor(contents, prefix, layer).empty()) info.layers[prefix].Add(layer);
     }
   }
   ReadHeader(contents.spec, info.header);

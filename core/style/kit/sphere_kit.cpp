@@ -55,6 +55,9 @@ std::vector<std::string> PaintingNames(const KitLight& light, std::size_t index)
           TemplateName(light, index)};
 }
 
+// For a command line. Names of paintings hold no quotes.
+std::string Quoted(const std::string& name) { return name.find(' ') == std::string::npos ? name : "'" + name + "'"; }
+
 // `mark` begins each line: empty, or the comment sign.
 std::string ExemplarEntry(const KitLight& light, std::size_t index, const std::string& mark) {
   return "\n" + mark + "[[exemplar]]          # light from " + AnglesInWords(light) + "\n" + mark + "image = \"" +
@@ -112,7 +115,7 @@ constexpr const char* kHowtoPdf = R"(
 $TEMPLATE.pdf is for paint on paper
   1. Print it at 100%, on paper that you like to paint on. Leave the black marks and the white around them free.
   2. Scan the whole page at $DPI dpi or more, all marks in sight, or photograph it in even light.
-  3. In this folder:   scumble sphere --rectify scan.jpg -o $PAINTING
+  3. In this folder:   scumble sphere --rectify scan.jpg -o $QUOTED
 )";
 constexpr const char* kHowtoSmallPdf = R"(
 $TEMPLATE.pdf is for looking at: a sphere of fewer than 128 pixels has no room for the marks that --rectify reads. To
@@ -143,6 +146,7 @@ std::string Howto(const std::vector<KitLight>& lights, const KitOptions& options
                  {"$DPI", std::to_string(ScanDpi(lights[i].guides.width(), options.dpi))},
                  {"$SIZE", std::to_string(lights[i].guides.width())},
                  {"$TEMPLATE", TemplateName(lights[i], i, "")},
+                 {"$QUOTED", Quoted(PaintingName(lights[i], i))},
                  {"$PAINTING", PaintingName(lights[i], i)}};
   };
   std::string text = kHowtoHead;

@@ -120,6 +120,7 @@ Status ReadBsdf(const tinygltf::Value& value, const std::string& where, Material
   if (type == "DIFFUSE") {
     material.bsdf = Bsdf::kDiffuse;
     material.roughness = 1.0f;
+    if (fields.Has("roughness")) material.diffuse_roughness = static_cast<float>(fields.Number("roughness", 0.0, 1.0));
   } else if (type == "GLOSSY") {
     material.bsdf = Bsdf::kGlossy;
     material.roughness = static_cast<float>(fields.Number("roughness", 0.0, 1.0));
@@ -220,6 +221,27 @@ Status ReadObjectExtras(const tinygltf::Node& node, const std::string& where, In
   return fields.Verdict();
 }
 
+namespace {
+
+// The sides of a border, in the order of export_scene.py.
+CameraBorder ReadBorder(const tinygltf::Value& extras, Fields& fields) {
+  CameraBorder border;
+  const tinygltf::Value& list = extras.Get("border");
+  if (!list.IsArray() || list.ArrayLen() != 4) return fields.Complain("border", "is no list of 4 numbers"), border;
+  double* const sides[] = {&border.left, &border.bottom, &border.right, &border.top};
+  for (int i = 0; i < 4; ++i) {
+    if (list.Get(i).IsNumber()) *sides[i] = list.Get(i).GetNumberAsDouble();
+  }
+  const auto fits = [](double from, double to) { return from >= 0.0 && from < to && to <= 1.0; };
+  if (!fits(border.left, border.right) || !fits(border.bottom, border.top)) {
+    fields.Complain("border", "is no left, bottom, right and top from 0 to 1");
+  }
+  border.crop = fields.IsTrue("crop");
+  return border;
+}
+
+}  // namespace
+
 Status ReadCameraExtras(const tinygltf::Node& node, const std::string& where, Camera& camera) {
   const tinygltf::Value* extras = Find(node.extras, "camera");
   if (!extras) return Ok();
@@ -229,6 +251,8 @@ Status ReadCameraExtras(const tinygltf::Node& node, const std::string& where, Ca
                : fit == "VERTICAL" ? CameraFit::kVertical
                                    : CameraFit::kLonger;
   camera.aspect.reset();
+  if (fields.Has("border")) camera.border = ReadBorder(*extras, fields);
+  if (fields.Has("border_size")) camera.border_size = Excerpt(fields.Text("border_size"), 40);
   camera.shift_x = fields.Number("shift_x", -1e6, 1e6);
   camera.shift_y = fields.Number("shift_y", -1e6, 1e6);
   if (camera.orthographic) {

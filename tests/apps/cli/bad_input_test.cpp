@@ -12,8 +12,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool Contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
 class CliBadFiles : public CliTest {
  protected:
   // `whole` is a file that the command takes; IN stands for its name. Missing, empty, cut short and damaged ones of the
@@ -191,6 +189,10 @@ TEST_F(CliBadContent, UnknownStyles) {
   ExpectError(Transfer("g.exr", "bad"), 3, {"bad/style.toml:2", "unknown key transfer.bogus", "blend_radius"});
   WriteText("syntax/style.toml", "name = \"x\"\nlicence\n");
   ExpectError(Transfer("g.exr", "syntax"), 3, {"syntax/style.toml:2", "not valid TOML"});
+  WriteText("open/style.toml", "name = \"x\nlicence = \"y\"\n");
+  ExpectError(Transfer("g.exr", "open"), 3, {"open/style.toml:1", "not closed"});
+  ExpectError(With(Transfer("g.exr", "oil"), {"--set", "transfer.paper=white"}), 3,
+              {"transfer.paper", "no such file", "#f4efe6"});
   WriteText("later/style.toml", "[transfer]\nmethod = \"stylit\"\n");
   ExpectError(Transfer("g.exr", "later"), 5, {"later/style.toml:2", "transfer.method", "not built"});
 }

@@ -13,9 +13,6 @@ namespace fs = std::filesystem;
 
 class CliFiles : public CliTest {
  protected:
-  static bool Contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-  }
   static int Count(const std::string& text, const std::string& part) {
     int count = 0;
     for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + part.size())) ++count;

@@ -12,10 +12,6 @@ namespace {
 
 class CliFlip : public CliTest {
  protected:
-  static bool Contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-  }
-
   // Guides with light of the same value everywhere.
   void WriteLight(const std::string& name, float grey, float red) {
     GuideSet guides = Ball(24);

@@ -9,8 +9,6 @@
 namespace scumble {
 namespace {
 
-bool Contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
 class CliInputs : public CliTest {
  protected:
   Picture Read(const std::string& name) const {

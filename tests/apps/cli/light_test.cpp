@@ -7,8 +7,6 @@
 namespace scumble {
 namespace {
 
-bool Contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
 class CliStyleLight : public CliTest {
  protected:
   // A painting in one grey, 0 … 255, with a few strokes.

@@ -15,8 +15,6 @@ namespace fs = std::filesystem;
 using CliPictures = CliTest;
 using CliCompare = CliTest;
 
-bool Contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
 // How a picture is asked for: what concerns the guides, and what concerns the picture.
 struct Variant {
   std::vector<std::string> guides;

@@ -15,9 +15,6 @@ class RectifyCliTest : public CliTest {
     const Status written = WritePicture(At(name), TakeScan(CharcoalSheet(), scan), options);
     ASSERT_TRUE(written) << written.error().message;
   }
-  static bool Contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-  }
 };
 
 TEST_F(RectifyCliTest, FromAPhotographToAStyle) {

@@ -51,9 +51,6 @@ class CliSequence : public CliTest {
   static std::string Frame(const std::string& start, int frame) {
     return start + "000" + std::to_string(frame) + ".png";
   }
-  static bool Contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-  }
 };
 
 TEST_F(CliSequence, TheSameBytesHoweverARangeIsCut) {
@@ -200,7 +197,8 @@ TEST_F(CliSequence, ResumeKnowsEveryKindOfOutput) {
   fs::resize_file(At("g2.exr"), whole.size() / 2);
   EXPECT_TRUE(Contains(RunOk(With(guidegen, {"--resume"})).out, "1 made, 2 kept;"));
   EXPECT_EQ(Bytes("g2.exr"), whole);
-  for (const Arguments& other : {Arguments{"--samples", "4"}, {"--max-bounces", "1"}, {"--no-robust"}}) {
+  for (const Arguments& other :
+       {Arguments{"--samples", "4"}, {"--max-bounces", "1"}, {"--no-robust"}, {"--cryptomatte"}}) {
     EXPECT_TRUE(Contains(RunOk(With(With(guidegen, {"--resume"}), other)).out, "3 made, 0 kept;")) << other[0];
     EXPECT_TRUE(Contains(RunOk(With(With(guidegen, {"--resume"}), other)).out, "0 made, 3 kept;")) << other[0];
   }

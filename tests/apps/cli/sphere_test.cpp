@@ -81,6 +81,18 @@ TEST_F(CliSphere, OnlySomeFiles) {
   RunOk({"sphere", "--size", "32", "-o", "other", "--only", "png", "--page", "a4", "--dpi", "72", "-q"});
 }
 
+TEST_F(CliSphere, NamesMayHoldSpaces) {
+  RunOk({"sphere", "--size", "128", "-o", "kit", "--name", "back light", "-q"});
+  EXPECT_TRUE(Exists("kit/back light-template.png"));
+  EXPECT_NE(Bytes("kit/style.toml").find("image = \"back light.png\""), std::string::npos);
+  EXPECT_NE(Bytes("kit/HOWTO.txt").find("-o 'back light.png'"), std::string::npos);
+  WritePainted("kit/back light.png", 128, 128);
+  RunOk({"styles", "check", "kit", "-q"});
+  for (const char* bad : {" light", "light ", "back/light", "back'light", "a template"}) {
+    ExpectError({"sphere", "--size", "32", "-o", "other", "--name", bad}, 2, {bad, "spaces between them"});
+  }
+}
+
 // Without a template in pixels only the guides record the light of an exemplar.
 TEST_F(CliSphere, GuidesOfAnotherLightDoNotReplaceThoseOfAPainting) {
   const Arguments sphere = {"sphere", "--size", "128", "--only", "pdf", "-q", "-o", "kit"};

@@ -9,8 +9,6 @@
 namespace scumble {
 namespace {
 
-bool Contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
 class StylesCheck : public CliTest {
  protected:
   void Write(const std::string& name, const Picture& picture) {

@@ -17,8 +17,6 @@ using CliUsage = CliTest;
 const std::vector<std::string> kVerbs = {"sphere",  "guidegen",   "transfer", "stylize",
                                          "compare", "crosscheck", "info",     "styles"};
 
-bool Contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
 TEST_F(CliUsage, HelpNamesEveryVerbAndExitCode) {
   const CommandResult verb = RunOk({"help"}), option = RunOk({"--help"}), letter = RunOk({"-h"});
   EXPECT_EQ(verb.out, option.out);

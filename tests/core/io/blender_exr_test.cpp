@@ -5,6 +5,7 @@
 
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 #include <string>
@@ -13,6 +14,7 @@
 #include "core/image/hash.h"
 #include "core/io/blender/blender_camera.h"
 #include "core/io/blender/blender_passes.h"
+#include "core/io/blender/render_light.h"
 #include "core/io/file/atomic_file.h"
 #include "core/io/guide_file.h"
 #include "core/io/guides/cryptomatte.h"
@@ -157,7 +159,9 @@ class BlenderFile {
   void Write(const std::filesystem::path& path, OIIO::TypeDesc type = OIIO::TypeDesc::FLOAT) const {
     OIIO::ImageSpec spec(40, 30, static_cast<int>(channels_.size()), type);
     spec.channelnames.clear();
-    for (const auto& [name, plane] : channels_) spec.channelnames.push_back("Layer A." + name);
+    for (const auto& [name, plane] : channels_) {
+      spec.channelnames.push_back(name.starts_with("Layer B.") ? name : "Layer A." + name);
+    }
     spec.alpha_channel = -1;
     for (const auto& [key, value] : header_) spec.attribute(key, value);
     std::vector<float> pixels;
@@ -331,6 +335,149 @@ TEST(BlenderFile, ATransparentFilmKeepsItsAlpha) {
 }
 
 // The first sample of a filtered pixel may miss the surface that covers most of it.
+// ---- light -----------------------------------------------------------------------------------------------------
+
+void AddColor(const std::string& pass, const std::function<float(std::size_t, int)>& value, BlenderFile& file) {
+  for (int c = 0; c < 3; ++c) {
+    auto& plane = file.Channel(pass + "." + "RGB"[c]);
+    for (std::size_t i = 0; i < plane.size(); ++i) plane[i] = value(i, c);
+  }
+}
+
+GuideReadOptions WithLight() {
+  GuideReadOptions options = WithObjects();
+  options.required.Add({Layer::kLuminance, Layer::kShadow});
+  return options;
+}
+
+TEST(RenderLight, ChannelsAreKnownByTheEndOfTheirNames) {
+  const auto found = ParseLightChannel("My.Layer.Shadow Catcher.G");
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->prefix, "My.Layer");
+  EXPECT_EQ(found->pass, LightPass::kShadowCatcher);
+  EXPECT_EQ(found->component, 1);
+  EXPECT_EQ(ParseLightChannel("Shadow.R")->pass, LightPass::kShadow);
+  EXPECT_EQ(ParseLightChannel("A.DiffDir.B")->component, 2);
+  for (const char* name : {"", ".R", "R", "DiffDir", "DiffDir.A", "DiffDir.r", "GlossDir.R", "shadow.Y", "XShadow.R"}) {
+    EXPECT_FALSE(ParseLightChannel(name)) << name;
+  }
+}
+
+TEST(BlenderFile, LightComesFromDiffuseDirectAndShadow) {
+  const TemporaryFolder folder;
+  BlenderFile file;
+  const auto light = [](std::size_t i, int c) { return (0.25f + 0.5f * float(c)) * float(i % 7); };
+  const auto reached = [](std::size_t i, int) { return i % 3 == 0 ? 1.1f : 0.2f * float(i % 3); };
+  AddColor("DiffDir", light, file);
+  AddColor("Shadow", reached, file);
+  for (std::size_t i = 0; i < file.Pixels(); ++i) file.Channel("Combined.A")[i] = i % 5 == 0 ? 0.5f : 1.0f;
+  for (std::size_t i = 0; i < file.Pixels(); ++i) {
+    if (file.Channel("Depth.Z")[i] > 1e9f) file.Channel("Combined.A")[i] = 0.0f;
+  }
+  file.Write(folder / "a.exr");
+  const auto guides = ReadGuides(folder / "a.exr", WithLight());
+  ASSERT_TRUE(guides) << guides.error().message;
+  for (std::size_t i = 0; i < guides->pixel_count(); ++i) {
+    const float coverage = guides->Plane(Layer::kCoverage)[i];
+    const float luminance = guides->Plane(Layer::kLuminance)[i], shadow = guides->Plane(Layer::kShadow)[i];
+    if (coverage == 0.0f) {
+      ASSERT_EQ(luminance, 0.0f);
+      ASSERT_EQ(shadow, 0.0f);
+      continue;
+    }
+    ASSERT_NEAR(luminance, 0.2126f * light(i, 0) + 0.7152f * light(i, 1) + 0.0722f * light(i, 2), 1e-5f) << i;
+    ASSERT_NEAR(shadow, std::max(0.0f, 1.0f - reached(i, 0) / coverage), 1e-5f) << i << ": the rest is no shadow";
+  }
+  const auto info = InspectGuides(folder / "a.exr");
+  ASSERT_TRUE(info);
+  EXPECT_TRUE(info->layers.at("Layer A").Contains({Layer::kLuminance, Layer::kShadow}));
+}
+
+// Cycles counts what it knows of a shadow catcher twice, and a transparent film has none of its alpha. Here the left
+// half is one, a stretch between the halves is seen half on it.
+TEST(BlenderFile, ShadowCatchersAreCoveredAndKnowTheirShadows) {
+  const TemporaryFolder folder;
+  for (const bool with_mattes : {true, false}) {
+    for (const bool opaque : {false, true}) {
+      BlenderFile file;
+      AddColor(
+          "Shadow", [](std::size_t, int) { return 0.5f; }, file);
+      AddColor(
+          "Shadow Catcher", [](std::size_t i, int) { return i % 4 ? 0.25f : 1.3f; }, file);
+      if (with_mattes) file.AddMatte("CryptoObject", "Floor", "Ball", "");
+      const auto catcher_share = [](std::size_t i) { return i % 40 < 18 ? 1.0f : i % 40 < 20 ? 0.75f : 0.0f; };
+      const auto covered = [&](std::size_t i) { return file.Channel("Depth.Z")[i] < 1e9f; };
+      for (std::size_t i = 0; i < file.Pixels(); ++i) {
+        if (!covered(i)) continue;
+        const float share = catcher_share(i);
+        file.Channel("Combined.A")[i] = opaque ? 1.0f : 1.0f - share;
+        if (with_mattes) file.Channel("CryptoObject00.g")[i] = 1.0f + share;
+        for (const char* axis : {"Normal.X", "Normal.Y", "Normal.Z"}) file.Channel(axis)[i] *= 1.0f + share;
+      }
+      for (std::size_t i = 0; i < file.Pixels(); ++i) {
+        if (!covered(i) && !opaque) file.Channel("Combined.A")[i] = 0.0f;
+      }
+      file.Write(folder / "a.exr");
+      GuideReadOptions options = WithObjects();
+      options.required.Add(Layer::kShadow);
+      const auto guides = ReadGuides(folder / "a.exr", options);
+      ASSERT_TRUE(guides) << guides.error().message;
+      for (std::size_t i = 0; i < guides->pixel_count(); ++i) {
+        SCOPED_TRACE(testing::Message() << i << (with_mattes ? " mattes" : "") << (opaque ? " opaque" : ""));
+        ASSERT_EQ(guides->Plane(Layer::kCoverage)[i], covered(i) ? 1.0f : 0.0f);
+        const float caught = i % 4 ? 0.75f : 0.0f;
+        ASSERT_EQ(guides->Plane(Layer::kShadow)[i], !covered(i) ? 0.0f : catcher_share(i) > 0.0f ? caught : 0.5f);
+      }
+      // Without shadows the film says what is seen.
+      const auto plain = ReadGuides(folder / "a.exr", WithObjects());
+      ASSERT_TRUE(plain) << plain.error().message;
+      EXPECT_EQ(plain->Plane(Layer::kCoverage)[600], opaque ? 1.0f : 0.0f);
+    }
+  }
+}
+
+TEST(BlenderFile, LightMayComeFromAnotherViewLayer) {
+  const TemporaryFolder folder;
+  BlenderFile file;
+  AddColor(
+      "DiffDir", [](std::size_t, int) { return 0.5f; }, file);
+  AddColor(
+      "Layer B.DiffDir", [](std::size_t, int) { return 0.75f; }, file);
+  file.Write(folder / "a.exr");
+  GuideReadOptions options = WithObjects();
+  options.required.Add(Layer::kLuminance);
+  const auto first = [&] {
+    const auto guides = ReadGuides(folder / "a.exr", options);
+    EXPECT_TRUE(guides) << guides.error().message;
+    return guides ? guides->Plane(Layer::kLuminance)[610] : -1.0f;
+  };
+  EXPECT_NEAR(first(), 0.5f, 1e-6f);
+  options.light_layer = "Layer B";
+  EXPECT_NEAR(first(), 0.75f, 1e-6f);
+  options.light_layer = "Layer C";
+  ExpectRefusal(ReadGuides(folder / "a.exr", options),
+                {"no view layer 'Layer C' with passes of light; there are 'Layer A', 'Layer B'"});
+  BlenderFile().Write(folder / "dark.exr");
+  ExpectRefusal(ReadGuides(folder / "dark.exr", options), {"none has", "View Layer > Passes > Diffuse Direct, Shadow"});
+}
+
+TEST(BlenderFile, MissingOrBrokenLightIsNamed) {
+  const TemporaryFolder folder;
+  BlenderFile file;
+  file.Write(folder / "a.exr");
+  ExpectRefusal(ReadGuides(folder / "a.exr", WithLight()),
+                {"has no layer luminance, shadow", "View Layer > Passes > Diffuse Direct, Shadow"});
+  AddColor(
+      "DiffDir", [](std::size_t i, int) { return i == 50 ? std::nanf("") : 1.0f; }, file);
+  AddColor(
+      "Shadow", [](std::size_t, int) { return 1.0f; }, file);
+  file.Write(folder / "b.exr");
+  ExpectRefusal(ReadGuides(folder / "b.exr", WithLight()), {"b.exr", "luminance"});
+  file.Drop("Shadow.B");
+  file.Write(folder / "c.exr");
+  ExpectRefusal(ReadGuides(folder / "c.exr", WithLight()), {"has no layer shadow", "View Layer > Passes > Shadow"});
+}
+
 TEST(BlenderFile, EdgesAreCompletedFromTheirNeighbours) {
   const TemporaryFolder folder;
   BlenderFile file;
@@ -365,7 +512,7 @@ TEST(BlenderPasses, BecomeGuidesInOurSpaces) {
   for (int c = 0; c < 3; ++c) passes.Plane(Layer::kPosition, c)[0] = float(c + 1);  // x 1, y 2, z 3
   GuideCamera camera;  // looks straight down from above: world +Y is towards the viewer
   camera.view_from_world = glm::dmat4(1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1);
-  ASSERT_TRUE(ConvertBlenderPasses(camera, {}, "a.exr", passes));
+  ASSERT_TRUE(ConvertBlenderPasses(camera, {}, {}, "a.exr", passes));
   EXPECT_EQ(passes.Vec3(Layer::kNormal, 0), glm::vec3(0, 0, 1));
   EXPECT_EQ(passes.Vec3(Layer::kPosition, 0), glm::vec3(1, 3, -2));
   EXPECT_TRUE(std::isinf(passes.Plane(Layer::kDepth)[1]));

@@ -6,18 +6,25 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <functional>
 #include <limits>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "core/image/hash.h"
 #include "core/io/file/atomic_file.h"
+#include "core/io/format_dispatch.h"
+#include "core/io/guides/cryptomatte.h"
 #include "core/io/guides/guide_header.h"
+#include "core/io/guides/own_guides.h"
 #include "tests/support/guide_files.h"
+#include "tests/support/numbers.h"
 #include "tests/support/refusal.h"
 #include "tests/support/temporary_folder.h"
 
@@ -25,8 +32,6 @@ namespace scumble {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr float kInf = std::numeric_limits<float>::infinity();
 
 const std::vector<std::string> kNormalAndA = {"A", "normal.X", "normal.Y", "normal.Z"};
 
@@ -183,6 +188,111 @@ TEST(GuideFile, OtherProgramsFindTheStandardMatrices) {
   const glm::dvec3 seen = Through(*ndc, point);
   EXPECT_NEAR(seen.x, 0.5 + 0.5 * 2 * 1 / 5, 1e-6);
   EXPECT_NEAR(seen.y, 0.5 - 0.5 * 2 * 0.5 / 5, 1e-6);
+}
+
+// Two objects with names that need escapes, in two materials; RandomGuides but for the ids.
+GuideSet NamedGuides() {
+  GuideSet guides = RandomGuides(21, 13);
+  guides.attributes["scumble:generator"] = "test";
+  guides.object_names = {{7, "The \"ring\""}, {9, "Back\\slash\tand β"}};
+  guides.material_names = {{5, "Red"}};
+  for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
+    const bool covered = guides.Plane(Layer::kCoverage)[i] > 0.0f;
+    guides.Plane(Layer::kObject)[i] = !covered ? 0.0f : i % 2 ? 7.0f : 9.0f;
+    guides.Plane(Layer::kMaterial)[i] = covered && i > 30 ? 5.0f : 0.0f;
+  }
+  return guides;
+}
+
+TEST(GuideFile, CryptomatteStandsBesideTheIds) {
+  const TemporaryFolder folder;
+  const GuideSet guides = NamedGuides();
+  GuideWriteOptions options;
+  options.cryptomatte = true;
+  ASSERT_TRUE(WriteGuides(folder / "a.exr", guides, options));
+  auto input = OIIO::ImageInput::open((folder / "a.exr").string());
+  ASSERT_TRUE(input);
+  const OIIO::ImageSpec spec = input->spec();
+  std::vector<float> pixels(std::size_t(spec.nchannels) * guides.pixel_count());
+  ASSERT_TRUE(input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, pixels.data()));
+  const auto hex = [](const std::string& name) {
+    char text[16];
+    std::snprintf(text, sizeof text, "%08x", static_cast<unsigned>(MatteHash(name)));
+    return std::string(text);
+  };
+  const std::string objects = "{\"Back\\\\slash\\u0009and β\":\"" + hex("Back\\slash\tand β") +
+                              "\",\"The \\\"ring\\\"\":\"" + hex("The \"ring\"") + "\"}";
+  for (const auto& [matte, layer, names, manifest] :
+       {std::tuple("CryptoObject", Layer::kObject, guides.object_names, objects),
+        std::tuple("CryptoMaterial", Layer::kMaterial, guides.material_names, "{\"Red\":\"" + hex("Red") + "\"}")}) {
+    const std::string start = "cryptomatte/" + hex(matte).substr(0, 7) + "/";
+    EXPECT_EQ(spec.get_string_attribute(start + "name"), matte);
+    EXPECT_EQ(spec.get_string_attribute(start + "hash"), "MurmurHash3_32");
+    EXPECT_EQ(spec.get_string_attribute(start + "conversion"), "uint32_to_float32");
+    const std::string text(spec.get_string_attribute(start + "manifest"));
+    EXPECT_EQ(text, manifest) << "proper JSON, sorted by name";
+    const auto read = ReadManifest(text, "a.exr");
+    ASSERT_TRUE(read) << read.error().message;
+    for (const auto& [id, name] : names) {
+      EXPECT_EQ(read->at(MatteBits(MatteHash(name))), name);
+    }
+    const int first = spec.channelindex(std::string(matte) + "00.R");
+    ASSERT_GE(first, 0);
+    for (int c = 0; c < 4; ++c) EXPECT_EQ(spec.channelindex(std::string(matte) + "00." + "RGBA"[c]), first + c);
+    for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
+      const float* const matted = &pixels[i * std::size_t(spec.nchannels) + std::size_t(first)];
+      const auto id = static_cast<std::uint32_t>(guides.Plane(layer)[i]);
+      const std::uint32_t expected = id == 0 ? 0u : MatteBits(MatteHash(names.at(id)));
+      ASSERT_EQ(std::bit_cast<std::uint32_t>(matted[0]), expected) << matte << " at " << i;
+      ASSERT_EQ(matted[1], guides.Plane(Layer::kCoverage)[i]);
+      ASSERT_EQ(matted[2], 0.0f);
+      ASSERT_EQ(matted[3], 0.0f);
+    }
+  }
+}
+
+TEST(GuideFile, OurIdsGoBeforeACryptomatteBesideThem) {
+  const TemporaryFolder folder;
+  GuideSet guides = NamedGuides();
+  GuideWriteOptions options;
+  ASSERT_TRUE(WriteGuides(folder / "plain.exr", guides, options));
+  options.cryptomatte = true;
+  ASSERT_TRUE(WriteGuides(folder / "matted.exr", guides, options));
+  const auto plain = ReadGuides(folder / "plain.exr", Everything()),
+             matted = ReadGuides(folder / "matted.exr", Everything());
+  ASSERT_TRUE(plain && matted) << matted.error().message;
+  ExpectSameBits(*matted, *plain);
+  EXPECT_EQ(matted->object_names, plain->object_names);
+  EXPECT_EQ(matted->attributes, plain->attributes);
+  const auto module = LoadFormats("a test");
+  ASSERT_TRUE(module) << module.error().message;
+  const auto by_module = (*module)->read_guides(folder / "matted.exr", Everything());
+  ASSERT_TRUE(by_module) << by_module.error().message;
+  ExpectSameBits(*by_module, *plain);
+  for (const char* file : {"plain.exr", "matted.exr"}) {
+    const auto info = InspectGuides(folder / file);
+    ASSERT_TRUE(info) << info.error().message;
+    EXPECT_EQ(info->layers.at("").ToString(), guides.layers().ToString());
+    EXPECT_EQ(info->has_cryptomatte, std::string(file) == "matted.exr");
+  }
+  EXPECT_TRUE(internal::ReadPlainGuides(folder / "matted.exr", Everything())) << "without the module";
+}
+
+TEST(GuideFile, IdsWithoutANameHaveNoMatte) {
+  const TemporaryFolder folder;
+  GuideSet guides = NamedGuides();
+  guides.object_names.erase(9);
+  guides.Remove(Layer::kMaterial);
+  GuideWriteOptions options;
+  options.cryptomatte = true;
+  ASSERT_TRUE(WriteGuides(folder / "a.exr", guides, options));
+  auto input = OIIO::ImageInput::open((folder / "a.exr").string());
+  ASSERT_TRUE(input);
+  EXPECT_LT(input->spec().channelindex("CryptoMaterial00.R"), 0);
+  const int id = input->spec().channelindex("CryptoObject00.R");
+  std::vector<float> plane(guides.pixel_count());
+  ASSERT_TRUE(input->read_image(0, 0, id, id + 1, OIIO::TypeDesc::FLOAT, plane.data()));
+  for (std::size_t i = 0; i < plane.size(); ++i) ASSERT_EQ(plane[i] != 0.0f, guides.Plane(Layer::kObject)[i] == 7.0f);
 }
 
 TEST(GuideFile, PackedNormalsAreRefused) {
@@ -386,7 +496,7 @@ TEST(GuideFile, ShortNormalsAreNormalisedAndZeroOnesRefused) {
     EXPECT_NEAR(glm::length(read->Vec3(Layer::kNormal, 0)), 1.0f, tolerance) << length;
     EXPECT_NEAR(read->Vec3(Layer::kNormal, 1).y, 1.0f, tolerance) << length;
   }
-  for (float bad : {0.0f, 0.01f, 20.0f, kInf, std::numeric_limits<float>::quiet_NaN()}) {
+  for (float bad : {0.0f, 0.01f, 20.0f, kInfinity, std::numeric_limits<float>::quiet_NaN()}) {
     ExpectRefusal(read_with_length(bad), ErrorKind::kInput, {"n.exr", "layer normal", "2 pixels, first at (0, 0)"});
   }
 }

@@ -13,7 +13,7 @@
 namespace scumble {
 namespace {
 
-using internal::CheckKeyParts;
+using internal::CheckTomlText;
 using internal::kMostKeyParts;
 
 std::string Key(std::size_t parts, const std::string& part = "a", const std::string& dot = ".") {
@@ -23,14 +23,14 @@ std::string Key(std::size_t parts, const std::string& part = "a", const std::str
 }
 
 void ExpectTooMany(const std::string& text, int line) {
-  ExpectRefusal(CheckKeyParts(text, "s.toml"), {"s.toml:" + std::to_string(line) + ":", "more than 16 parts"});
+  ExpectRefusal(CheckTomlText(text, "s.toml"), {"s.toml:" + std::to_string(line) + ":", "more than 16 parts"});
 }
 
 TEST(KeyParts, AreCountedInEveryKindOfKey) {
   for (const std::string part : {"a", "\"a.b # \\\" =\"", "'a.b # ='"}) {
     for (const std::string dot : {".", " . ", "\t.\t"}) {
       const std::string most = Key(kMostKeyParts, part, dot), more = Key(kMostKeyParts + 1, part, dot);
-      EXPECT_TRUE(CheckKeyParts(
+      EXPECT_TRUE(CheckTomlText(
           most + " = 1\n[" + most + "]\n[[ " + most + " ]]\nb = {" + most + " = 1, " + most + " = 2}\n", ""))
           << most;
       ExpectTooMany("\n" + more + " = 1", 2);
@@ -60,14 +60,15 @@ TEST(KeyParts, NothingHidesAKeyAndNoTextIsTakenForOne) {
                                "a = 1.5 # " + dots,
                                "a = 1979-05-27T07:32:00.999"};
   for (const std::string& text : texts) {
-    EXPECT_TRUE(CheckKeyParts(text, "")) << text;
+    EXPECT_TRUE(CheckTomlText(text, "")) << text;
     const int lines = 2 + int(std::count(text.begin(), text.end(), '\n'));
     ExpectTooMany(text + more, lines);
   }
-  for (const std::string text : {"", "\"", "'", "\"\"\"", "'''", "\"\\", "\"\"\"\\", "'''''", "#", "="}) {
-    EXPECT_TRUE(CheckKeyParts(text, "")) << text;
+  for (const std::string text : {"", "#", "="}) EXPECT_TRUE(CheckTomlText(text, "")) << text;
+  for (const std::string text : {"\"", "'", "\"\"\"", "'''", "\"\\", "\"\"\"\\", "'''''"}) {
+    ExpectRefusal(CheckTomlText("\n" + text, "s.toml"), {"s.toml:2:", "not closed"});
   }
-  EXPECT_TRUE(CheckKeyParts(std::string(1, '\0'), ""));
+  EXPECT_TRUE(CheckTomlText(std::string(1, '\0'), ""));
 }
 
 // 61 KB and 100 KB: without the limit the process ends by a signal.

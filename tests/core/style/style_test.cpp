@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kExemplar = "[[exemplar]]\nimage = \"lit.png\"\n";
 
-Picture RandomPicture(int width, int height) {
+Picture NoisyPicture(int width, int height) {
   Picture picture(width, height);
   for (std::size_t i = 0; i < picture.rgba.size(); ++i) {
     picture.rgba[i] = i % 4 == 3 ? 65535 : static_cast<std::uint16_t>(Hash(width, i) % 256 * 257);
@@ -58,7 +58,7 @@ void ExpectEqual(const TransferSettings& a, const TransferSettings& b) {
 // A folder with a painted sphere of 8×8 pixels in it; its style.toml is written by each test.
 class StyleFile : public testing::Test {
  protected:
-  void SetUp() override { ASSERT_TRUE(WritePicture(folder_ / "lit.png", RandomPicture(8, 8))); }
+  void SetUp() override { ASSERT_TRUE(WritePicture(folder_ / "lit.png", NoisyPicture(8, 8))); }
 
   Expected<Style> Load(const std::string& toml, const std::vector<std::string>& overrides = {}) {
     std::ofstream(folder_ / "style.toml", std::ios::binary) << toml;
@@ -280,6 +280,11 @@ TEST_F(StyleFile, BadTomlSaysTheLine) {
     ExpectRefusal(Load(text), ErrorKind::kInput, {"style.toml:", "not valid TOML"});
   }
   ExpectRefusal(Load("# one\n# two\nlevels = = 3\n"), ErrorKind::kInput, {"style.toml:3: "});
+  for (const char* open : {"name = \"x", "name = 'x", "name = \"x\\\"", "name = \"\"\"x\n\"\"", "name = '''x\n"}) {
+    SCOPED_TRACE(open);
+    ExpectRefusal(Load("# one\n" + std::string(open) + "\nlevels = 3\n"), ErrorKind::kInput,
+                  {"style.toml:2: ", "begins here is not closed"});
+  }
   ExpectRefusal(Load(std::string(2 << 20, '#')), ErrorKind::kInput, {"style.toml", "larger than"});
 }
 
@@ -319,7 +324,7 @@ TEST_F(StyleFile, WhatAnExemplarNeeds) {
   }
   ExpectRefusal(Load(e + "guides = 'no.exr'\n"), ErrorKind::kInput, {"no.exr", "no such file"});
   ExpectRefusal(Load(e + "guides = 'lit.png'\n"), ErrorKind::kInput, {"lit.png", "no layer"});
-  ASSERT_TRUE(WritePicture(folder_ / "lit.png", RandomPicture(8, 6)));
+  ASSERT_TRUE(WritePicture(folder_ / "lit.png", NoisyPicture(8, 6)));
   ExpectRefusal(Load(e), ErrorKind::kInput, {"lit.png", "8×6", "square"});
 }
 
@@ -339,7 +344,7 @@ GuideSet BallGuides(int width, int height, float luminance) {
 }
 
 TEST_F(StyleFile, GuidesOfAnySceneOfThePicturesSize) {
-  ASSERT_TRUE(WritePicture(folder_ / "wide.png", RandomPicture(24, 16)));
+  ASSERT_TRUE(WritePicture(folder_ / "wide.png", NoisyPicture(24, 16)));
   ASSERT_TRUE(WriteGuides(folder_ / "wide.exr", BallGuides(24, 16, 0.5f)));
   const std::string wide = "[[exemplar]]\nimage = 'wide.png'\n", guides = "guides = 'wide.exr'\n";
   const auto style = Load(wide + guides);
@@ -352,7 +357,7 @@ TEST_F(StyleFile, GuidesOfAnySceneOfThePicturesSize) {
       << "one exemplar: light is not read";
   const std::size_t middle = exemplar.guides->Index(12, 8);
   EXPECT_EQ(exemplar.guides->Vec3(Layer::kNormal, middle), BallGuides(24, 16, 0.5f).Vec3(Layer::kNormal, middle));
-  EXPECT_EQ(exemplar.picture.rgba, RandomPicture(24, 16).rgba);
+  EXPECT_EQ(exemplar.picture.rgba, NoisyPicture(24, 16).rgba);
   const auto several = Load(wide + guides + wide + guides + "luminance = 0.1\n");
   ASSERT_TRUE(several) << several.error().message;
   EXPECT_TRUE(several->exemplars[0].guides->Has(Layer::kLuminance)) << "its luminance is to be measured";
@@ -383,11 +388,11 @@ TEST_F(StyleFile, GuidesOfTheSphereKitAreReadForTheirLightOnly) {
   EXPECT_TRUE(style->exemplars[0].guides->Has(Layer::kLuminance));
   EXPECT_FALSE(style->exemplars[1].guides);
   // The whole painted template: its margin is cut off.
-  ASSERT_TRUE(WritePicture(folder_ / "lit.png", RandomPicture(12, 12)));
+  ASSERT_TRUE(WritePicture(folder_ / "lit.png", NoisyPicture(12, 12)));
   style = Load(one);
   ASSERT_TRUE(style) << style.error().message;
   EXPECT_EQ(style->exemplars[0].picture.width, 8);
-  const Picture whole = RandomPicture(12, 12), &cut = style->exemplars[0].picture;
+  const Picture whole = NoisyPicture(12, 12), &cut = style->exemplars[0].picture;
   EXPECT_EQ(std::vector<int>(cut.At(0, 0), cut.At(0, 0) + 32), std::vector<int>(whole.At(2, 2), whole.At(2, 2) + 32));
 }
 
@@ -433,7 +438,7 @@ TEST_F(StyleFile, TheExemplarIsThePictureAsPainted) {
   EXPECT_EQ(style->name, "Kohle");
   EXPECT_EQ(style->licence, "CC0-1.0");
   ASSERT_EQ(style->exemplars.size(), 1u);
-  EXPECT_EQ(style->exemplars[0].picture.rgba, RandomPicture(8, 8).rgba);
+  EXPECT_EQ(style->exemplars[0].picture.rgba, NoisyPicture(8, 8).rgba);
   EXPECT_NE(style->exemplars[0].name.find("lit.png"), std::string::npos);
 }
 
@@ -444,18 +449,19 @@ TEST_F(StyleFile, PaperIsAColourAPictureOrNothing) {
   ASSERT_TRUE(color) << color.error().message;
   EXPECT_EQ(color->paper.color, (std::array<std::uint16_t, 3>{0xf4 * 257, 0xef * 257, 0xe6 * 257}));
   EXPECT_FALSE(color->paper.picture);
-  ASSERT_TRUE(WritePicture(folder_ / "paper.png", RandomPicture(5, 3)));
+  ASSERT_TRUE(WritePicture(folder_ / "paper.png", NoisyPicture(5, 3)));
   const auto picture = LoadLine("paper = 'paper.png'");
   ASSERT_TRUE(picture) << picture.error().message;
   ASSERT_TRUE(picture->paper.picture);
-  EXPECT_EQ(picture->paper.picture->rgba, RandomPicture(5, 3).rgba);
+  EXPECT_EQ(picture->paper.picture->rgba, NoisyPicture(5, 3).rgba);
   EXPECT_FALSE(picture->paper.color);
   const auto none = Load("[transfer]\npaper = '#ffffff'\n" + std::string(kExemplar), {"transfer.paper="});
   ASSERT_TRUE(none) << none.error().message;
   EXPECT_FALSE(none->paper.color || none->paper.picture);
   ExpectRefusal(LoadLine("paper = 'no.png'"), ErrorKind::kInput,
-                {"style.toml:2", "transfer.paper", "no.png", "no such file"});
-  ExpectRefusal(LoadLine("paper = 3"), ErrorKind::kInput, {"transfer.paper", "#rrggbb"});
+                {"style.toml:2", "transfer.paper", "no.png", "no such file", "a colour is #"});
+  ExpectRefusal(LoadLine("paper = 3"), ErrorKind::kInput,
+                {"transfer.paper", "a colour is # and six hexadecimal digits"});
 }
 
 TEST_F(StyleFile, OnlySixHexadecimalDigitsAreAColour) {
@@ -463,7 +469,7 @@ TEST_F(StyleFile, OnlySixHexadecimalDigitsAreAColour) {
                           "#f4ef 6", "#f4efé"}) {
     SCOPED_TRACE(bad);
     ExpectRefusal(LoadLine("paper = '" + std::string(bad) + "'"), ErrorKind::kInput,
-                  {"transfer.paper", bad, "is not a colour like"});
+                  {"transfer.paper", bad, "a colour is # and six hexadecimal digits", "#f4efe6"});
   }
 }
 
@@ -511,7 +517,7 @@ TEST(LoadStyle, AFolderATomlFileOrAPicture) {
   const TemporaryFolder folder;
   const fs::path style_folder = folder / "Kohle v1.2";
   fs::create_directory(style_folder);
-  ASSERT_TRUE(WritePicture(style_folder / "lit.png", RandomPicture(8, 8)));
+  ASSERT_TRUE(WritePicture(style_folder / "lit.png", NoisyPicture(8, 8)));
   ASSERT_TRUE(WriteFileAtomically(style_folder / "style.toml", kExemplar));
   ASSERT_TRUE(
       WriteFileAtomically(style_folder / "soft.toml", std::string("[transfer]\nblend_radius = 9\n") + kExemplar));
@@ -525,7 +531,7 @@ TEST(LoadStyle, AFolderATomlFileOrAPicture) {
     const auto style = LoadStyle(path);
     ASSERT_TRUE(style) << path << ": " << style.error().message;
     EXPECT_EQ(style->name, name) << path;
-    EXPECT_EQ(style->exemplars.at(0).picture.rgba, RandomPicture(8, 8).rgba);
+    EXPECT_EQ(style->exemplars.at(0).picture.rgba, NoisyPicture(8, 8).rgba);
     EXPECT_EQ(style->transfer.blend_radius, path.filename() == "soft.toml" ? 9 : 1);
   }
   const fs::path before = fs::current_path();
@@ -543,7 +549,7 @@ TEST(LoadStyle, WhatIsNoStyle) {
   ExpectRefusal(LoadStyle(folder.path()), ErrorKind::kInput, {folder.path().string(), "no style.toml"});
   ASSERT_TRUE(WriteFileAtomically(folder / "notes.txt", "notes"));
   ExpectRefusal(LoadStyle(folder / "notes.txt"), ErrorKind::kInput, {"notes.txt"});
-  ASSERT_TRUE(WritePicture(folder / "wide.png", RandomPicture(9, 4)));
+  ASSERT_TRUE(WritePicture(folder / "wide.png", NoisyPicture(9, 4)));
   ExpectRefusal(LoadStyle(folder / "wide.png"), ErrorKind::kInput, {"wide.png", "9×4", "square"});
   fs::create_directory(folder / "style.toml");
   ExpectRefusal(LoadStyle(folder.path()), ErrorKind::kInput, {"style.toml", "folder"});

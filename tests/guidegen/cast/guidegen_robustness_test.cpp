@@ -16,11 +16,10 @@
 #include "guidegen/light/direct_light.h"
 #include "tests/support/guidegen_checks.h"
 #include "tests/support/guidegen_scenes.h"
+#include "tests/support/numbers.h"
 
 namespace scumble::testing {
 namespace {
-
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
 LayerSet Everything() { return {Layer::kPosition, Layer::kPref, Layer::kAlbedo, Layer::kLuminance, Layer::kShadow}; }
 
@@ -145,7 +144,7 @@ TEST(Robustness, DegenerateTrianglesAreHarmless) {
   mesh.triangles.push_back({0, 1, 1});
   mesh.positions.push_back({0, 0, 1});  // with two corners below it, a line that the middle rays run along
   mesh.positions.push_back({0, 0, 2});
-  mesh.positions.push_back({kNaN, 0, 1});
+  mesh.positions.push_back({kNan, 0, 1});
   mesh.positions.push_back({std::numeric_limits<float>::infinity(), 0, 1});
   mesh.positions.push_back({0, 3e38f, 1});
   for (auto* attribute : {&mesh.normals}) attribute->resize(mesh.positions.size(), {0, 0, 1});
@@ -156,7 +155,7 @@ TEST(Robustness, DegenerateTrianglesAreHarmless) {
 }
 
 TEST(Robustness, SpoiltNormalsGiveWayToTheGeometricOne) {
-  for (const glm::vec3 spoilt : {glm::vec3(kNaN), glm::vec3(0.0f), glm::vec3(kNaN, 0, 1)}) {
+  for (const glm::vec3 spoilt : {glm::vec3(kNan), glm::vec3(0.0f), glm::vec3(kNan, 0, 1)}) {
     Scene scene = SceneOf(QuadMesh());
     scene.meshes[0].normals.assign(4, spoilt);
     scene.lights = {PointLight({0, 0, 5}, 1.0)};
@@ -176,7 +175,7 @@ TEST(Robustness, SpoiltNormalsGiveWayToTheGeometricOne) {
 
 TEST(Robustness, SpoiltTextureCoordinatesReadTheFirstTexel) {
   Scene scene = SceneOf(QuadMesh());
-  scene.meshes[0].uvs[0] = {{kNaN, kNaN}, {1e30f, -1e30f}, {1e38f, 0}, {-1e9f, 7.3f}};
+  scene.meshes[0].uvs[0] = {{kNan, kNan}, {1e30f, -1e30f}, {1e38f, 0}, {-1e9f, 7.3f}};
   scene.textures.emplace_back(3, 2);
   scene.materials[0].base_color_texture.texture = 0;
   scene.materials[0].normal_texture.texture = 0;
@@ -224,8 +223,8 @@ TEST(Refusal, CamerasThatSeeNothingByTheirNumbers) {
     EXPECT_EQ(result.error().kind, ErrorKind::kInput);
     EXPECT_NE(result.error().message.find("front"), std::string::npos) << result.error().message;
   };
-  for (const double angle : {0.0, -5.0, 180.0, double(kNaN)}) refuse(FrontCamera(3.0, angle));
-  for (const double ymag : {0.0, -1.0, double(kNaN)}) refuse(FlatCamera(3.0, ymag));
+  for (const double angle : {0.0, -5.0, 180.0, double(kNan)}) refuse(FrontCamera(3.0, angle));
+  for (const double ymag : {0.0, -1.0, double(kNan)}) refuse(FlatCamera(3.0, ymag));
   Camera camera = FrontCamera(3.0);
   camera.z_near = 5.0;
   camera.z_far = 4.0;
@@ -236,7 +235,7 @@ TEST(Refusal, CamerasThatSeeNothingByTheirNumbers) {
   camera = FrontCamera(3.0);
   camera.world_from_camera = glm::dmat4(0.0);
   refuse(camera);
-  camera.world_from_camera = glm::dmat4(kNaN);
+  camera.world_from_camera = glm::dmat4(kNan);
   refuse(camera);
 }
 
@@ -281,7 +280,7 @@ TEST(DirectLight, NeverNaNAtTheLampItself) {
 
 TEST(Refusal, LightsThatAreNotNumbersMatterOnlyWhereLightIsAskedFor) {
   Scene scene = SceneOf(CubeMesh());
-  scene.lights = {PointLight({0, 0, 3}, double(kNaN))};
+  scene.lights = {PointLight({0, 0, 3}, double(kNan))};
   Render(scene, FrontCamera(3.0), Sized(4, 4));
   const auto result = RenderGuides(scene, FrontCamera(3.0), Sized(4, 4, {Layer::kShadow}));
   ASSERT_FALSE(result);

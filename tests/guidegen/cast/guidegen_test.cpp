@@ -10,11 +10,10 @@
 
 #include "tests/support/guidegen_checks.h"
 #include "tests/support/guidegen_scenes.h"
+#include "tests/support/numbers.h"
 
 namespace scumble::testing {
 namespace {
-
-constexpr double kPi = glm::pi<double>();
 
 double CoveredArea(const GuideSet& guides) {
   double sum = 0.0;

@@ -19,7 +19,7 @@ using ::testing::IsEmpty;
 
 constexpr TextureLoading kLater = TextureLoading::kWhenNeeded;
 
-GuidegenOptions Asking(LayerSet layers) {
+GuidegenOptions OptionsFor(LayerSet layers) {
   GuidegenOptions options;
   options.width = options.height = 8;
   options.layers = layers;
@@ -57,7 +57,7 @@ class RequiredTextures : public LoaderTest {
   static std::string ErrorFor(const std::filesystem::path& path, LayerSet layers) {
     Expected<Scene> scene = LoadScene(path, {kLater, {}});
     if (!scene) return "not loaded: " + scene.error().message;
-    const Expected<DecodedTextures> decoded = DecodeTextures(*scene, Asking(layers));
+    const Expected<DecodedTextures> decoded = DecodeTextures(*scene, OptionsFor(layers));
     if (decoded) return {};
     EXPECT_EQ(static_cast<int>(decoded.error().kind), static_cast<int>(ErrorKind::kInput));
     return decoded.error().message;
@@ -72,14 +72,14 @@ TEST_F(RequiredTextures, AreDecodedOnceAndForTheLayersThatNeedThem) {
   ASSERT_EQ(scene->textures.size(), 1u);
   EXPECT_TRUE(scene->textures[0].empty());
   const Scene copy = *scene;
-  EXPECT_EQ(DecodeTextures(*scene, Asking({Layer::kLuminance}))->count, 0);
+  EXPECT_EQ(DecodeTextures(*scene, OptionsFor({Layer::kLuminance}))->count, 0);
   EXPECT_TRUE(scene->textures[0].empty());
-  const Expected<DecodedTextures> decoded = DecodeTextures(*scene, Asking({Layer::kAlbedo}));
+  const Expected<DecodedTextures> decoded = DecodeTextures(*scene, OptionsFor({Layer::kAlbedo}));
   ASSERT_TRUE(decoded.ok());
   EXPECT_EQ(decoded->count, 1);
   EXPECT_EQ(decoded->bytes, 8u) << "four channels of two bytes";
   EXPECT_THAT(scene->textures[0].rgba, ElementsAre(65535, 0, 0, 65535));
-  EXPECT_EQ(DecodeTextures(*scene, Asking({Layer::kAlbedo}))->count, 0) << "it is there";
+  EXPECT_EQ(DecodeTextures(*scene, OptionsFor({Layer::kAlbedo}))->count, 0) << "it is there";
   // An earlier copy can still decode its textures.
   Scene other = copy;
   EXPECT_EQ(DecodeAllTextures(other)->count, 1);
@@ -89,7 +89,7 @@ TEST_F(RequiredTextures, AreDecodedOnceAndForTheLayersThatNeedThem) {
   ASSERT_TRUE(animated.ok());
   Expected<Scene> posed = animated->SceneAt(0.0);
   ASSERT_TRUE(posed.ok());
-  EXPECT_EQ(DecodeTextures(*posed, Asking({Layer::kAlbedo}))->count, 1);
+  EXPECT_EQ(DecodeTextures(*posed, OptionsFor({Layer::kAlbedo}))->count, 1);
   EXPECT_EQ(posed->textures[0].rgba, scene->textures[0].rgba);
 }
 
@@ -149,11 +149,11 @@ TEST_F(RequiredTextures, WavefrontDoesWithoutThemAndSaysSoWhereTheyAreNeeded) {
   Expected<Scene> scene = LoadScene(path, {kLater, {}});
   ASSERT_TRUE(scene.ok());
   EXPECT_THAT(scene->warnings, IsEmpty());
-  const Expected<DecodedTextures> none = DecodeTextures(*scene, Asking({}));
+  const Expected<DecodedTextures> none = DecodeTextures(*scene, OptionsFor({}));
   ASSERT_TRUE(none.ok());
   EXPECT_THAT(none->warnings, IsEmpty());
   EXPECT_EQ(none->count, 0);
-  const Expected<DecodedTextures> some = DecodeTextures(*scene, Asking({Layer::kAlbedo}));
+  const Expected<DecodedTextures> some = DecodeTextures(*scene, OptionsFor({Layer::kAlbedo}));
   ASSERT_TRUE(some.ok());
   EXPECT_EQ(some->count, 1);
   EXPECT_THAT(some->warnings, ElementsAre(HasSubstr("lost.png")));

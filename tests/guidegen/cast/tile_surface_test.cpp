@@ -16,12 +16,10 @@
 #include "guidegen/cast/tile_store.h"
 #include "guidegen/rays/camera_rays.h"
 #include "tests/support/guidegen_scenes.h"
+#include "tests/support/numbers.h"
 
 namespace scumble::testing {
 namespace {
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 // Objects before a camera, a tile of its picture, and given hits of its rays. The plain code needs only a triangle's
 // number, so hits may be wilder than Embree's ever are.

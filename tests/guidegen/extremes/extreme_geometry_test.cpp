@@ -14,12 +14,10 @@
 #include "tests/support/guidegen_checks.h"
 #include "tests/support/guidegen_scenes.h"
 #include "tests/support/light_path_scenes.h"
+#include "tests/support/numbers.h"
 
 namespace scumble::testing {
 namespace {
-
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 LayerSet Everything() { return {Layer::kPosition, Layer::kPref, Layer::kAlbedo, Layer::kLuminance, Layer::kShadow}; }
 
@@ -388,8 +386,8 @@ TEST(ExtremeNormals, TheRayCasterTakesTheTrianglesOwnForWhatHasNoDirection) {
     return glm::dvec3(result.guides.Vec3(Layer::kNormal, 0));
   };
   const glm::dvec3 own(std::sin(0.5), 0.0, std::cos(0.5));
-  for (const glm::vec3 bad : {glm::vec3(0.0f), glm::vec3(0, 1e-30f, 0), glm::vec3(0, 1e-45f, 0), glm::vec3(kNaN),
-                              glm::vec3(0, kNaN, 1), glm::vec3(0, kInfinity, 0), glm::vec3(-kInfinity, kInfinity, 0)}) {
+  for (const glm::vec3 bad : {glm::vec3(0.0f), glm::vec3(0, 1e-30f, 0), glm::vec3(0, 1e-45f, 0), glm::vec3(kNan),
+                              glm::vec3(0, kNan, 1), glm::vec3(0, kInfinity, 0), glm::vec3(-kInfinity, kInfinity, 0)}) {
     EXPECT_LE(glm::distance(normal_with({bad, bad, bad, bad}), own), 2.0 * kRounded)
         << bad.x << " " << bad.y << " " << bad.z;
   }

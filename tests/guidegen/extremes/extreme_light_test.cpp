@@ -13,11 +13,10 @@
 #include "guidegen/light/direct_light.h"
 #include "tests/support/exact_rays.h"
 #include "tests/support/light_path_scenes.h"
+#include "tests/support/numbers.h"
 
 namespace scumble::testing {
 namespace {
-
-constexpr double kFloat = 0x1.0p-24;  // the largest relative error of a rounding to float
 
 LayerSet AllLight() { return LayerSet(kAllPaths).Add(Layer::kLuminance).Add(Layer::kShadow); }
 
@@ -81,10 +80,10 @@ TEST(ExtremeIntensity, EveryDecadeFollowsTheFormula) {
         const glm::dvec3 way = glm::dvec3(0.2, 0.1, 1.5) - place;
         const double expected = intensity * way.z / (kPi * std::pow(glm::length(way), 3.0));
         const std::size_t i = result.guides.Index(x, y);
-        EXPECT_NEAR(result.guides.Plane(Layer::kLuminance)[i], expected, (kFloat + 0x1.0p-48) * expected);
+        EXPECT_NEAR(result.guides.Plane(Layer::kLuminance)[i], expected, (kFloatRounding + 0x1.0p-48) * expected);
         // The floor's colour is a float.
         EXPECT_NEAR(result.guides.Plane(Layer::kLpeLDE, 1)[i], double(0.7f) * expected,
-                    (kFloat + 0x1.0p-46) * expected);
+                    (kFloatRounding + 0x1.0p-46) * expected);
         EXPECT_EQ(result.guides.Plane(Layer::kShadow)[i], 0.0f);
       }
     }
@@ -122,7 +121,7 @@ TEST(LampOnASurface, LightsByTheFormulaOrNotAtAll) {
         const glm::dvec3 way = glm::dvec3(0.31, -0.17, height) - (eye + ray.direction * (-eye.z / ray.direction.z));
         const double strength = 5.0 / (kPi * std::pow(glm::length(way), 3.0));
         const double expected = strength * std::max(height, 0.0);
-        const double tolerance = kFloat * expected + strength * std::ldexp(8.0, -49);
+        const double tolerance = kFloatRounding * expected + strength * std::ldexp(8.0, -49);
         const double luminance = result.guides.Plane(Layer::kLuminance)[i];
         if (height >= sight || luminance != 0.0) {
           EXPECT_NEAR(luminance, expected, tolerance) << height;
@@ -146,8 +145,10 @@ TEST(FarOut, LampsLightByTheFormula) {
       const auto result = Render(scene, LookingAt({0, 0, 1}, {0, 0, 0}, 30.0), Sized(8, 8, AllLight()));
       const double expected = lid ? 0.0 : 1.0 / kPi;
       for (std::size_t i = 0; i < result.guides.pixel_count(); ++i) {
-        EXPECT_NEAR(result.guides.Plane(Layer::kLuminance)[i], expected, kFloat * expected + 0x1p-49) << distance;
-        EXPECT_NEAR(result.guides.Plane(Layer::kLpeLDE, 1)[i], expected, kFloat * expected + 0x1p-49) << distance;
+        EXPECT_NEAR(result.guides.Plane(Layer::kLuminance)[i], expected, kFloatRounding * expected + 0x1p-49)
+            << distance;
+        EXPECT_NEAR(result.guides.Plane(Layer::kLpeLDE, 1)[i], expected, kFloatRounding * expected + 0x1p-49)
+            << distance;
         EXPECT_EQ(result.guides.Plane(Layer::kShadow)[i], lid ? 1.0f : 0.0f) << distance;
       }
     }
@@ -315,7 +316,7 @@ TEST(SunAngle, NoneIsOneRay) {
       const auto result = Render(scene, SlantedSpot(), Sized(4, 4, AllLight()));
       const double expected = 2.0 * std::sin(glm::radians(elevation)) / kPi;
       for (std::size_t i = 0; i < 16; ++i) {
-        EXPECT_NEAR(result.guides.Plane(Layer::kLuminance)[i], expected, kFloat * expected + 0x1.0p-49);
+        EXPECT_NEAR(result.guides.Plane(Layer::kLuminance)[i], expected, kFloatRounding * expected + 0x1.0p-49);
         EXPECT_EQ(result.guides.Plane(Layer::kShadow)[i], 0.0f);
       }
     }
@@ -358,7 +359,7 @@ TEST(Albedo, NoneAndAll) {
     const auto open = Render(scene, LookingAt({0, -4, 3}, {0, 0, 0}, 20.0), Paths(16, AllLight(), 16));
     for (const float value : open.guides.Plane(Layer::kLpeFull, 1)) EXPECT_EQ(value, albedo);
     // Luminance is that of white, whatever the paint.
-    EXPECT_NEAR(MeanLuminance(open), 1.0, kFloat);
+    EXPECT_NEAR(MeanLuminance(open), 1.0, kFloatRounding);
     AddObject(scene, "wall", QuadMesh(), glm::rotate(Moved(0, 1, 1), 0.5 * kPi, glm::dvec3(1, 0, 0)));
     GuidegenOptions options = Paths(16, {Layer::kLpeFull}, 16);
     options.max_bounces = 64;
@@ -385,7 +386,7 @@ TEST(Roughness, FromAMirrorToTheRoughest) {
   };
   EXPECT_EQ(returned(0.0f), 1.0);
   EXPECT_EQ(returned(1e-4f), 1.0);
-  EXPECT_NEAR(returned(0.0101f), 1.0, 1.02e-4 * 1.02e-4 + kFloat);
+  EXPECT_NEAR(returned(0.0101f), 1.0, 1.02e-4 * 1.02e-4 + kFloatRounding);
   // Weights are in [0, 1], so they vary by half at most; Spot() looks down at 0.2 degrees from head on.
   EXPECT_NEAR(returned(1.0f), 1.0 - std::log(2.0), 5.0 * 0.5 / 256.0);
 }
@@ -415,8 +416,9 @@ TEST(ThousandLights, BringTheirSum) {
         expected += lamp.intensity * way.z / (kPi * std::pow(glm::length(way), 3.0));
       }
       const std::size_t i = result.guides.Index(x, y);
-      EXPECT_NEAR(result.guides.Plane(Layer::kLuminance)[i], expected, (kFloat + 0x1.0p-42) * expected);
-      EXPECT_NEAR(result.guides.Plane(Layer::kLpeLDE, 1)[i], double(0.8f) * expected, (kFloat + 0x1.0p-42) * expected);
+      EXPECT_NEAR(result.guides.Plane(Layer::kLuminance)[i], expected, (kFloatRounding + 0x1.0p-42) * expected);
+      EXPECT_NEAR(result.guides.Plane(Layer::kLpeLDE, 1)[i], double(0.8f) * expected,
+                  (kFloatRounding + 0x1.0p-42) * expected);
       EXPECT_EQ(result.guides.Plane(Layer::kShadow)[i], 0.0f);
     }
   }

@@ -14,12 +14,10 @@
 #include "tests/support/gltf_builder.h"
 #include "tests/support/guidegen_checks.h"
 #include "tests/support/guidegen_scenes.h"
+#include "tests/support/numbers.h"
 
 namespace scumble::testing {
 namespace {
-
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 class ExtremePlace : public LoaderTest {
  protected:
@@ -201,7 +199,7 @@ TEST_F(ExtremePlace, LoadersKeepTheDirectionOfTinyNormalsAndReplaceThoseWithoutO
   GltfBuilder gltf;
   const int position = gltf.Floats({0, 0, 0, 1, 0, 0, 0, 1, 0, 5, 5, 0, 6, 5, 0, 5, 6, 0}, 3);
   const int normal = gltf.Floats({0, 1e-30f, 0, 0, 1e-45f, 0, 3e38f, 3e38f, 0,  //
-                                  0, 0, 0, kNaN, 0, 1, kInfinity, 0, 0},
+                                  0, 0, 0, kNan, 0, 1, kInfinity, 0, 0},
                                  3);
   const int index = gltf.Indices({0, 1, 2, 3, 4, 5});
   const int mesh = gltf.Mesh({{{"attributes", {{"POSITION", position}, {"NORMAL", normal}}}, {"indices", index}}});

@@ -54,14 +54,14 @@ double Angle(const glm::dvec3& a, const glm::dvec3& b) {
 }
 
 // Rings of the sphere's picture, by their radius.
-constexpr std::array<double, 7> kRings = {0.0, 0.5, 0.8, 0.95, 0.99, 0.999, 1.0};
+constexpr std::array<double, 7> kRadii = {0.0, 0.5, 0.8, 0.95, 0.99, 0.999, 1.0};
 
 // Directions evenly over the picture of a ring, at the places (t of [0, 1), angle) of a hash.
 void ForDirections(int ring, int count, const std::function<void(const glm::dvec3&)>& see) {
   for (int i = 0; i < count; ++i) {
     const std::uint64_t hash = Hash(std::uint64_t(ring), std::uint64_t(i));
-    const double from = kRings[std::size_t(ring)] * kRings[std::size_t(ring)];
-    const double to = kRings[std::size_t(ring) + 1] * kRings[std::size_t(ring) + 1];
+    const double from = kRadii[std::size_t(ring)] * kRadii[std::size_t(ring)];
+    const double to = kRadii[std::size_t(ring) + 1] * kRadii[std::size_t(ring) + 1];
     const double radius = std::sqrt(from + (to - from) * (double(hash >> 11) * 0x1p-53));
     const double around = 2.0 * M_PI * (double(Mix64(hash) >> 11) * 0x1p-53);
     see({radius * std::cos(around), radius * std::sin(around), std::sqrt(1.0 - radius * radius)});
@@ -76,7 +76,7 @@ void ForDirections(int ring, int count, const std::function<void(const glm::dvec
 // normal is as good there as in the middle.
 TEST(Precision, TheDirectionOfAStoredNormal) {
   for (const Kept kept : kAllKept) {
-    for (int ring = 0; ring + 1 < int(kRings.size()); ++ring) {
+    for (int ring = 0; ring + 1 < int(kRadii.size()); ++ring) {
       double worst = 0.0, closest = 0.0, squares = 0.0, expected = 0.0;
       ForDirections(ring, 100000, [&](const glm::dvec3& n) {
         const glm::dvec3 stored = Rounded(kept, n);
@@ -99,11 +99,11 @@ TEST(Precision, TheDirectionOfAStoredNormal) {
       // The square of what is evenly spread has a standard deviation of 0.9 of its mean; five of those of 1e5
       // directions, and half of that for the root: 0.7 %. In the last ring z spans 5.7 steps of 8 bits; in the cut one
       // its square is a quarter less than a third, with 0.23 of the directions and half of the sum: 1.4 % of the root.
-      const bool cut = kept == Kept::kEightBits && ring + 2 == int(kRings.size());
+      const bool cut = kept == Kept::kEightBits && ring + 2 == int(kRadii.size());
       EXPECT_NEAR(std::sqrt(squares / expected), 1.0, 0.5 * 5.0 * 0.9 / std::sqrt(1e5) + (cut ? 0.014 : 0.0))
           << NameOf(kept) << ", ring " << ring;
       std::printf("normal, %s, ring %.3f: worst %.3g deg, rms %.3g deg, %.2f of its limit\n", NameOf(kept),
-                  kRings[std::size_t(ring) + 1], glm::degrees(worst), glm::degrees(std::sqrt(squares / 1e5)), closest);
+                  kRadii[std::size_t(ring) + 1], glm::degrees(worst), glm::degrees(std::sqrt(squares / 1e5)), closest);
     }
   }
 }
@@ -136,14 +136,14 @@ TEST(Precision, TheSourceOfAStoredNormal) {
   const PreparedExemplar sphere(NoisePicture(2048), 0.0, 2048);
   for (const Kept kept : {Kept::kEightBits, Kept::kHalf}) {
     const double step = std::sqrt(2.0) * LargestHalfStep(kept) + 0x1p-21;
-    for (int ring = 0; ring + 1 < int(kRings.size()); ++ring) {
+    for (int ring = 0; ring + 1 < int(kRadii.size()); ++ring) {
       SourceError worst;
       ForDirections(ring, 100000, [&](const glm::dvec3& n) {
         const SourceError error = ErrorOf(sphere, n, Rounded(kept, n));
         worst.moved = std::max(worst.moved, error.moved);
         worst.turned = std::max(worst.turned, error.turned);
       });
-      const double turn = LargestTurn(kRings[std::size_t(ring) + 1], step);
+      const double turn = LargestTurn(kRadii[std::size_t(ring) + 1], step);
       EXPECT_LE(worst.moved, step);
       EXPECT_LE(worst.turned, turn) << NameOf(kept) << ", ring " << ring;
       // A step of half floats is full for values above 1/2 only, and half as large in the middle; at the very rim the
@@ -152,7 +152,7 @@ TEST(Precision, TheSourceOfAStoredNormal) {
       EXPECT_GT(worst.turned, 0.4 * turn) << NameOf(kept) << ", ring " << ring;
       std::printf(
           "source, %s, ring %.3f: moved %.3g px of R 256, %.3g px of R 4096 (limit %.3g); turned %.3g deg (%.3g)\n",
-          NameOf(kept), kRings[std::size_t(ring) + 1], 256 * worst.moved, 4096 * worst.moved, 4096 * step,
+          NameOf(kept), kRadii[std::size_t(ring) + 1], 256 * worst.moved, 4096 * worst.moved, 4096 * step,
           glm::degrees(worst.turned), glm::degrees(turn));
     }
   }
@@ -165,8 +165,8 @@ TEST(Precision, TheSourceOfANormalInFloats) {
   const PreparedExemplar sphere(NoisePicture(2048), 0.0, 2048);
   const double usable = sphere.OnDisc({1, 0, 0}).x;
   const auto lifted = [](const glm::dvec2& p) { return glm::dvec3(p, std::sqrt(1.0 - glm::dot(p, p))); };
-  for (int ring = 0; ring + 1 < int(kRings.size()); ++ring) {
-    const double step = (ring + 2 < int(kRings.size()) ? 2.0 : 5.0) * std::sqrt(2.0) * LargestHalfStep(Kept::kFloat);
+  for (int ring = 0; ring + 1 < int(kRadii.size()); ++ring) {
+    const double step = (ring + 2 < int(kRadii.size()) ? 2.0 : 5.0) * std::sqrt(2.0) * LargestHalfStep(Kept::kFloat);
     SourceError worst;
     ForDirections(ring, 100000, [&](const glm::dvec3& n) {
       const glm::dvec2 found(sphere.OnDisc(glm::vec3(n)));
@@ -174,14 +174,14 @@ TEST(Precision, TheSourceOfANormalInFloats) {
       worst.moved = std::max(worst.moved, glm::distance(found, truth));
       worst.turned = std::max(worst.turned, Angle(lifted(truth), lifted(found)));
     });
-    const double turn = LargestTurn(std::min(kRings[std::size_t(ring) + 1], usable), step);
+    const double turn = LargestTurn(std::min(kRadii[std::size_t(ring) + 1], usable), step);
     EXPECT_LE(worst.moved, step) << "ring " << ring;
     EXPECT_LE(worst.turned, turn) << "ring " << ring;
-    if (ring + 2 < int(kRings.size())) {
+    if (ring + 2 < int(kRadii.size())) {
       EXPECT_GT(worst.moved, 0.2 * step) << "below a half a step is half as large";
     }
     std::printf("source, float, ring %.3f: moved %.3g px of R 4096 (limit %.3g); turned %.3g deg (%.3g)\n",
-                kRings[std::size_t(ring) + 1], 4096 * worst.moved, 4096 * step, glm::degrees(worst.turned),
+                kRadii[std::size_t(ring) + 1], 4096 * worst.moved, 4096 * step, glm::degrees(worst.turned),
                 glm::degrees(turn));
   }
 }
@@ -193,7 +193,7 @@ TEST(Precision, TheSourceOfANormalBroughtToUnitLength) {
   const PreparedExemplar sphere(NoisePicture(2048), 0.0, 2048);
   for (const Kept kept : {Kept::kEightBits, Kept::kHalf}) {
     const double off = std::sqrt(3.0) * LargestHalfStep(kept);
-    for (int ring = 0; ring + 1 < int(kRings.size()); ++ring) {
+    for (int ring = 0; ring + 1 < int(kRadii.size()); ++ring) {
       std::vector<glm::dvec3> normals;
       ForDirections(ring, 100000, [&](const glm::dvec3& n) { normals.push_back(n); });
       GuideSet guides = MakeGuides(
@@ -206,13 +206,13 @@ TEST(Precision, TheSourceOfANormalBroughtToUnitLength) {
         worst.turned = std::max(worst.turned, error.turned);
       }
       // Float's sums lose 2^-22 at either place, which turns a normal by that over its height above the disc.
-      const double to = std::min(kRings[std::size_t(ring) + 1], double(sphere.OnDisc({1, 0, 0}).x));
+      const double to = std::min(kRadii[std::size_t(ring) + 1], double(sphere.OnDisc({1, 0, 0}).x));
       const double limit = off / (1.0 - off) + 0x1p-21 / std::sqrt(1.0 - to * to);
       EXPECT_LE(worst.moved, limit);
       EXPECT_LE(worst.turned, limit) << NameOf(kept) << ", ring " << ring;
       EXPECT_GT(worst.turned, 0.45 * off) << NameOf(kept) << ", ring " << ring;
       std::printf("unit source, %s, ring %.3f: moved %.3g px of R 256, %.3g px of R 4096; turned %.3g deg (%.3g)\n",
-                  NameOf(kept), kRings[std::size_t(ring) + 1], 256 * worst.moved, 4096 * worst.moved,
+                  NameOf(kept), kRadii[std::size_t(ring) + 1], 256 * worst.moved, 4096 * worst.moved,
                   glm::degrees(worst.turned), glm::degrees(limit));
     }
   }
@@ -232,8 +232,8 @@ TEST(Precision, TheSourceInPixels) {
       double worst = 0.0;
       int changed = 0, changed_inside = 0;
       double expected = 0.0, variance = 0.0;
-      for (int ring = 0; ring + 1 < int(kRings.size()); ++ring) {
-        const bool is_inside = ring + 2 < int(kRings.size());
+      for (int ring = 0; ring + 1 < int(kRadii.size()); ++ring) {
+        const bool is_inside = ring + 2 < int(kRadii.size());
         ForDirections(ring, 20000, [&](const glm::dvec3& n) {
           const glm::vec3 whole(n), stored(Rounded(kept, n));
           const Source at = sphere.NearestNeighbour(whole), found = sphere.NearestNeighbour(stored);
@@ -320,8 +320,8 @@ void CheckPixels(const PreparedExemplar& sphere, bool is_table, Kept kept) {
   const double off = std::sqrt(3.0) * LargestHalfStep(kept) / (1.0 - std::sqrt(3.0) * LargestHalfStep(kept));
   std::uint64_t draws = 0;
   Changes all, told;
-  for (int ring = 0; ring + 1 < int(kRings.size()); ++ring) {
-    const double to = std::min(1.0, kRings[std::size_t(ring) + 1] + off + 0.5 * cell), gap = LargestGap(to, radius);
+  for (int ring = 0; ring + 1 < int(kRadii.size()); ++ring) {
+    const double to = std::min(1.0, kRadii[std::size_t(ring) + 1] + off + 0.5 * cell), gap = LargestGap(to, radius);
     const double limit = radius * (off + 2.0 * gap + cell) + radius * 0x1p-20;  // what float's sums lose
     const double middles = 2.0 / LookUpTable::kResolution * std::sqrt(1.0 + std::sqrt(1.0 - to * to));
     const bool is_told = is_table ? middles > 2.0 * gap : ring < 3;
@@ -340,7 +340,7 @@ void CheckPixels(const PreparedExemplar& sphere, bool is_table, Kept kept) {
     });
     EXPECT_LE(worst, limit) << "ring " << ring;
     std::printf("pixels, %s, %s, R %d, ring %.3f: worst %.2f (limit %.2f)\n", is_table ? "table" : "tree", NameOf(kept),
-                radius, kRings[std::size_t(ring) + 1], worst, limit);
+                radius, kRadii[std::size_t(ring) + 1], worst, limit);
   }
   if (!is_table) {
     const double share = 0.5 * (told.found + told.expected) / told.seen;
@@ -387,7 +387,7 @@ void CheckPixelsInFloats(NearestSearch search, int rings,
         others += !(at == found);
       });
       std::printf("pixels, %s, float, R %d, ring %.3f: worst %.2f, other pixel %d of %d\n",
-                  search == NearestSearch::kTree ? "tree" : "table", radius, kRings[std::size_t(ring) + 1], worst,
+                  search == NearestSearch::kTree ? "tree" : "table", radius, kRadii[std::size_t(ring) + 1], worst,
                   others, kFloatDirections);
     }
   }
@@ -412,10 +412,10 @@ Source NearestPixel(const PreparedExemplar& sphere, const glm::dvec3& n, int rea
 // where it is stored, √¾ in all; where it is brought to unit length 2.5 for the length (three squares, two sums, the
 // root) and one for the quotients. That is 4.4 u, on the way to the pixel that is found and to the nearest: 9 u.
 TEST(Precision, TheSourceInPixelsByTreeInFloats) {
-  CheckPixelsInFloats(NearestSearch::kTree, int(kRings.size()) - 1,
+  CheckPixelsInFloats(NearestSearch::kTree, int(kRadii.size()) - 1,
                       [](const PreparedExemplar& sphere, int ring, const glm::dvec3& n, Source found) {
                         const int radius = sphere.size() / 2;
-                        const double gap = LargestGap(kRings[std::size_t(ring) + 1], radius);
+                        const double gap = LargestGap(kRadii[std::size_t(ring) + 1], radius);
                         const Source nearest = NearestPixel(sphere, n, int(gap * radius) + 2);
                         const auto off = [&](Source at) {
                           return glm::distance(n, glm::dvec3(sphere.Normal(at.x, at.y)));
@@ -439,7 +439,7 @@ Source SourceOfCell(const PreparedExemplar& sphere, const glm::dvec2& place) {
 // formula's cell, or of another where that much is across a border. In the last ring middles of cells lie beyond the
 // disc, where none can be asked for.
 TEST(Precision, TheSourceInPixelsByTableInFloats) {
-  CheckPixelsInFloats(NearestSearch::kTable, int(kRings.size()) - 2,
+  CheckPixelsInFloats(NearestSearch::kTable, int(kRadii.size()) - 2,
                       [](const PreparedExemplar& sphere, int, const glm::dvec3& n, Source found) {
                         const glm::dvec2 place = glm::dvec2(n) / std::sqrt(1.0 + n.z);
                         bool is_near = false;

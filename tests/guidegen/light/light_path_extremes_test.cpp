@@ -17,12 +17,12 @@
 
 #include "tests/support/exact_rays.h"
 #include "tests/support/light_path_scenes.h"
+#include "tests/support/numbers.h"
 
 namespace scumble::testing {
 namespace {
 
-constexpr double kFloat = 0x1.0p-24;  // the largest relative error of a rounding to float
-constexpr double kErrors = 5.0;       // standard errors: a normal deviate is farther off once in 1.7 million
+constexpr double kErrors = 5.0;  // standard errors: a normal deviate is farther off once in 1.7 million
 
 // A floor with a matt, a smooth metal and a coated sphere under one light of every kind with extent, a point light, a
 // panel that emits, and a sky. What shines is told by floats of few bits, so that Scale can multiply it without a
@@ -81,7 +81,7 @@ TEST(Extremes, LayersScaleWithTheLight) {
         const auto actual = scaled.guides.Plane(info.layer, c);
         for (std::size_t i = 0; i < expected.size(); ++i) {
           const double smallest = 0x1.0p-150 * (1.0 + 1.0 / factor);
-          const double tolerance = (2.0 * kFloat + 0x1.0p-30) * expected[i] + smallest;
+          const double tolerance = (2.0 * kFloatRounding + 0x1.0p-30) * expected[i] + smallest;
           ASSERT_NEAR(actual[i] / factor, expected[i], tolerance) << info.name << " " << factor << " pixel " << i;
         }
       }
@@ -184,7 +184,7 @@ TEST(Extremes, LampsInTheSurfaceItselfDoNotLightIt) {
           most += kAlbedo / kPi * kStrength * off / std::pow(glm::length(lamp - place), 3.0);
         }
         const double value = result.guides.Plane(Layer::kLpeFull, 1)[i];
-        EXPECT_LE(value, most * (1.0 + 4.0 * kFloat)) << "pixel " << x << ", " << y << " angle " << angle;
+        EXPECT_LE(value, most * (1.0 + 4.0 * kFloatRounding)) << "pixel " << x << ", " << y << " angle " << angle;
         brightest = std::max(brightest, value);
       }
     }

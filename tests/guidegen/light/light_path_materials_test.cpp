@@ -201,6 +201,60 @@ TEST(MaterialLobes, ASunGivesTheFormulas) {
   }
 }
 
+// Oren and Nayar's lobe as its authors write it, by angles: cos φ sin α tan β with the smaller of the two angles β, in
+// Fujii's form, which leaves the tangent out where the light comes from the eye's other side.
+double RoughLobe(double color, double roughness, const glm::dvec3& eye, const glm::dvec3& light) {
+  const double to_eye = std::acos(eye.z), to_light = std::acos(light.z);
+  const double turn = std::cos(std::atan2(eye.y, eye.x) - std::atan2(light.y, light.x));
+  const double greater = std::max(to_eye, to_light), smaller = std::min(to_eye, to_light);
+  const double slant = turn * std::sin(greater) * (turn > 0.0 ? std::tan(smaller) : std::sin(smaller));
+  const double a = 1.0 / (kPi + (3.0 * kPi - 4.0) / 6.0 * roughness);
+  return color * a * (1.0 + roughness * slant);
+}
+
+// The sun on the far side of the eye, and behind the eye; luminance keeps its own definition, white Lambert.
+TEST(MaterialLobes, ASunOnRoughDiffuseGivesTheFormula) {
+  for (const double roughness : {0.0, 0.3, 1.0}) {
+    for (const double angle : {-1.3, -0.6, 0.0, 0.7, 1.4}) {
+      Scene scene = Floor(Painted(Bsdf::kDiffuse, 0.6f));
+      scene.materials[0].diffuse_roughness = float(roughness);
+      scene.lights = {SlantedSun(angle)};
+      const auto result = Render(scene, SlantedAt(0.0), Paths(1, {Layer::kLpeLDE, Layer::kLpeFull, Layer::kLuminance}));
+      const double expected = RoughLobe(0.6, float(roughness), kSlantedEye, ToSun(angle)) * std::cos(angle);
+      EXPECT_NEAR(Center(result, Layer::kLpeLDE), expected, 2e-5 * expected) << roughness << " " << angle;
+      EXPECT_EQ(Center(result, Layer::kLpeFull), Center(result, Layer::kLpeLDE));
+      EXPECT_NEAR(result.guides.Plane(Layer::kLuminance)[0], std::cos(angle) / kPi, 1e-6);
+    }
+  }
+}
+
+// A lamp with extent, found by points on it and by directions: both use one lobe.
+TEST(MaterialLobes, AWorldAndAPanelOnRoughDiffuseGiveTheIntegral) {
+  Scene scene = Floor(Painted(Bsdf::kDiffuse, 1.0f));
+  scene.materials[0].diffuse_roughness = 1.0f;
+  scene.world_radiance = glm::vec3(1.0f);
+  double expected = 0.0;
+  const int n = 400;
+  for (int ring = 0; ring < n; ++ring) {
+    for (int column = 0; column < n; ++column) {
+      const double z = (ring + 0.5) / n, around = 2.0 * kPi * (column + 0.5) / n, side = std::sqrt(1.0 - z * z);
+      expected += RoughLobe(1.0, 1.0, kSlantedEye, {side * std::cos(around), side * std::sin(around), z}) * z;
+    }
+  }
+  expected *= 2.0 * kPi / (n * n);
+  EXPECT_LT(expected, 1.0);
+  const auto sky = Render(scene, SlantedAt(0.0), Paths(4, {Layer::kLpeFull}, 1024));
+  EXPECT_NEAR(Mean(sky, Layer::kLpeFull), expected, 2e-3);
+
+  // A panel that fills most of the sky, seen from below, is nearly the same sky.
+  scene.world_radiance = glm::vec3(0.0f);
+  Light panel = Above(LightType::kArea, 0.02, 1.0);
+  panel.size_x = panel.size_y = 20.0;
+  scene.lights = {panel};
+  const auto lit = Render(scene, LookingAt({0, -0.01, 0.01}, {0, 0, 0}, 1e-4), Paths(4, {Layer::kLpeLDE}, 1024));
+  EXPECT_NEAR(Mean(lit, Layer::kLpeLDE), expected, 6e-3);
+}
+
 // G multiplies the roughness and B the metalness, as numbers; R and the sRGB curve have no part in it.
 TEST(MaterialTextures, RoughnessAndMetalness) {
   Scene scene = Floor(Coated({0.6, 0.9, 0.8}));

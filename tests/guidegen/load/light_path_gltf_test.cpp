@@ -32,6 +32,24 @@ TEST_F(GltfLight, FactorsAndStrengthAreRead) {
   EXPECT_EQ(scene->materials[1].metallic_roughness_texture.texture, -1);
 }
 
+TEST_F(GltfLight, DiffuseRoughnessOfABlendFileIsRead) {
+  const auto load = [&](const nlohmann::json& bsdf) {
+    GltfBuilder gltf;
+    gltf.Triangle();
+    gltf.Append("materials", {{"name", "Clay"}, {"extras", {{"scumble", {{"bsdf", bsdf}}}}}});
+    return LoadScene(Write("a.glb", gltf.Glb()));
+  };
+  const nlohmann::json lambert = {{"type", "DIFFUSE"}, {"color", {0.5, 0.5, 0.5}}};
+  nlohmann::json rough = lambert, broken = lambert;
+  rough["roughness"] = 0.75;
+  broken["roughness"] = 1.5;
+  ASSERT_TRUE(load(lambert)) << "written by an earlier version";
+  EXPECT_EQ(load(lambert)->materials[0].diffuse_roughness, 0.0f);
+  EXPECT_EQ(load(rough)->materials[0].diffuse_roughness, 0.75f);
+  ASSERT_FALSE(load(broken));
+  EXPECT_NE(load(broken).error().message.find("'roughness' is 1.5"), std::string::npos) << load(broken).error().message;
+}
+
 TEST_F(GltfLight, ValuesOutOfRangeAreRefusedByName) {
   const auto refuse = [&](const nlohmann::json& material, const std::string& what) {
     GltfBuilder gltf;

@@ -24,7 +24,7 @@ TEST_F(LoadAnimation, ATurningNode) {
     const glm::dmat4 expected = glm::scale(move * RotationY(degrees), glm::dvec3(2.0));
     EXPECT_LT(LargestDifference(scene.instances[0].world_from_object, expected), kFloatError) << seconds;
   }
-  EXPECT_THAT(At(animated, 0.0).warnings, testing::IsEmpty());
+  EXPECT_THAT(At(animated, 0.0).warnings, ::testing::IsEmpty());
 }
 
 TEST_F(LoadAnimation, RotationsTakeTheShorterWay) {
@@ -118,7 +118,7 @@ TEST_F(LoadAnimation, WhatIsScaledToNothingIsGoneForThatTime) {
   ASSERT_TRUE(animated.MoveTo(1.0, scene).ok());
   ASSERT_EQ(scene.instances.size(), 2u);
   EXPECT_EQ(scene.instances[0].object, "Tri");
-  EXPECT_THAT(scene.warnings, testing::IsEmpty());
+  EXPECT_THAT(scene.warnings, ::testing::IsEmpty());
 }
 
 TEST_F(LoadAnimation, ABarBentByARightAngle) {
@@ -144,7 +144,7 @@ TEST_F(LoadAnimation, ASkinWithoutAnimationIsPosedToo) {
   const Expected<Scene> scene = LoadScene(Write("scene.glb", bar.b.Glb()));
   ASSERT_TRUE(scene.ok()) << scene.error().message;
   EXPECT_LT(glm::distance(WorldPosition(*scene, 0, 5), glm::dvec3(-1, 2, 0)), kFloatError);
-  EXPECT_THAT(scene->warnings, testing::IsEmpty());
+  EXPECT_THAT(scene->warnings, ::testing::IsEmpty());
 }
 
 TEST_F(LoadAnimation, NormalsGoByTheInverseTranspose) {
@@ -188,7 +188,7 @@ TEST_F(LoadAnimation, VerticesWithoutWeightsFollowTheirFirstJoint) {
   bar.b.json["nodes"][bar.root]["translation"] = {0, 0, 2};
   const Scene scene = At(bar.b, 0.0);
   EXPECT_LT(glm::distance(WorldPosition(scene, 0, 5), glm::dvec3(1, 2, 2)), kFloatError);
-  EXPECT_THAT(scene.warnings, testing::ElementsAre(HasSubstr("without a weight")));
+  EXPECT_THAT(scene.warnings, ::testing::ElementsAre(HasSubstr("without a weight")));
 }
 
 TEST_F(LoadAnimation, MorphTargets) {
@@ -273,8 +273,8 @@ TEST_F(LoadAnimation, AnimationsByName) {
   run["channels"][0]["target"]["node"] = other;
   b.Append("animations", run);
   const AnimatedScene first = Load(b);
-  EXPECT_THAT(first.animations(), testing::ElementsAre("Walk", "animation_1"));
-  EXPECT_THAT(At(first, 0).warnings, testing::ElementsAre(HasSubstr("only the first of the 2 animations")));
+  EXPECT_THAT(first.animations(), ::testing::ElementsAre("Walk", "animation_1"));
+  EXPECT_THAT(At(first, 0).warnings, ::testing::ElementsAre(HasSubstr("only the first of the 2 animations")));
   const auto x = [](const Scene& scene, std::size_t i) { return scene.instances[i].world_from_object[3].x; };
   EXPECT_EQ(x(At(first, 1), 0), 1.0);
   EXPECT_EQ(x(At(first, 1), 1), 0.0);

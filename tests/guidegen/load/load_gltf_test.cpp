@@ -5,14 +5,13 @@
 #include "core/io/picture_file.h"
 #include "guidegen/load/load_scene.h"
 #include "tests/support/gltf_builder.h"
+#include "tests/support/numbers.h"
 
 namespace scumble {
 namespace {
 
 using nlohmann::json;
 using testing::HasSubstr;
-
-constexpr double kPi = 3.14159265358979323846;
 
 class LoadGltf : public LoaderTest {
  protected:
@@ -69,7 +68,7 @@ std::vector<std::string> ObjectNames(const Scene& scene) {
   return names;
 }
 
-void ExpectNear(const glm::vec3& a, const glm::vec3& b, float tolerance = 1e-6f) {
+void ExpectClose(const glm::vec3& a, const glm::vec3& b, float tolerance = 1e-6f) {
   EXPECT_NEAR(a.x, b.x, tolerance);
   EXPECT_NEAR(a.y, b.y, tolerance);
   EXPECT_NEAR(a.z, b.z, tolerance);
@@ -83,7 +82,7 @@ TEST_F(LoadGltf, TriangleWithoutNormalsOrMaterial) {
   EXPECT_EQ(scene.meshes[0].positions.size(), 3u);
   ASSERT_EQ(scene.meshes[0].triangles.size(), 1u);
   EXPECT_EQ(scene.meshes[0].triangles[0], glm::uvec3(0, 1, 2));
-  for (const glm::vec3& normal : scene.meshes[0].normals) ExpectNear(normal, {0, 0, 1}, 0);
+  for (const glm::vec3& normal : scene.meshes[0].normals) ExpectClose(normal, {0, 0, 1}, 0);
   ASSERT_EQ(scene.instances.size(), 1u);
   EXPECT_EQ(scene.instances[0].object, "Tri");
   ASSERT_EQ(scene.materials.size(), 1u);
@@ -169,7 +168,7 @@ TEST_F(LoadGltf, InterleavedAndNormalizedAttributes) {
   b.Root({{"mesh", b.Mesh({{{"attributes", {{"POSITION", position}, {"NORMAL", normal}, {"TEXCOORD_0", uv}}}}})}});
   const Scene scene = Load(b);
   EXPECT_EQ(scene.meshes[0].positions[1], glm::vec3(1, 0, 0));
-  ExpectNear(scene.meshes[0].normals[2], glm::vec3(0, -std::sqrt(0.5f), -std::sqrt(0.5f)));
+  ExpectClose(scene.meshes[0].normals[2], glm::vec3(0, -std::sqrt(0.5f), -std::sqrt(0.5f)));
   EXPECT_EQ(scene.meshes[0].uvs[0][0].x, 1.0f);
   EXPECT_NEAR(scene.meshes[0].uvs[0][0].y, 0.2f, 1e-7f);
 }
@@ -235,9 +234,9 @@ TEST_F(LoadGltf, MaterialsAndTextures) {
   EXPECT_EQ(m.base_color_texture.wrap_v, TextureWrap::kMirror);
   EXPECT_TRUE(m.base_color_texture.nearest);
   // A quarter turn counter-clockwise in the picture takes (1, 0), right, to (0, -1), up.
-  ExpectNear(m.base_color_texture.uv_transform * glm::vec3(0, 0, 1), {0.5, 0.25, 1});
-  ExpectNear(m.base_color_texture.uv_transform * glm::vec3(1, 0, 1), {0.5, 0.25 - 2, 1});
-  ExpectNear(m.base_color_texture.uv_transform * glm::vec3(0, 1, 1), {0.5 + 3, 0.25, 1});
+  ExpectClose(m.base_color_texture.uv_transform * glm::vec3(0, 0, 1), {0.5, 0.25, 1});
+  ExpectClose(m.base_color_texture.uv_transform * glm::vec3(1, 0, 1), {0.5, 0.25 - 2, 1});
+  ExpectClose(m.base_color_texture.uv_transform * glm::vec3(0, 1, 1), {0.5 + 3, 0.25, 1});
   EXPECT_EQ(scene.materials[1].alpha_mode, AlphaMode::kBlend);
   EXPECT_FALSE(scene.materials[1].double_sided);
   ASSERT_EQ(scene.textures.size(), 1u);
@@ -358,7 +357,7 @@ TEST_F(LoadGltf, SpecularGlossinessIsReadAsFarAsItGoes) {
   EXPECT_EQ(full.base_color, glm::vec4(0.25f, 0.5f, 0.75f, 0.5f));
   EXPECT_EQ(full.base_color_texture.texture, 0);
   EXPECT_EQ(full.base_color_texture.uv_set, 1);
-  ExpectNear(full.base_color_texture.uv_transform * glm::vec3(1, 1, 1), {2, 3, 1});
+  ExpectClose(full.base_color_texture.uv_transform * glm::vec3(1, 1, 1), {2, 3, 1});
   EXPECT_EQ(full.metallic, 0.0f);
   EXPECT_EQ(full.roughness, 0.25f);
   EXPECT_EQ(scene.materials[2].base_color, glm::vec4(1.0f));
@@ -382,14 +381,14 @@ TEST_F(LoadGltf, TangentsAreKeptOrComputed) {
   Scene scene = Load(b);
   ASSERT_EQ(scene.meshes[0].tangents.size(), 4u);
   for (const glm::vec4& tangent : scene.meshes[0].tangents) {
-    ExpectNear(glm::vec3(tangent), {1, 0, 0});
+    ExpectClose(glm::vec3(tangent), {1, 0, 0});
     EXPECT_EQ(tangent.w, 1.0f);
   }
   // Mirrored by the texture transform.
   b.json["materials"][0]["normalTexture"]["extensions"]["KHR_texture_transform"] = {{"scale", {-1, 1}}};
   scene = Load(b);
   for (const glm::vec4& tangent : scene.meshes[0].tangents) {
-    ExpectNear(glm::vec3(tangent), {-1, 0, 0});
+    ExpectClose(glm::vec3(tangent), {-1, 0, 0});
     EXPECT_EQ(tangent.w, -1.0f);
   }
   const int given = b.Floats({0, 2, 0, -1, 0, 2, 0, -1, 0, 2, 0, -1, 0, 2, 0, -1}, 4);
@@ -435,8 +434,8 @@ TEST_F(LoadGltf, Cameras) {
   EXPECT_TRUE(std::isinf(eye.z_far));
   EXPECT_EQ(eye.aspect, 1.5);
   // The scale moves the camera but does not stretch its axes: a quarter turn about +Y takes +Z to +X.
-  ExpectNear(glm::vec3(eye.world_from_camera[2]), {1, 0, 0});
-  ExpectNear(glm::vec3(eye.world_from_camera[3]), {6, 0, 0});
+  ExpectClose(glm::vec3(eye.world_from_camera[2]), {1, 0, 0});
+  ExpectClose(glm::vec3(eye.world_from_camera[3]), {6, 0, 0});
   EXPECT_NEAR(glm::determinant(glm::dmat3(eye.world_from_camera)), 1.0, 1e-12);
   EXPECT_EQ(scene.cameras[1].name, "Eye#2");
   EXPECT_TRUE(scene.cameras[1].orthographic);
@@ -501,10 +500,10 @@ TEST_F(LoadGltf, LampsAndCamerasWithoutADirectionAreRefused) {
     const Scene scene = Load(with);
     const glm::dmat4 rigid =
         scene.cameras.empty() ? scene.lights.at(0).world_from_light : scene.cameras[0].world_from_camera;
-    ExpectNear(glm::vec3(rigid[0]), {1, 0, 0});
-    ExpectNear(glm::vec3(rigid[1]), {0, 1, 0});
-    ExpectNear(glm::vec3(rigid[2]), {0, 0, 1});
-    ExpectNear(glm::vec3(rigid[3]), {7, 8, 9});
+    ExpectClose(glm::vec3(rigid[0]), {1, 0, 0});
+    ExpectClose(glm::vec3(rigid[1]), {0, 1, 0});
+    ExpectClose(glm::vec3(rigid[2]), {0, 0, 1});
+    ExpectClose(glm::vec3(rigid[3]), {7, 8, 9});
   }
 }
 

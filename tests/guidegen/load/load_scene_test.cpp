@@ -11,6 +11,7 @@
 #include "guidegen/load/mesh_normals.h"
 #include "guidegen/scene/framing.h"
 #include "tests/support/gltf_builder.h"
+#include "tests/support/numbers.h"
 
 namespace scumble {
 namespace {
@@ -18,8 +19,6 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-
-constexpr double kPi = 3.14159265358979323846;
 
 class LoadText : public LoaderTest {
  protected:

@@ -10,13 +10,12 @@
 
 #include "core/style/style_file.h"
 #include "tests/support/cli_harness.h"
+#include "tests/support/numbers.h"
 #include "transfer/transfer.h"
 
 namespace scumble {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kLargestHalf = 65504.0f;
 
 class ExtremeFiles : public CliTest {

@@ -7,15 +7,13 @@
 #include <vector>
 
 #include "tests/support/every_instruction_set.h"
+#include "tests/support/numbers.h"
 #include "tests/support/transfer_fixtures.h"
 
 namespace scumble {
 namespace {
 
 using namespace testing;
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 // Two lights, the sums and differences of which are exact.
 constexpr double kBright = 0.75, kDark = 0.25;

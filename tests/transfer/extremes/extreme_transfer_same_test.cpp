@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "tests/support/every_instruction_set.h"
+#include "tests/support/numbers.h"
 #include "tests/support/plain_engine.h"
 #include "tests/support/transfer_fixtures.h"
 
@@ -18,10 +19,6 @@ namespace scumble {
 namespace {
 
 using namespace testing;
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kDenormal = std::numeric_limits<float>::denorm_min();
 
 // Every layer that a transfer may read, on hills with a hole.
 GuideSet Guides(int width, int height) {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "tests/support/every_instruction_set.h"
+#include "tests/support/numbers.h"
 #include "tests/support/plain_engine.h"
 #include "tests/support/transfer_fixtures.h"
 
@@ -15,9 +16,6 @@ namespace scumble {
 namespace {
 
 using namespace testing;
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kDenormal = std::numeric_limits<float>::denorm_min();
 
 TransferOptions PlainOptions(std::uint64_t seed = kPlainSeed) {
   TransferOptions options;

@@ -83,7 +83,7 @@ Style StyleOf(int kind, int radius, std::uint64_t seed) {
   return style;
 }
 
-struct Job {
+struct BandJob {
   std::vector<const PreparedStyle*> styles;
   const StyleMap* map = nullptr;
   const GuideSet& guides;
@@ -91,7 +91,7 @@ struct Job {
 };
 
 // The third of three frames, in buffers that hold what no transfer leaves: then seeds are looked up that were kept.
-Picture Paint(const Job& job, bool keep_field, int threads) {
+Picture Paint(const BandJob& job, bool keep_field, int threads) {
   TransferScratch scratch;
   Picture out(job.guides.width(), job.guides.height());
   TransferOptions options = job.options;
@@ -108,7 +108,7 @@ Picture Paint(const Job& job, bool keep_field, int threads) {
   return out;
 }
 
-void ExpectSame(const Job& job) {
+void ExpectSame(const BandJob& job) {
   const Picture whole = Paint(job, true, 1);
   for (const int threads : {1, 3}) {
     const Picture banded = Paint(job, false, threads);
@@ -140,7 +140,7 @@ TEST(Bands, OneStyleIsPaintedAsThroughAField) {
         for (const std::optional<Region>& region : RegionsOf(width, height)) {
           SCOPED_TRACE(::testing::Message() << width << "×" << height << ", cover " << int(cover) << ", kind " << kind
                                             << ", radius " << radius << (region ? ", region" : ""));
-          Job job{{&*prepared}, nullptr, guides, {}};
+          BandJob job{{&*prepared}, nullptr, guides, {}};
           job.options.region = region, job.options.seed = seed, job.options.exposure = kind == 3 ? 0.3 : 0.0;
           ExpectSame(job);
           if (HasFatalFailure()) return;
@@ -163,7 +163,7 @@ TEST(Bands, ManyStylesArePaintedAsThroughAField) {
         prepared.push_back(std::move(*one));
       }
       const StyleMap map = RandomMap(width, height, 7, seed);
-      Job job{{}, &map, guides, {}};
+      BandJob job{{}, &map, guides, {}};
       for (const PreparedStyle& style : prepared) job.styles.push_back(&style);
       Picture over(width, height);
       for (std::size_t i = 0; i < over.rgba.size(); ++i) over.rgba[i] = under.rgba[i];
@@ -181,7 +181,7 @@ TEST(Bands, EveryInstructionSetPaintsTheSame) {
   const GuideSet guides = RandomGuides(300, 90, Cover::kHoles, 5);
   const auto prepared = Prepare(StyleOf(1, 2, 4), 90);
   ASSERT_TRUE(prepared.ok());
-  const Job job{{&*prepared}, nullptr, guides, {}};
+  const BandJob job{{&*prepared}, nullptr, guides, {}};
   const Picture expected = Paint(job, true, 1);
   OnEveryInstructionSet([&] { EXPECT_EQ(Paint(job, false, 2).rgba, expected.rgba); });
 }

@@ -16,7 +16,7 @@ namespace {
 
 using namespace testing;
 
-constexpr int kWidth = 150, kHeight = 110;
+constexpr int kNeutralWidth = 150, kNeutralHeight = 110;
 constexpr int kOneObject = 1;
 
 // Adds the layers that extensions read, each as rough as possible: any mistaken read shows.
@@ -37,17 +37,17 @@ GuideSet WithEveryLayer(GuideSet guides) {
 
 // Hills, an object border and a step in depth; and a wall, on which `variety` would have its freedom.
 GuideSet Hills() {
-  GuideSet guides = WithEveryLayer(HillGuides(kWidth, kHeight));
+  GuideSet guides = WithEveryLayer(HillGuides(kNeutralWidth, kNeutralHeight));
   for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
     if (!(guides.Plane(Layer::kCoverage)[i] > 0.0f)) continue;
-    const int x = int(i) % kWidth, y = int(i) / kWidth;
+    const int x = int(i) % kNeutralWidth, y = int(i) / kNeutralWidth;
     guides.Plane(Layer::kObject)[i] = x + y < 120 ? kOneObject : 2;
     guides.Plane(Layer::kDepth)[i] = 10.0f + 0.01f * x + (y > 70 ? 3.0f : 0.0f);
   }
   return guides;
 }
 GuideSet Wall() {
-  return WithEveryLayer(MakeGuides(kWidth, kHeight, [](int x, int y) {
+  return WithEveryLayer(MakeGuides(kNeutralWidth, kNeutralHeight, [](int x, int y) {
     return x > 110 && y < 40 ? glm::vec3(0.0f) : glm::normalize(glm::vec3(0.3f, 0.1f, 1.0f));
   }));
 }
@@ -129,9 +129,9 @@ std::vector<Neutral> Neutrals() {
       {"a map of one style", [](Style&) {}, [](Style&) {}, true},
       {"an error of a tree that is not there", set(&T::nearest_error, 2.0)},
       {"the search by formula", set(&T::nearest, NearestSearch::kAnalytic)},
-      {"a reference height that is the picture's", set(&T::reference_height, kHeight)},
+      {"a reference height that is the picture's", set(&T::reference_height, kNeutralHeight)},
       {"a scale of 1 of the picture's height",
-       [](Style& s) { s.transfer.reference_height = kHeight, s.transfer.scale = 1.0; }},
+       [](Style& s) { s.transfer.reference_height = kNeutralHeight, s.transfer.scale = 1.0; }},
       {"edges, where votes reach no one", set(&T::edge_aware, false), set(&T::blend_radius, 0)},
       {"a crease without edges", set(&T::crease, 1.0), set(&T::edge_aware, false)},
       {"a depth tolerance without edges", set(&T::depth_tolerance, 0.0), set(&T::edge_aware, false)},

@@ -22,7 +22,7 @@ namespace scumble {
 namespace {
 
 const std::string kSource = SCUMBLE_SOURCE_DIR;
-constexpr const char* kStyles[] = {"scene-ink", "scene-oil", "scene-pastel"};
+constexpr const char* kSceneStyles[] = {"scene-ink", "scene-oil", "scene-pastel"};
 
 // `view`: none for the scene's own camera.
 GuideSet RenderBall(int width, int height, int samples, const LayerSet& layers, std::optional<ViewAngles> view = {}) {
@@ -137,7 +137,7 @@ TEST(PaintedScene, ShadowsTakeThePaintOfTheExemplarsShadow) {
   const LayerSet layers{Layer::kAlbedo, Layer::kLuminance, Layer::kShadow, Layer::kLpeLSE};
   const GuideSet target = RenderBall(240, 180, 16, layers, ViewAngles{14.0, 24.0, 9.0});
   const GuideSet own = Committed({Layer::kShadow});
-  for (const char* name : kStyles) {
+  for (const char* name : kSceneStyles) {
     SCOPED_TRACE(name);
     auto style = LoadStyle(kSource + "/exemplars/" + name);
     ASSERT_TRUE(style.ok()) << style.error().message;
@@ -155,7 +155,7 @@ TEST(PaintedScene, ShadowsTakeThePaintOfTheExemplarsShadow) {
 }
 
 TEST(PaintedScene, StylesShareOneGuideFile) {
-  for (const char* name : kStyles) {
+  for (const char* name : kSceneStyles) {
     const auto style = LoadStyle(kSource + "/exemplars/" + name);
     ASSERT_TRUE(style.ok()) << style.error().message;
     EXPECT_TRUE(std::filesystem::equivalent(style->exemplars[0].guides_file, kSource + "/exemplars/scene/guides.exr"));

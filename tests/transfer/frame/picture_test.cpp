@@ -280,5 +280,25 @@ TEST(Progress, RisesAndCanStop) {
   EXPECT_EQ(stopped.error().kind, ErrorKind::kCancelled);
 }
 
+TEST(Prepare, IsCancelledBetweenAnyTwoSteps) {
+  Style style = PlainStyle(NoisePicture(64));
+  style.transfer.hybrid = 4.0;
+  style.transfer.shadow = ShadowMode::kPaint;
+  style.transfer.edge = EdgeMode::kExemplar;
+  const auto prepare = [&](int steps) {
+    PrepareOptions options;
+    options.is_cancelled = [&steps] { return steps-- == 0; };
+    return Prepare(style, 64, options);
+  };
+  int steps = 0;
+  for (; steps < 100; ++steps) {
+    const auto prepared = prepare(steps);
+    if (prepared.ok()) break;
+    EXPECT_EQ(prepared.error().kind, ErrorKind::kCancelled) << prepared.error().message;
+  }
+  EXPECT_GE(steps, 6);
+  EXPECT_LT(steps, 100);
+}
+
 }  // namespace
 }  // namespace scumble

@@ -190,6 +190,66 @@ TEST(Shadow, PaintThatCoversTheSheetIsLaidOnThinlyWithItsStrokes) {
   }
 }
 
+// What lies beyond the sphere is cut away, as drawing programs export it.
+Picture CutOut(Picture picture) {
+  for (int y = 0; y < picture.height; ++y) {
+    for (int x = 0; x < picture.width; ++x) {
+      const double half = picture.width / 2.0;
+      if (std::hypot(x + 0.5 - half, y + 0.5 - half) > half) picture.At(x, y)[3] = 0;
+    }
+  }
+  return picture;
+}
+
+// The share of the light that a white ground still returns, and the share of pixels that are nearly white and opaque.
+struct OnWhite {
+  double light = 0.0, paper = 0.0;
+};
+OnWhite LaidOnWhite(const Picture& picture) {
+  OnWhite on;
+  const double count = static_cast<double>(picture.rgba.size()) / 4.0;
+  for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
+    const double alpha = picture.rgba[i + 3] / 65535.0, light = Srgb16ToLinear(picture.rgba[i]);
+    on.light += (alpha * light + 1.0 - alpha) / count;
+    on.paper += (alpha > 0.5 && light > 0.7) / count;
+  }
+  return on;
+}
+
+TEST(Shadow, PaperInsideACutOutSphereIsNoPaint) {
+  Style whole = PlainStyle(Stippled(400, true)), cut = PlainStyle(CutOut(Stippled(400, true)));
+  whole.transfer.shadow = cut.transfer.shadow = ShadowMode::kPaint;
+  EXPECT_TRUE(Prepare(cut, 300)->shadow->has_tones());
+  for (const float strength : {0.15f, 0.3f, 0.5f, 0.7f, 0.9f, 1.0f}) {
+    const auto everywhere = [&](int, int) { return strength; };
+    const Picture picture = ShadowOn(cut, everywhere);
+    EXPECT_NEAR(MeanAlpha(picture), strength, 0.05) << strength;
+    EXPECT_LT(LaidOnWhite(picture).paper, 0.001) << strength;
+    EXPECT_EQ(picture.rgba, ShadowOn(whole, everywhere).rgba) << strength << ": as if flattened on white";
+  }
+}
+
+// Opaque paint has no paper between its strokes; strokes on nothing have their opacity.
+TEST(Shadow, CutOutsOfOpaquePaintAndOfStrokesOnNothing) {
+  Picture strokes = CutOut(Stippled(400, true));
+  for (std::size_t i = 0; i < strokes.rgba.size(); i += 4) {
+    if (strokes.rgba[i] > 0) strokes.rgba[i + 3] = 0;
+  }
+  Picture opaque = NoisePicture(400);
+  for (std::size_t i = 0; i < opaque.rgba.size(); i += 4) {
+    for (std::size_t c = 0; c < 3; ++c) opaque.rgba[i + c] = static_cast<std::uint16_t>(opaque.rgba[i + c] / 2);
+  }
+  for (const bool is_opaque : {false, true}) {
+    Style style = PlainStyle(is_opaque ? CutOut(opaque) : strokes);
+    style.transfer.shadow = ShadowMode::kPaint;
+    EXPECT_NE(Prepare(style, 300)->shadow->has_tones(), is_opaque);
+    for (const float strength : {0.15f, 0.5f, 0.9f}) {
+      const Picture picture = ShadowOn(style, [&](int, int) { return strength; });
+      EXPECT_NEAR(MeanAlpha(picture), strength, 0.05) << is_opaque << ", " << strength;
+    }
+  }
+}
+
 // The layer has steps along a slanted border; in the picture every row crosses it evenly.
 TEST(Shadow, AHardOutlineFadesEvenlyOverAFewPixels) {
   Style style = PlainStyle(DarkCorner(256));

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tests/support/every_instruction_set.h"
+#include "tests/support/numbers.h"
 #include "tests/support/transfer_fixtures.h"
 #include "transfer/tint/colorize.h"
 #include "transfer/tint/tint_row.h"
@@ -13,9 +14,6 @@ namespace scumble {
 namespace {
 
 using namespace testing;
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 struct Pixels {
   std::vector<float> albedo[3];
@@ -151,13 +149,13 @@ TEST(FastTint, WhiteMultipliesToTheSame) {
 
 // The pixels around a run keep their bytes, whatever lies in between.
 TEST(FastTint, OnlyActivePixelsOfTheRegionChange) {
-  constexpr int kWidth = 83, kHeight = 9;
-  GuideSet guides(kWidth, kHeight);
+  constexpr int kColumns = 83, kLines = 9;
+  GuideSet guides(kColumns, kLines);
   guides.Add(Layer::kAlbedo);
   for (int c = 0; c < 3; ++c) {
     for (std::size_t i = 0; i < guides.pixel_count(); ++i) guides.Plane(Layer::kAlbedo, c)[i] = AnyAlbedo(0, i, c);
   }
-  Picture before(kWidth, kHeight);
+  Picture before(kColumns, kLines);
   for (std::size_t i = 0; i < before.rgba.size(); ++i) before.rgba[i] = static_cast<std::uint16_t>(Hash(i));
   for (const ColorizeMode mode : {ColorizeMode::kMultiply, ColorizeMode::kOklab}) {
     for (const int dense : {1, 2, 10, 60}) {
@@ -166,7 +164,7 @@ TEST(FastTint, OnlyActivePixelsOfTheRegionChange) {
         active[i] = Hash(i, dense) % std::uint64_t(dense) != 0 || dense == 1;
       const internal::Tint tint{0.6f, 0.8f, mode};
       for (const Region& region :
-           {Region{0, 0, kWidth, kHeight}, Region{7, 2, 80, 5}, Region{82, 0, 83, 9}, Region{}}) {
+           {Region{0, 0, kColumns, kLines}, Region{7, 2, 80, 5}, Region{82, 0, 83, 9}, Region{}}) {
         Picture expected = before, found = before;
         for (int y = region.y0; y < region.y1; ++y) {
           for (int x = region.x0; x < region.x1; ++x) {

@@ -3,6 +3,7 @@
 #include <limits>
 #include <optional>
 
+#include "tests/support/numbers.h"
 #include "tests/support/scene_exemplar_fixtures.h"
 #include "transfer/nearest/lookup_table.h"
 #include "transfer/seeds/seeds.h"
@@ -11,9 +12,6 @@ namespace scumble {
 namespace {
 
 using namespace testing;
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 const Layer kFifteen[] = {Layer::kAlbedo, Layer::kLpeLDE, Layer::kLpeLSE, Layer::kLpeLDDE};  // with the normal
 

@@ -20,7 +20,7 @@ namespace {
 using namespace testing;
 
 // Fields, guides and paint as rough as they come, all from one number.
-struct Case {
+struct SmallCase {
   int width = 0, height = 0;
   GuideSet guides;
   SourceField field;
@@ -55,8 +55,8 @@ bool CoveredAt(Cover cover, int x, int y, int width, int height, std::uint64_t s
   return cover == Cover::kAll;
 }
 
-Case MakeCase(int width, int height, int size, Paint paint, Cover cover, int exemplars, std::uint64_t seed) {
-  Case made;
+SmallCase MakeCase(int width, int height, int size, Paint paint, Cover cover, int exemplars, std::uint64_t seed) {
+  SmallCase made;
   made.width = width, made.height = height;
   made.guides = MakeGuides(width, height, [&](int x, int y) {
     if (!CoveredAt(cover, x, y, width, height, seed)) return glm::vec3(0.0f);
@@ -110,7 +110,7 @@ struct Variant {
 };
 
 template <class Voter>
-Picture Voted(const Case& given, const Variant& way, const Voter& voter) {
+Picture Voted(const SmallCase& given, const Variant& way, const Voter& voter) {
   Picture out(given.width, given.height);
   std::fill(out.rgba.begin(), out.rgba.end(), std::uint16_t{4711});  // unpainted pixels stay
   internal::LazyDepthGradient slopes(given.guides);
@@ -125,7 +125,7 @@ Picture Voted(const Case& given, const Variant& way, const Voter& voter) {
   return out;
 }
 
-void ExpectPlain(const Case& given, const Variant& way, const std::string& told) {
+void ExpectPlain(const SmallCase& given, const Variant& way, const std::string& told) {
   const Picture plain = Voted(given, way, internal::VotePlainly), fast = Voted(given, way, internal::VoteSmall);
   if (plain.rgba == fast.rgba) return;
   for (std::size_t i = 0; i < plain.rgba.size(); ++i) {
@@ -151,7 +151,8 @@ TEST(SmallVote, EqualsThePlainVoteAtEveryRadiusAndTarget) {
        {std::pair{1, 1}, {1, 70}, {70, 1}, {3, 5}, {64, 33}, {65, 40}, {127, 64}, {191, 37}}) {
     for (const Cover cover : {Cover::kAll, Cover::kHoles, Cover::kStripes, Cover::kOne, Cover::kNone}) {
       for (const Paint paint : {Paint::kOpaque, Paint::kExtreme, Paint::kMixed, Paint::kTransparent}) {
-        const Case given = MakeCase(width, height, 20 + 31 * int(seed % 4), paint, cover, 1 + int(seed / 2 % 3), seed);
+        const SmallCase given =
+            MakeCase(width, height, 20 + 31 * int(seed % 4), paint, cover, 1 + int(seed / 2 % 3), seed);
         ++seed;
         Variant way;
         way.region = {0, 0, width, height};
@@ -177,7 +178,7 @@ TEST(SmallVote, EqualsThePlainVoteAtEveryRadiusAndTarget) {
 
 TEST(SmallVote, RegionsAndThreadsMakeNoDifference) {
   // Wider than a tile, so that tiles meet inside.
-  const Case given = MakeCase(2200, 75, 90, Paint::kMixed, Cover::kHoles, 2, 7);
+  const SmallCase given = MakeCase(2200, 75, 90, Paint::kMixed, Cover::kHoles, 2, 7);
   for (const Region& region :
        {Region{0, 0, 2200, 75}, Region{13, 21, 57, 44}, Region{64, 32, 128, 64}, Region{63, 31, 2111, 65},
         Region{2047, 0, 2050, 75}, Region{2199, 74, 2200, 75}, Region{}}) {
@@ -193,14 +194,14 @@ TEST(SmallVote, RegionsAndThreadsMakeNoDifference) {
 
 // Opaque paint in every sum that nine votes of the ends of the range can have.
 TEST(SmallVote, MeansAreRoundedAsWeighedOnesAre) {
-  const Case given = MakeCase(300, 200, 120, Paint::kExtreme, Cover::kAll, 1, 11);
+  const SmallCase given = MakeCase(300, 200, 120, Paint::kExtreme, Cover::kAll, 1, 11);
   OnEveryTarget([&](const std::string& target) {
     ExpectPlain(given, {1, false, false, 60.0, 0.002, {0, 0, 300, 200}, 1}, target);
   });
 }
 
 TEST(SmallVote, StopsWhenAsked) {
-  const Case given = MakeCase(100, 100, 50, Paint::kOpaque, Cover::kAll, 1, 5);
+  const SmallCase given = MakeCase(100, 100, 50, Paint::kOpaque, Cover::kAll, 1, 5);
   Picture out(100, 100);
   const Progress stop = [](double) { return false; };
   internal::RowProgress progress(stop, 0.0, 1.0, 100);

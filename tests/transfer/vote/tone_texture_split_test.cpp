@@ -9,14 +9,13 @@
 #include <vector>
 
 #include "core/filter/masked_blur.h"
+#include "tests/support/numbers.h"
 #include "tests/support/transfer_fixtures.h"
 
 namespace scumble {
 namespace {
 
 using namespace testing;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Irregular colours and opacities, from `least_alpha` on.
 Picture AnyPicture(int width, int height, std::uint64_t seed, int least_alpha) {
@@ -118,7 +117,7 @@ TEST(MaskedBlur, KeepsAFlatToneAndBecomesTheMean) {
   Picture flat(width, height);
   for (std::size_t i = 0; i < flat.rgba.size(); ++i) flat.rgba[i] = i % 4 == 3 ? 65535 : 12345;
   const std::vector<std::uint8_t> mask = AnyMask(width, height);
-  for (const double sigma : {0.5, 7.0, 49.0, 50.0, kInfinity}) {
+  for (const double sigma : {0.5, 7.0, 49.0, 50.0, double(kInfinity)}) {
     const Picture blurred = internal::MaskedBlur(flat, mask, sigma);
     for (std::size_t i = 0; i < mask.size(); ++i) {
       ASSERT_EQ(blurred.rgba[4 * i], mask[i] ? 12345 : 0) << sigma;
@@ -147,7 +146,7 @@ TEST(Hybrid, ZeroIsThePlainEngineAndAnEvenToneToo) {
       style.transfer.blend_radius = radius;
       const Transferred plain = MustTransfer(style, guides);
       style.transfer.hybrid = 0.0;
-      EXPECT_TRUE(Prepare(style, 90)->base_layers.empty());
+      EXPECT_EQ(Prepare(style, 90)->base_layers, nullptr);
       EXPECT_EQ(MustTransfer(style, guides).picture.rgba, plain.picture.rgba);
       style.transfer.hybrid = kInfinity;
       const Transferred even = MustTransfer(style, guides);
@@ -201,12 +200,18 @@ Style TwoExemplars(int size, bool is_sphere) {
   return style;
 }
 
+// A channel of a base layer, colours times alpha.
+double OfBase(const Picture& base, int x, int y, int c) {
+  const std::uint16_t* texel = base.At(x, y);
+  return c < 3 ? texel[c] * double(texel[3]) / 65535 : texel[3];
+}
+
 // Bilinear in doubles, over usable texels.
 std::array<double, 4> ToneAt(const PreparedExemplar& exemplar, const Picture& tone, glm::vec3 normal) {
   std::array<double, 4> sum{};
   if (!exemplar.is_sphere()) {
     const Source at = exemplar.NearestNeighbour(normal);
-    for (int c = 0; c < 4; ++c) sum[c] = tone.At(at.x, at.y)[c];
+    for (int c = 0; c < 4; ++c) sum[c] = OfBase(tone, at.x, at.y, c);
     return sum;
   }
   const glm::vec2 place = exemplar.OnDisc(normal);
@@ -217,7 +222,7 @@ std::array<double, 4> ToneAt(const PreparedExemplar& exemplar, const Picture& to
       if (!exemplar.Usable(x, y)) continue;
       const double weight = (1.0 - std::fabs(u - x)) * (1.0 - std::fabs(v - y));
       total += weight;
-      for (int c = 0; c < 4; ++c) sum[c] += weight * tone.At(x, y)[c];
+      for (int c = 0; c < 4; ++c) sum[c] += weight * OfBase(tone, x, y, c);
     }
   }
   for (double& value : sum) value /= total;
@@ -242,7 +247,7 @@ TEST(Hybrid, IsTheOwnTonePlusTheMeanOfTheTexturesVotedFor) {
         if (field.level[p] == SourceField::kNoSource) continue;
         const int own = prepared->illumination.Choose(guides.Plane(Layer::kLuminance)[p]);
         foreign += own != field.exemplar[p];
-        const auto tone = ToneAt(exemplar, prepared->base_layers[std::size_t(own)], guides.Vec3(Layer::kNormal, p));
+        const auto tone = ToneAt(exemplar, prepared->base_layers->picture(own), guides.Vec3(Layer::kNormal, p));
         double texture[4] = {0, 0, 0, 0}, votes = 0.0;
         for (int v = std::max(0, y - 2); v <= std::min(59, y + 2); ++v) {
           for (int u = std::max(0, x - 2); u <= std::min(69, x + 2); ++u) {
@@ -252,7 +257,7 @@ TEST(Hybrid, IsTheOwnTonePlusTheMeanOfTheTexturesVotedFor) {
             const std::uint16_t* paint = exemplar.picture(field.exemplar[q]).At(sx, sy);
             for (int c = 0; c < 4; ++c) {
               const double value = c < 3 ? paint[c] * double(paint[3]) / 65535 : paint[3];
-              texture[c] += value - prepared->base_layers[field.exemplar[q]].At(sx, sy)[c];
+              texture[c] += value - OfBase(prepared->base_layers->picture(field.exemplar[q]), sx, sy, c);
             }
             votes += 1.0;
           }
@@ -353,11 +358,11 @@ TEST(Hybrid, FollowsTheScale) {
   style.transfer.scale = 0.5;
   const auto prepared = Prepare(style, 60);
   ASSERT_TRUE(prepared.ok());
-  EXPECT_EQ(prepared->base_layers[0].rgba, MakeBaseLayers(*prepared->exemplar, 3.0)[0].rgba);
+  EXPECT_EQ(prepared->base_layers->picture(0).rgba, MakeBaseLayers(*prepared->exemplar, 3.0).picture(0).rgba);
   style.transfer.scale = 1.0, style.transfer.reference_height = 40;
   const auto taller = Prepare(style, 60);
   ASSERT_TRUE(taller.ok());
-  EXPECT_EQ(taller->base_layers[0].rgba, MakeBaseLayers(*taller->exemplar, 9.0)[0].rgba);
+  EXPECT_EQ(taller->base_layers->picture(0).rgba, MakeBaseLayers(*taller->exemplar, 9.0).picture(0).rgba);
 }
 
 TEST(Hybrid, ThreadsAndRegionsDoNotChangeAByte) {

@@ -17,7 +17,7 @@ namespace {
 
 using namespace testing;
 
-struct Case {
+struct WideCase {
   GuideSet guides;
   SourceField field;
   std::vector<std::uint8_t> active;
@@ -69,7 +69,7 @@ Source PieceAt(Pieces pieces, int x, int y) {
 }
 
 // Pixels of the field take their paint from a square of `size` texels, repeated; `holes` of 64 blocks are inactive.
-void FillField(Case& all, Pieces pieces, int size, int exemplars, int holes) {
+void FillField(WideCase& all, Pieces pieces, int size, int exemplars, int holes) {
   const int width = all.guides.width(), height = all.guides.height();
   all.field.Reset(width, height);
   all.active.assign(all.guides.pixel_count(), 0);
@@ -109,16 +109,16 @@ PreparedExemplar Prepared(const std::vector<Picture>& paints, double rim) {
   return PreparedExemplar(pointers, rim, paints.front().width);
 }
 
-Case MakeCase(int width, int height, Pieces pieces, int size, int exemplars, bool opaque, int holes) {
-  Case made{GuideSet(width, height), {}, {}, Prepared(Paints(size, exemplars, opaque), 1.0)};
+WideCase MakeCase(int width, int height, Pieces pieces, int size, int exemplars, bool opaque, int holes) {
+  WideCase made{GuideSet(width, height), {}, {}, Prepared(Paints(size, exemplars, opaque), 1.0)};
   FillField(made, pieces, size, exemplars, holes);
   return made;
 }
 
-Region Whole(const Case& all) { return {0, 0, all.guides.width(), all.guides.height()}; }
+Region Whole(const WideCase& all) { return {0, 0, all.guides.width(), all.guides.height()}; }
 
 TEST(WideVote, EqualsTheDefinitionForEveryRadius) {
-  const Case all = MakeCase(83, 71, Pieces::kLarge, 200, 1, true, 9);
+  const WideCase all = MakeCase(83, 71, Pieces::kLarge, 200, 1, true, 9);
   for (int radius = 0; radius <= 64; radius += radius < 10 ? 1 : 9) {
     const internal::VoteInput input = all.Input(radius, Whole(all));
     EXPECT_EQ(WideVotes(input).rgba, PlainVotes(input).rgba) << radius;
@@ -130,7 +130,7 @@ TEST(WideVote, EqualsTheDefinitionForEveryKindOfField) {
     for (const int size : {16, 17, 40, 300}) {
       for (const int exemplars : {1, 3}) {
         for (const bool opaque : {true, false}) {
-          const Case all = MakeCase(140, 75, pieces, size, exemplars, opaque, 4);
+          const WideCase all = MakeCase(140, 75, pieces, size, exemplars, opaque, 4);
           for (const int radius : {3, 8}) {
             const internal::VoteInput input = all.Input(radius, Whole(all));
             ASSERT_EQ(WideVotes(input).rgba, PlainVotes(input).rgba)
@@ -147,7 +147,7 @@ TEST(WideVote, EqualsTheDefinitionForEveryKindOfField) {
 TEST(WideVote, SumsHaveRoom) {
   Picture white(300, 300);
   std::fill(white.rgba.begin(), white.rgba.end(), std::uint16_t{65535});
-  Case all{GuideSet(260, 256), {}, {}, Prepared({white}, 0.0)};
+  WideCase all{GuideSet(260, 256), {}, {}, Prepared({white}, 0.0)};
   FillField(all, Pieces::kLarge, 200, 1, 0);
   const internal::VoteInput input = all.Input(internal::kWidestRadius, {125, 125, 132, 130});
   const Picture found = WideVotes(input);
@@ -157,7 +157,7 @@ TEST(WideVote, SumsHaveRoom) {
 
 TEST(WideVote, PicturesOfAnyShape) {
   for (const auto& [width, height] : {std::pair{1, 1}, {1, 90}, {200, 1}, {64, 64}, {65, 63}, {63, 130}, {129, 2}}) {
-    const Case all = MakeCase(width, height, Pieces::kMixed, 120, 2, true, 6);
+    const WideCase all = MakeCase(width, height, Pieces::kMixed, 120, 2, true, 6);
     for (const int radius : {3, 20}) {
       const internal::VoteInput input = all.Input(radius, Whole(all));
       EXPECT_EQ(WideVotes(input).rgba, PlainVotes(input).rgba) << width << " × " << height << ", " << radius;
@@ -166,7 +166,7 @@ TEST(WideVote, PicturesOfAnyShape) {
 }
 
 TEST(WideVote, RegionsThreadsAndAFewActivePixels) {
-  Case all = MakeCase(210, 150, Pieces::kMixed, 150, 2, true, 30);
+  WideCase all = MakeCase(210, 150, Pieces::kMixed, 150, 2, true, 30);
   for (const Region& region :
        {Region{0, 0, 210, 150}, Region{13, 21, 57, 44}, Region{100, 0, 209, 149}, Region{5, 5, 5, 9}}) {
     const internal::VoteInput input = all.Input(9, region);
@@ -206,7 +206,7 @@ TEST(WideVote, ExemplarsOfAnyShape) {
   const Picture* const pictures[] = {&paint};
   auto exemplar = PreparedExemplar::OfScene(pictures, shape, 1.0, 120, 120, "scene");
   ASSERT_TRUE(exemplar.ok());
-  Case all{GuideSet(130, 90), {}, {}, *exemplar};
+  WideCase all{GuideSet(130, 90), {}, {}, *exemplar};
   all.field.Reset(130, 90);
   all.active.assign(130 * 90, 0);
   for (int y = 0; y < 90; ++y) {
@@ -225,7 +225,7 @@ TEST(WideVote, ExemplarsOfAnyShape) {
 }
 
 TEST(WideVote, SameOnEveryInstructionSet) {
-  const Case all = MakeCase(150, 100, Pieces::kMixed, 90, 2, true, 8);
+  const WideCase all = MakeCase(150, 100, Pieces::kMixed, 90, 2, true, 8);
   const internal::VoteInput input = all.Input(7, Whole(all));
   const Picture expected = PlainVotes(input);
   for (std::uint32_t rest = hwy::SupportedTargets(); rest != 0; rest &= rest - 1) {
@@ -236,7 +236,7 @@ TEST(WideVote, SameOnEveryInstructionSet) {
 }
 
 // Hills with creases, blocks at hashed depths, objects, and holes; or with values that no scene should have.
-void FillGuides(Case& all, bool extreme) {
+void FillGuides(WideCase& all, bool extreme) {
   GuideSet& guides = all.guides;
   for (const Layer layer : {Layer::kCoverage, Layer::kNormal, Layer::kDepth, Layer::kObject}) guides.Add(layer);
   constexpr float kNaN = std::numeric_limits<float>::quiet_NaN(), kFar = std::numeric_limits<float>::infinity();
@@ -272,7 +272,7 @@ TEST(WideVote, EdgesAreTheDefinitions) {
   for (const bool extreme : {false, true}) {
     for (const Pieces pieces : {Pieces::kLarge, Pieces::kMixed}) {
       for (const bool opaque : {true, false}) {
-        Case all = MakeCase(120, 80, pieces, 110, 2, opaque, 3);
+        WideCase all = MakeCase(120, 80, pieces, 110, 2, opaque, 3);
         FillGuides(all, extreme);
         // Half of them are seen without perspective: 0.002 of 10 m are 0.02 m, of which steps of 0.04 m are none.
         if (opaque == (pieces == Pieces::kMixed)) all.guides.camera = OrthographicCamera(10.0);
@@ -300,7 +300,7 @@ TEST(WideVote, EdgesAreTheDefinitions) {
 // A step in depth between two columns, at the picture's bottom: windows cross it at every slant.
 TEST(WideVote, EdgesAreTheDefinitionsAtEveryColumn) {
   for (int edge = 30; edge < 50; ++edge) {
-    Case all = MakeCase(80, 56, Pieces::kSmall, 150, 1, true, 0);
+    WideCase all = MakeCase(80, 56, Pieces::kSmall, 150, 1, true, 0);
     FillGuides(all, false);
     for (int y = 0; y < 56; ++y) {
       for (int x = 0; x < 80; ++x) {
@@ -319,7 +319,7 @@ TEST(WideVote, EdgesAreTheDefinitionsAtEveryColumn) {
 
 TEST(WideVote, EdgesInPicturesOfAnyShapeRegionsAndThreads) {
   for (const auto& [width, height] : {std::pair{1, 1}, {1, 90}, {200, 1}, {65, 63}, {63, 130}}) {
-    Case all = MakeCase(width, height, Pieces::kMixed, 120, 2, true, 6);
+    WideCase all = MakeCase(width, height, Pieces::kMixed, 120, 2, true, 6);
     FillGuides(all, false);
     internal::LazyDepthGradient slopes(all.guides);
     const internal::EdgeRules rules{all.guides, slopes, 60.0, 0.002};
@@ -337,7 +337,7 @@ TEST(WideVote, EdgesInPicturesOfAnyShapeRegionsAndThreads) {
 }
 
 TEST(WideVote, EdgesAreTheSameOnEveryInstructionSet) {
-  Case all = MakeCase(150, 100, Pieces::kMixed, 90, 2, true, 8);
+  WideCase all = MakeCase(150, 100, Pieces::kMixed, 90, 2, true, 8);
   FillGuides(all, true);
   internal::LazyDepthGradient slopes(all.guides);
   const internal::EdgeRules rules{all.guides, slopes, 60.0, 0.002};
@@ -354,10 +354,10 @@ TEST(WideVote, EdgesAreTheSameOnEveryInstructionSet) {
 // The callback on finished pixels (here: turned to their negatives, which doing twice undoes) runs once for each, after
 // their last write, in every form of voting.
 TEST(Vote, TellsOfEveryFinishedPixelOnce) {
-  Case all = MakeCase(2300, 70, Pieces::kMixed, 150, 1, true, 20);
+  WideCase all = MakeCase(2300, 70, Pieces::kMixed, 150, 1, true, 20);
   all.guides.Add(Layer::kNormal);
   std::ranges::fill(all.guides.Plane(Layer::kNormal, 2), 1.0f);
-  const std::vector<Picture> tones = MakeBaseLayers(all.exemplar, 2.0);
+  const PreparedExemplar tones = MakeBaseLayers(all.exemplar, 2.0);
   const Illumination even_light;
   for (const Region& region : {Whole(all), Region{13, 21, 1100, 66}, Region{2050, 0, 2299, 1}, Region{5, 5, 5, 9}}) {
     for (const int radius : {0, 1, 3, 9}) {

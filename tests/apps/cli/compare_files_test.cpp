@@ -1,0 +1,66 @@
+// scumble compare of files whose channels have other names: by view layer, and as guides.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "tests/support/cli_harness.h"
+#include "tests/support/guide_files.h"
+
+namespace scumble {
+namespace {
+
+class CliCompareFiles : public CliTest {
+ protected:
+  // The guides of a sphere, with the channels of each view layer; those of "Far" are a metre farther away.
+  void WriteLayers(const std::string& file, const std::vector<std::string>& view_layers) {
+    const GuideSet guides = Ball(24);
+    std::vector<std::string> names;
+    std::vector<std::vector<float>> planes;
+    for (const std::string& view_layer : view_layers) {
+      for (const LayerInfo& info : AllLayers()) {
+        if (!guides.Has(info.layer)) continue;
+        for (int c = 0; c < ChannelCount(info.layer); ++c) {
+          const auto plane = guides.Plane(info.layer, c);
+          names.push_back(view_layer + "." + std::string(info.channels[std::size_t(c)]));
+          planes.emplace_back(plane.begin(), plane.end());
+          if (info.layer != Layer::kDepth || view_layer != "Far") continue;
+          for (float& depth : planes.back()) depth += 1.0f;
+        }
+      }
+    }
+    WriteExr(At(file), OIIO::ImageSpec(24, 24, 1, OIIO::TypeDesc::FLOAT), names,
+             [&](std::size_t c, std::size_t i) { return planes[c][i]; });
+    WriteGuideFile("ours.exr", guides);
+  }
+};
+
+TEST_F(CliCompareFiles, OneViewLayerIsComparedByItsMeaning) {
+  WriteLayers("layers.exr", {"Near"});
+  const CommandResult found = RunOk({"compare", "ours.exr", "layers.exr"});
+  EXPECT_NE(found.err.find("compared as guides: A, normal, depth"), std::string::npos) << found.err;
+  EXPECT_NE(found.out.find("normal"), std::string::npos) << found.out;
+}
+
+TEST_F(CliCompareFiles, TheViewLayerIsChosen) {
+  WriteLayers("layers.exr", {"Near", "Far"});
+  RunOk({"compare", "ours.exr", "layers.exr", "--view-layer", "Near"});
+  const CommandResult far = Run({"compare", "ours.exr", "layers.exr", "--view-layer", "Far", "--json"});
+  EXPECT_EQ(far.code, 1) << far.err;
+  for (const auto& layer : far.Json()["layers"]) {
+    EXPECT_EQ(layer["stats"]["different"] != 0, layer["name"] == "depth") << layer;
+  }
+  RunOk({"compare", "ours.exr", "layers.exr", "--view-layer", "Far", "--layer", "normal"});
+  RunOk({"compare", "layers.exr", "layers.exr", "--view-layer", "Far"});
+}
+
+TEST_F(CliCompareFiles, WhatCannotBeChosenIsRefused) {
+  WriteLayers("layers.exr", {"Near", "Far"});
+  ExpectError({"compare", "ours.exr", "layers.exr"}, 3, {"layers.exr", "'Far', 'Near'", "--view-layer"});
+  ExpectError({"compare", "ours.exr", "layers.exr", "--view-layer", "Middle"}, 3, {"'Middle'", "'Far', 'Near'"});
+  ExpectError({"compare", "ours.exr", "ours.exr", "--view-layer", "Near"}, 2, {"--view-layer", "leave it out"});
+  ExpectError({"compare", "ours.exr", "layers.exr", "--view-layer", "Near", "--flip"}, 2, {"--view-layer", "--flip"});
+}
+
+}  // namespace
+}  // namespace scumble
