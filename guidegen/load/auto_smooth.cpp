@@ -311,7 +311,7 @@ CornerNormals AutoSmoothNormals(const SmoothingInput& input, double degrees) {
   const CornersByPlace by_place(input);
   std::vector<std::uint32_t> leaders(by_place.corners.size());
   std::vector<glm::vec3> normals(leaders.size());
-  const double cosine = degrees + kAngleRounding < 180.0 ? CosDegrees(degrees + kRounding) : -1.0;
+  const double cosine = degrees + kAngleRounding < 180.0 ? CosDegrees(degrees + kAngleRounding) : -1.0;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, input.positions.size(), 4096), [&](const auto& range) {
     PlaceSmoother smoother(input, faces, cosine);
     for (std::size_t place = range.begin(); place < range.end(); ++place) {
