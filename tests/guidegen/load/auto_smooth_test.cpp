@@ -15,9 +15,9 @@ namespace scumble {
 namespace auto_smooth_cases {  // other tests of the loaders have cubes and balls, too
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
 constexpr double kPi = 3.14159265358979323846;
 
