@@ -142,7 +142,7 @@ TEST_F(LoadAnimation, WhatHasNoSenseAtATimeNamesTheTime) {
   EXPECT_TRUE(animated.SceneAt(0.5).ok());
   const Expected<Scene> scene = animated.SceneAt(1.0);
   ASSERT_FALSE(scene.ok());
-  EXPECT_THAT(scene.error().message, testing::AllOf(HasSubstr("scene.glb"), HasSubstr("1.0"), HasSubstr("camera")));
+  EXPECT_THAT(scene.error().message, ::testing::AllOf(HasSubstr("scene.glb"), HasSubstr("1.0"), HasSubstr("camera")));
 }
 
 // Random damage must end in an error or in a scene that can be shown, never in a crash; the sanitizer build looks on.

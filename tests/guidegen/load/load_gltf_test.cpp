@@ -11,7 +11,7 @@ namespace scumble {
 namespace {
 
 using nlohmann::json;
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 class LoadGltf : public LoaderTest {
  protected:
@@ -293,7 +293,7 @@ TEST_F(LoadGltf, SharedListsGiveWhatListsOfTheirOwnWould) {
   };
   GltfBuilder shared = build(true);
   const Scene expected = Load(build(false)), scene = Load(shared);
-  ASSERT_EQ(scene.meshes.size(), 3u) << testing::PrintToString(scene.warnings);
+  ASSERT_EQ(scene.meshes.size(), 3u) << ::testing::PrintToString(scene.warnings);
   ASSERT_EQ(expected.meshes.size(), 3u);
   for (std::size_t i = 0; i < 3; ++i) {
     const Mesh &mesh = scene.meshes[i], &own = expected.meshes[i];
@@ -307,7 +307,7 @@ TEST_F(LoadGltf, SharedListsGiveWhatListsOfTheirOwnWould) {
     EXPECT_EQ(mesh.rest_positions, own.rest_positions) << i;
   }
   EXPECT_EQ(scene.meshes[0].positions[0], glm::vec3(value(0, 31, 0), value(0, 31, 1), value(0, 31, 2)));
-  EXPECT_THAT(scene.warnings, testing::IsEmpty());
+  EXPECT_THAT(scene.warnings, ::testing::IsEmpty());
   shared.json["meshes"][0]["primitives"][0]["indices"] = shared.Indices({31, 7, 13});
   EXPECT_THAT(ErrorOf(shared), HasSubstr("NaN or infinity at vertex 13;")) << "as the file counts them";
 }
@@ -364,8 +364,8 @@ TEST_F(LoadGltf, SpecularGlossinessIsReadAsFarAsItGoes) {
   EXPECT_EQ(scene.materials[2].roughness, 0.0f);
   EXPECT_EQ(scene.materials[3].base_color, glm::vec4(1, 0, 0, 1));
   EXPECT_EQ(scene.materials[3].roughness, 1.0f) << "its texture is not read";
-  EXPECT_THAT(scene.warnings, testing::ElementsAre(testing::AllOf(HasSubstr(name), HasSubstr("specular colour"),
-                                                                  HasSubstr("material 1"), HasSubstr("3 in all"))));
+  EXPECT_THAT(scene.warnings, ::testing::ElementsAre(::testing::AllOf(HasSubstr(name), HasSubstr("specular colour"),
+                                                                      HasSubstr("material 1"), HasSubstr("3 in all"))));
   b.json["extensionsRequired"] = {name};
   EXPECT_EQ(Load(b).materials[1].roughness, 0.25f);
   for (const json& bad : {json{{"glossinessFactor", 1.5}}, json{{"glossinessFactor", "x"}},
@@ -478,9 +478,9 @@ TEST_F(LoadGltf, TheRangeOfLightsIsIgnoredAndSaid) {
   Scene scene = Load(b);
   EXPECT_EQ(scene.lights.size(), 4u);
   EXPECT_THAT(scene.warnings,
-              testing::ElementsAre(testing::AllOf(HasSubstr("range"), HasSubstr("node 2"), HasSubstr("3 in all"))));
+              ::testing::ElementsAre(::testing::AllOf(HasSubstr("range"), HasSubstr("node 2"), HasSubstr("3 in all"))));
   for (json& light : b.json["extensions"]["KHR_lights_punctual"]["lights"]) light.erase("range");
-  EXPECT_THAT(Load(b).warnings, testing::IsEmpty());
+  EXPECT_THAT(Load(b).warnings, ::testing::IsEmpty());
 }
 
 TEST_F(LoadGltf, LampsAndCamerasWithoutADirectionAreRefused) {
@@ -626,7 +626,7 @@ TEST_F(LoadGltf, RequiredExtensions) {
   b.json["extensionsRequired"] = {"KHR_texture_transform", "KHR_draco_mesh_compression", "EXT_unheard_of"};
   const std::string message = ErrorOf(b);
   EXPECT_THAT(message, HasSubstr("KHR_draco_mesh_compression, EXT_unheard_of"));
-  EXPECT_THAT(message, testing::Not(HasSubstr("KHR_texture_transform")));
+  EXPECT_THAT(message, ::testing::Not(HasSubstr("KHR_texture_transform")));
   EXPECT_THAT(message, HasSubstr("export it again with the compression of meshes (Draco, meshopt) switched off"));
   b.json["extensionsRequired"] = {"KHR_texture_basisu"};
   EXPECT_THAT(ErrorOf(b), HasSubstr("requires KHR_texture_basisu, which cannot be read: export it without, with "
@@ -676,7 +676,7 @@ TEST_F(LoadGltf, WhatIsIgnoredIsSaid) {
   b.Root({{"mesh", 0}, {"scale", {1, 0, 1}}});
   const Scene scene = Load(b);
   EXPECT_EQ(scene.instances.size(), 1u);
-  EXPECT_THAT(scene.warnings, testing::UnorderedElementsAre(
+  EXPECT_THAT(scene.warnings, ::testing::UnorderedElementsAre(
                                   HasSubstr("points and lines"), HasSubstr("without JOINTS_0"),
                                   HasSubstr("animations are not played without a frame"), HasSubstr("flattens")));
 }
@@ -698,7 +698,7 @@ TEST_F(LoadGltf, UnusableNormalsAreComputed) {
   b.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = b.Floats({0, 3, 0, 0, 0, 0, nan, 0, 1}, 3);
   const Scene scene = Load(b);
   EXPECT_EQ(scene.meshes[0].normals, (std::vector<glm::vec3>{{0, 1, 0}, {0, 0, 1}, {0, 0, 1}}));
-  EXPECT_THAT(scene.warnings, testing::ElementsAre(HasSubstr("computed anew")));
+  EXPECT_THAT(scene.warnings, ::testing::ElementsAre(HasSubstr("computed anew")));
 }
 
 }  // namespace

@@ -16,8 +16,8 @@
 namespace scumble {
 namespace {
 
-using testing::ElementsAre;
-using testing::IsEmpty;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
 
 class Greedy : public RefusedScenes {
  protected:
@@ -54,7 +54,7 @@ TEST_F(Greedy, PathsAreCountedBeforeTheyAreMade) {
   b.Append("nodes", {{"name", std::string(1000, 'n')}, {"children", leaves}});
   for (int i = 0; i < kLeaves; ++i) b.Append("nodes", {{"name", "A"}, {"mesh", 0}});
   b.json["scenes"][0]["nodes"] = {0, 1};
-  EXPECT_THAT(Refusal(b), testing::AllOf(HasSubstr("names"), HasSubstr("536870912 bytes"), HasSubstr("'A'")));
+  EXPECT_THAT(Refusal(b), ::testing::AllOf(HasSubstr("names"), HasSubstr("536870912 bytes"), HasSubstr("'A'")));
 }
 
 // Names of 1 MB: one object of 600 primitives, 600 cameras, 600 lights.
@@ -96,8 +96,8 @@ TEST_F(Greedy, GeometryWithoutDataIsCounted) {
   b.Triangle();
   const json primitive = {{"attributes", {{"POSITION", Zeros(b, 3'000'000, "VEC3")}}}};
   b.json["meshes"][0]["primitives"] = json(6, primitive);
-  EXPECT_THAT(Refusal(b), testing::AllOf(HasSubstr("without data comes to 18000000 elements with accessor 2"),
-                                         HasSubstr("at most 16000000")));
+  EXPECT_THAT(Refusal(b), ::testing::AllOf(HasSubstr("without data comes to 18000000 elements with accessor 2"),
+                                           HasSubstr("at most 16000000")));
 }
 
 // Targets that do nothing are written without data, and may have more of it: 64 million.
@@ -110,7 +110,7 @@ TEST_F(Greedy, MorphTargetsWithoutDataAreCounted) {
     b.json["meshes"][0]["weights"] = json(targets, 1.0);
     return b;
   };
-  EXPECT_THAT(Refusal(with_targets(65, 1'000'000)), testing::AllOf(HasSubstr("65000000"), HasSubstr("64000000")));
+  EXPECT_THAT(Refusal(with_targets(65, 1'000'000)), ::testing::AllOf(HasSubstr("65000000"), HasSubstr("64000000")));
   EXPECT_EQ(Load(with_targets(65, 3)).meshes[0].positions[1], glm::vec3(1, 0, 0));
 }
 
@@ -154,7 +154,8 @@ TEST_F(Greedy, MorphTargetsCountForEachNode) {
   b.Triangle();
   b.json["meshes"][0]["primitives"][0]["targets"] = json(65'000, json::object());
   for (int i = 1; i < 1000; ++i) b.Root({{"mesh", 0}});
-  EXPECT_THAT(Refusal(b), testing::AllOf(HasSubstr("at least 64025000 morph targets"), HasSubstr("at most 64000000")));
+  EXPECT_THAT(Refusal(b),
+              ::testing::AllOf(HasSubstr("at least 64025000 morph targets"), HasSubstr("at most 64000000")));
 }
 
 // 100,000 empty targets for 300,000 vertices without data. Looked at for each vertex, once for its place and once for
@@ -183,10 +184,10 @@ TEST_F(Greedy, ListsAreCountedBeforeTheyAreMade) {
     return Refusal(Write("scene.gltf", text + "]" + behind + "}"));
   };
   EXPECT_THAT(refusal("materials", 100'001),
-              testing::AllOf(HasSubstr("100001 elements in 'materials'"), HasSubstr("at most 100000")));
+              ::testing::AllOf(HasSubstr("100001 elements in 'materials'"), HasSubstr("at most 100000")));
   EXPECT_THAT(refusal(R"(mat\u0065rials)", 100'001), HasSubstr("at most 100000"));
   EXPECT_THAT(refusal("nodes", 2'000'001),
-              testing::AllOf(HasSubstr("2000001 elements in 'nodes'"), HasSubstr("at most 2000000")));
+              ::testing::AllOf(HasSubstr("2000001 elements in 'nodes'"), HasSubstr("at most 2000000")));
   EXPECT_THAT(refusal("materials", 100'000, "]"), HasSubstr("cannot be read as glTF 2.0"));
 }
 
@@ -203,8 +204,8 @@ TEST_F(Greedy, ExtensionsThatAreCopiedAreCounted) {
                             {"samplers", json(samplers, sampler)}});
     return b;
   };
-  EXPECT_THAT(Refusal(scene(4002)), testing::AllOf(HasSubstr("16016004 values in extras and extensions"),
-                                                   HasSubstr("expected at most 16000000")));
+  EXPECT_THAT(Refusal(scene(4002)), ::testing::AllOf(HasSubstr("16016004 values in extras and extensions"),
+                                                     HasSubstr("expected at most 16000000")));
   EXPECT_EQ(Load(scene(10)).meshes.size(), 1u);
 }
 
@@ -220,7 +221,7 @@ TEST_F(Greedy, AnimationsWithoutDataAreCounted) {
     const Expected<AnimatedScene> scene = AnimatedScene::Load(Write("scene.glb", b.Glb()), {""});
     return scene ? "" : scene.error().message;
   };
-  EXPECT_THAT(refusal(1, 4'000'001), testing::AllOf(HasSubstr("without data"), HasSubstr("at most 4000000")));
+  EXPECT_THAT(refusal(1, 4'000'001), ::testing::AllOf(HasSubstr("without data"), HasSubstr("at most 4000000")));
   EXPECT_THAT(refusal(2, 2'000'001), HasSubstr("without data comes to 4000002"));
   EXPECT_EQ(refusal(2, 1000), "");
 }
@@ -332,7 +333,8 @@ TEST_F(Greedy, FilesOfManyBuffersAreReadAgainUpToALimit) {
   EXPECT_EQ(Load(scene(5)).meshes.size(), 1u);
   b.bin.resize(1 << 20);
   Write("geo.bin", b.bin);
-  EXPECT_THAT(Refusal(scene(1 + 64 + 1)), testing::AllOf(HasSubstr("geo.bin"), HasSubstr("more than 67108864 bytes")));
+  EXPECT_THAT(Refusal(scene(1 + 64 + 1)),
+              ::testing::AllOf(HasSubstr("geo.bin"), HasSubstr("more than 67108864 bytes")));
 }
 
 // Each of 1000 primitives would compare 10,000 names with 10,000 materials.

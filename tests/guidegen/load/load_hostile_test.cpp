@@ -18,7 +18,7 @@ namespace scumble {
 namespace {
 
 using nlohmann::json;
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 class Hostile : public RefusedScenes {
  protected:
@@ -292,7 +292,7 @@ TEST_F(Hostile, ObjTexturesThatAreNoFiles) {
     const Expected<Scene> scene =
         LoadScene(Write("a.obj", std::string("mtllib paint.mtl\nusemtl paint\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")));
     ASSERT_TRUE(scene.ok()) << scene.error().message;
-    EXPECT_THAT(scene->warnings, testing::ElementsAre(testing::AllOf(HasSubstr("texture"), HasSubstr(name))));
+    EXPECT_THAT(scene->warnings, ::testing::ElementsAre(::testing::AllOf(HasSubstr("texture"), HasSubstr(name))));
     ASSERT_EQ(scene->textures.size(), 1u);
     EXPECT_TRUE(scene->textures[0].empty());
   }
