@@ -604,7 +604,7 @@ TEST_F(BlenderVerbs, ScenesAndViewLayersAreChosenByName) {
   EXPECT_EQ(objects({"--scene", "Other"}, {}).at("objects"), names({"Alone"}));
   const auto empty = [&](const Arguments& which, const std::string& why) {
     const auto warnings = objects(which, {}).at("warnings").get<std::vector<std::string>>();
-    EXPECT_THAT(warnings, Contains("nothing is left to draw: " + why));
+    EXPECT_THAT(warnings, ::testing::Contains("nothing is left to draw: " + why));
   };
   empty({"--scene", "Shot", "--view-layer", "Spare"},
         "3 meshes are hidden from render in collection 'Car', 2 meshes are in collection 'Back', which view layer "
