@@ -149,8 +149,9 @@ TEST_F(ExtremeSurvey, ObjObjectsTooFarApartHaveOriginsOfTheirOwn) {
   const Places wing = {
       {x, kNorth - 1.05, 0.25}, {x, kNorth - 1.05, -1.75}, {x, kNorth + 0.95, -1.75}, {x, kNorth + 0.95, 0.25}};
   const Places stone = {{1.05, 0.95, 0.25}, {1.05, 1.95, 0.25}, {1.05, 0.95, 1.25}};
-  const Scene scene = Load("site.obj", ObjObject("wall", wall, " 1 0 0") + ObjObject("tower", tower, " 1 1 0") +
-                                           ObjObject("stone", stone, " 0 0 1") + ObjObject("wing", wing, " 0 1 0"));
+  const Scene scene =
+      Load("site.obj", "s 1\n" + ObjObject("wall", wall, " 1 0 0") + ObjObject("tower", tower, " 1 1 0") +
+                           ObjObject("stone", stone, " 0 0 1") + ObjObject("wing", wing, " 0 1 0"));
   ASSERT_EQ(scene.instances.size(), 4u);
   EXPECT_EQ(OriginIn(scene, "wall"), glm::dvec3(kEast, kNorth, 0.0));
   EXPECT_EQ(OriginIn(scene, "wing"), OriginIn(scene, "wall"));
