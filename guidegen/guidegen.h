@@ -17,6 +17,10 @@ namespace scumble {
 inline constexpr int kMaxSamples = 1 << 16;
 inline constexpr int kMaxBounces = 1024;
 
+// A light_error that hardly shows: what 64 samples leave in the middle of a penumbra.
+inline constexpr double kUnseenLightError = 0.015;
+inline constexpr int kLeastLightSamples = 4;  // with a light_error
+
 enum class NormalFrame {
   kCamera,  // view space, the same for every pixel
   kEye,     // rotated to each pixel's own view direction: wide cameras stop stretching
@@ -45,6 +49,11 @@ struct GuidegenOptions {
   // For light-path layers, and for luminance and shadow under lights with extent. Samples of a pixel, 1 … kMaxSamples.
   // They share the pixel's first surface, so no layer is averaged across a silhouette.
   int samples = 64;
+  // Luminance and shadow only. Above 0: each pixel samples each light with extent 4 times at least (8 at the border of
+  // a 16 × 16 tile), and more often, up to `samples`, until the estimated standard error of its light is not larger
+  // than this share of the light that the lamps it sees would bring without occluders. Neighbours of a shadow's edge
+  // count as on it. 0: `samples` each.
+  double light_error = 0.0;
   // Reflections after the first surface's, 0 … kMaxBounces; 0 is direct light alone, as in Cycles.
   int max_bounces = 8;
   // Light-path layers only. Above 0: samples are doubled, to 16 at least, until the estimated error, root mean square
@@ -56,7 +65,7 @@ struct GuidegenOptions {
   double time_budget_seconds = 0.0;
   int max_samples = kMaxSamples;  // the most that `noise` and the time budget may take, 1 … kMaxSamples
   std::uint64_t seed = 0;         // another seed, other noise of equal size; in attributes["scumble:seed"] unless 0
-  // Luminance and shadow always take `samples`: where they need any, `noise` and the time budget are a kUsage error.
+  // `noise` and the time budget are a kUsage error where luminance and shadow need samples.
 };
 
 // One line of the plan: the layer, the reason for it, and its cost.

@@ -23,6 +23,13 @@ std::string Samples(const GuidegenOptions& options) {
   return options.time_budget_seconds > 0.0 ? "as many paths as the time allows" : "paths until the noise is reached";
 }
 
+// Of luminance and shadow.
+std::string LightSamples(const GuidegenOptions& options) {
+  const std::string most = Counted(std::size_t(options.samples), "sample");
+  if (!(options.light_error > 0.0) || options.samples <= kLeastLightSamples) return most;
+  return std::to_string(kLeastLightSamples) + " to " + most;
+}
+
 std::string PathCost(Layer layer, const Scene& scene, const GuidegenOptions& options) {
   const PathSupply supply = SupplyOf(scene);
   if (!supply.light) return "none: the scene has no light, so it is 0";
@@ -77,8 +84,7 @@ std::vector<PlanItem> PlanGuides(const Scene& scene, const GuidegenOptions& opti
       cost = Counted(supply.delta_lights, "shadow ray") + " per covered pixel, where the light faces it";
     }
     if (supply.may_be_met) {
-      cost += (cost.empty() ? "" : "; ") + Counted(std::size_t(options.samples), "sample") +
-              " per covered pixel of the lights with extent";
+      cost += (cost.empty() ? "" : "; ") + LightSamples(options) + " per covered pixel of the lights with extent";
     }
     plan.push_back({"shadow rays",
                     luminance && shadow ? "for luminance and shadow" : (luminance ? "for luminance" : "for shadow"),

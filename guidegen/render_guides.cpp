@@ -53,15 +53,14 @@ bool NeedsLight(const LayerSet& layers) {
   return false;
 }
 
-// Luminance and shadow are cast at once with a fixed number of samples.
+// Luminance and shadow are cast at once: no pass follows that could take more samples.
 Status CheckOpenEnd(const GuidegenOptions& options, const PathSupply& supply) {
   const bool sampled =
       supply.may_be_met && (options.layers.Has(Layer::kLuminance) || options.layers.Has(Layer::kShadow));
   if (!sampled || (options.noise <= 0.0 && options.time_budget_seconds <= 0.0)) return Ok();
-  return UsageError(
-      std::string(options.noise > 0.0 ? "a limit of the noise" : "a time budget") +
-      " is for lpe.* layers; luminance and shadow under lights with extent take a fixed number of samples: "
-      "make these two in a run of their own with --samples");
+  return UsageError(std::string(options.noise > 0.0 ? "a limit of the noise" : "a time budget") +
+                    " is for lpe.* layers; luminance and shadow under lights with extent take samples of their own: "
+                    "make these two in a run without it");
 }
 
 Status CheckRadiance(const std::string& who, const glm::vec3& radiance) {

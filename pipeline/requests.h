@@ -68,7 +68,9 @@ struct SceneRequest {
   std::optional<FrameRate> fps;               // empty: a .blend's own, otherwise FrameRate()
   // Light-path layers, as in GuidegenOptions.
   int samples = GuidegenOptions().samples;
-  bool samples_given = false;  // then they are the most that noise or a time budget may take
+  // Given samples are those of every pixel, and the most that noise or a time budget may take. Where they are not
+  // given, luminance and shadow take as many as show, `samples` at most (kUnseenLightError).
+  bool samples_given = false;
   int max_bounces = GuidegenOptions().max_bounces;
   double noise = 0.0;
   double time_budget_seconds = 0.0;

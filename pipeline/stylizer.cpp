@@ -57,7 +57,7 @@ Expected<SceneRequest> RequestOf(const SceneSettings& settings) {
     request.fps = FrameRate{static_cast<std::int64_t>(thousandths + 0.5), 1000};
   }
   request.aa = settings.coverage_samples;
-  request.samples = settings.light_samples;
+  if (settings.light_samples != 0) request.samples = settings.light_samples, request.samples_given = true;
   request.isa = settings.instruction_set;
   request.raw_normals = settings.raw_normals;
   return request;

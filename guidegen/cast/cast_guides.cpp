@@ -174,6 +174,10 @@ Status CheckSampling(const GuidegenOptions& options) {
   if (options.samples < 1 || options.samples > kMaxSamples) {
     return refuse("samples " + std::to_string(options.samples), "1 to " + std::to_string(kMaxSamples));
   }
+  if (!(options.light_error >= 0.0) || std::isinf(options.light_error)) {
+    return refuse("light_error " + std::to_string(options.light_error),
+                  "0 (a fixed number of samples) or an error like 0.015");
+  }
   if (options.max_samples < 1 || options.max_samples > kMaxSamples) {
     return refuse("max_samples " + std::to_string(options.max_samples), "1 to " + std::to_string(kMaxSamples));
   }

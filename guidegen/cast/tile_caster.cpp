@@ -9,7 +9,6 @@
 #include "core/image/check.h"
 #include "guidegen/cast/ray_packets.h"
 #include "guidegen/cast/tile_store.h"
-#include "guidegen/light/area_light.h"
 #include "guidegen/rays/ray_offset.h"
 #include "guidegen/surface/shading_normal.h"
 
@@ -46,9 +45,6 @@ std::span<const PlacedObject> LitObjects(const EmbreeScene& scene, const GuideSe
 // Planes of more pixels than this do not stay in the caches until they are read.
 constexpr std::size_t kCachedPixels = std::size_t(1) << 19;
 
-// The sampler's stream for luminance and shadow: different from that of the light paths.
-constexpr std::uint32_t kAreaLightStream = 1;
-
 }  // namespace
 
 TileCaster::TileCaster(const EmbreeScene& scene, const View& view, const GuidegenOptions& options, GuideSet& guides)
@@ -84,7 +80,10 @@ TileCaster::TileCaster(const EmbreeScene& scene, const View& view, const Guidege
 }
 
 TileCaster::Scratch::Scratch(const TileCaster& caster)
-    : triangles(caster.scene_.objects(), caster.object_records_, caster.points_), tiles(kStripTiles) {
+    : triangles(caster.scene_.objects(), caster.object_records_, caster.points_),
+      soft_light(caster.scene_, caster.lights_,
+                 {caster.options_.samples, caster.options_.light_error, caster.options_.seed}),
+      tiles(kStripTiles) {
   for (OfTile& tile : tiles) tile.lit.resize(caster.lit_ ? kTilePixels : 0);
 }
 
@@ -145,8 +144,9 @@ void TileCaster::WriteOthers(const Tile& tile, int pixel, const glm::dvec2& at, 
       MaxRayOffset(view_.camera.Through(at.x, at.y), hits.clear_from[pixel], point.position);
 }
 
-void TileCaster::Light(const Tile& tile, const TileHits& hits, const std::vector<SurfacePoint>& points,
-                       Share& share) const {
+void TileCaster::Light(const Tile& tile, SoftLight& soft_light, TileScratch& scratch, Share& share) const {
+  const TileHits& hits = scratch.hits;
+  const std::vector<SurfacePoint>& points = scratch.lit;
   std::array<double, kTilePixels> reached = {};  // shadows included
   std::array<double, kTilePixels> unoccluded = {};
   OcclusionBatch<std::pair<int, double>> batch(scene_.handle(), false);
@@ -168,24 +168,26 @@ void TileCaster::Light(const Tile& tile, const TileHits& hits, const std::vector
     });
     batch.Flush(report);
   }
-  ForEachPixel(tile, [&](int pixel) {
-    if (!hits.Met(pixel)) return;
-    const std::size_t index = Index(tile, pixel);
-    if (lights_.CanBeMet()) {
-      if (!share.gate.Continue()) return;  // thousands of samples may follow
-      const Sampler sampler(std::uint32_t(index), kAreaLightStream, options_.seed);
-      const AreaLighting lighting =
-          SampleAreaLights(scene_, lights_, points[pixel], sampler, options_.samples, share.rays);
-      reached[pixel] += lighting.reached;
-      unoccluded[pixel] += lighting.unoccluded;
-    }
+  scratch.soft.clear();
+  for (int pixel = 0; pixel < kTilePixels; ++pixel) {  // a square after the other: neighbours share packets
+    if (TileColumn(pixel) >= tile.width || TileRow(pixel) >= tile.height || !hits.Met(pixel)) continue;
+    scratch.soft.push_back({TileColumn(pixel),
+                            TileRow(pixel),
+                            &points[std::size_t(pixel)],
+                            std::uint32_t(Index(tile, pixel)),
+                            reached[std::size_t(pixel)],
+                            {}});
+  }
+  if (lights_.CanBeMet() && !soft_light.Run(scratch.soft, share.gate, share.rays)) return;
+  for (const SoftPixel& soft : scratch.soft) {
+    const auto pixel = std::size_t(TilePixel(soft.column, soft.row));
+    const double lit = reached[pixel] + soft.light.reached;
+    const double most = unoccluded[pixel] + soft.light.unoccluded;
     // Each light is within float's range; their sum need not be.
     constexpr double kMaxFloat = std::numeric_limits<float>::max();
-    if (planes_.luminance) planes_.luminance[index] = float(std::min(reached[pixel], kMaxFloat));
-    if (planes_.shadow && unoccluded[pixel] > 0.0) {
-      planes_.shadow[index] = float(1.0 - reached[pixel] / unoccluded[pixel]);
-    }
-  });
+    if (planes_.luminance) planes_.luminance[soft.index] = float(std::min(lit, kMaxFloat));
+    if (planes_.shadow && most > 0.0) planes_.shadow[soft.index] = float(1.0 - lit / most);
+  }
 }
 
 void TileCaster::WriteWhole(std::span<const Tile> tiles, const Scratch& scratch) const {
@@ -208,12 +210,12 @@ void TileCaster::WriteWhole(std::span<const Tile> tiles, const Scratch& scratch)
   }
 }
 
-void TileCaster::Fill(const Tile& tile, TriangleCache& triangles, TileScratch& scratch, Share& share,
+void TileCaster::Fill(const Tile& tile, Scratch& buffers, TileScratch& scratch, Share& share,
                       std::vector<PathPixel>* pixels) const {
   const TileHits& hits = scratch.hits;
   scratch.moved.clear();
   share.rays.coverage += primary_.Cover(tile, scratch.hits, scratch.coverage, scratch.moved);
-  FindTileSurface(hits, scratch.rays, triangles, view_.bends_normals, scratch.guides,
+  FindTileSurface(hits, scratch.rays, buffers.triangles, view_.bends_normals, scratch.guides,
                   points_ ? &scratch.points : nullptr);
   for (int i = 0; i < scratch.guides.left_over_count; ++i) {
     const int pixel = scratch.guides.left_over[std::size_t(i)];
@@ -236,7 +238,7 @@ void TileCaster::Fill(const Tile& tile, TriangleCache& triangles, TileScratch& s
     });
   }
   // Where nothing emits, luminance and shadow keep their background value, which is 0.
-  if (lit_) Light(tile, hits, scratch.lit, share);
+  if (lit_) Light(tile, buffers.soft_light, scratch, share);
 }
 
 void TileCaster::Cast(std::span<const Tile> tiles, Scratch& scratch, Share& share,
@@ -248,7 +250,7 @@ void TileCaster::Cast(std::span<const Tile> tiles, Scratch& scratch, Share& shar
     share.rays.primary += std::size_t(tiles[i].width) * tiles[i].height;
   }
   for (std::size_t i = 0; i < tiles.size(); ++i) {
-    Fill(tiles[i], scratch.triangles, scratch.tiles[i], share, pixels.empty() ? nullptr : &pixels[i]);
+    Fill(tiles[i], scratch, scratch.tiles[i], share, pixels.empty() ? nullptr : &pixels[i]);
   }
   WriteWhole(tiles, scratch);
 }

@@ -13,6 +13,7 @@
 #include "guidegen/guidegen.h"
 #include "guidegen/light/light_sampling.h"
 #include "guidegen/light/path_tracer.h"
+#include "guidegen/light/soft_light.h"
 #include "guidegen/rays/embree_scene.h"
 #include "guidegen/rays/progress_gate.h"
 #include "guidegen/surface/triangle_cache.h"
@@ -39,9 +40,11 @@ class TileCaster {
       TileGuides guides;
       TilePoints points;
       std::vector<SurfacePoint> lit;
+      std::vector<SoftPixel> soft;
       std::vector<PrimaryRays::Moved> moved;
     };
     TriangleCache triangles;
+    SoftLight soft_light;
     std::vector<OfTile> tiles;
   };
 
@@ -85,9 +88,9 @@ class TileCaster {
   void WritePlain(int pixel, const glm::dvec2& at, TileScratch& scratch) const;
   void WriteOthers(const Tile& tile, int pixel, const glm::dvec2& at, TileScratch& scratch) const;
   void WriteWhole(std::span<const Tile> tiles, const Scratch& scratch) const;
-  void Fill(const Tile& tile, TriangleCache& triangles, TileScratch& scratch, Share& share,
+  void Fill(const Tile& tile, Scratch& buffers, TileScratch& scratch, Share& share,
             std::vector<PathPixel>* pixels) const;
-  void Light(const Tile& tile, const TileHits& hits, const std::vector<SurfacePoint>& points, Share& share) const;
+  void Light(const Tile& tile, SoftLight& soft_light, TileScratch& scratch, Share& share) const;
   glm::dvec2 Centre(const Tile& tile, int pixel) const {
     return {tile.x0 + TileColumn(pixel) + 0.5, tile.y0 + TileRow(pixel) + 0.5};
   }

@@ -59,7 +59,9 @@ class LightSet {
   double Probability(const SurfacePoint& point, int light, bool with_delta) const;
 
   // Whether a light is wide from there, and whether any is; see IsWide in light_tree.h.
-  bool IsWideFrom(const glm::dvec3& point, int light) const { return IsWide(shapes_[std::size_t(light)], point); }
+  bool IsWideFrom(const glm::dvec3& point, int light, double distance = kWideDistance) const {
+    return IsWide(shapes_[std::size_t(light)], point, distance);
+  }
   bool AnyWideFrom(const glm::dvec3& point) const;
 
   // u also chooses a triangle and is rescaled for it. A draw that cannot reach the point has no radiance.

@@ -44,13 +44,14 @@ double SphereWeight(const glm::dvec3& centre, double radius, double power, const
 double SunWeight(const glm::dvec3& direction, double half_angle, double power, const SurfacePoint& point);
 
 // Whether a light fills so much of the hemisphere that directions of a wide lobe should sample it too. For a smaller
-// light, all points on it contribute about equally, and such directions would be wasted.
-inline bool IsWide(const TreeLight& light, const glm::dvec3& point) {
-  constexpr double kWideDistance = 4.0;  // radii
+// light, all points on it contribute about equally, and such directions would be wasted. `distance`: up to how many of
+// its radii a light is wide.
+inline constexpr double kWideDistance = 4.0;
+inline bool IsWide(const TreeLight& light, const glm::dvec3& point, double distance = kWideDistance) {
   if (light.is_delta) return false;
-  if (light.is_sun) return light.radius * kWideDistance > 1.0;
+  if (light.is_sun) return light.radius * distance > 1.0;
   const glm::dvec3 to_centre = light.centre - point;
-  return glm::dot(to_centre, to_centre) < kWideDistance * kWideDistance * light.radius * light.radius;
+  return glm::dot(to_centre, to_centre) < distance * distance * light.radius * light.radius;
 }
 
 // Immutable once built; free to use from any thread.

@@ -26,8 +26,8 @@ struct SceneSettings {
   // Degrees between faces, 0 … 180, up to which they are smooth where the file gives no normals; 0: flat. Empty: glTF
   // is flat, OBJ as its smoothing groups say, other OBJ and PLY smooth up to 60.
   std::optional<double> auto_smooth;
-  int coverage_samples = 1;     // N × N samples of the silhouette, 1 … 16
-  int light_samples = 64;       // of each pixel, where light is sampled
+  int coverage_samples = 1;  // N × N samples of the silhouette, 1 … 16
+  int light_samples = 0;     // of each pixel, where light is sampled; 0: as many as show, 64 at most
   // On: shading normals that would mirror the eye's ray into the surface stay as they are. Off: they are bent, as in
   // Blender's Cycles.
   bool raw_normals = false;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <memory>
 #include <numeric>
 #include <set>
@@ -150,18 +149,16 @@ Status ReadOver(const std::string& file, PictureState& state) {
 }
 
 PictureSettings SettingsOf(const PictureRequest& request, std::optional<FrameRate> fps, std::optional<double> exposure,
-                           std::optional<int> samples) {
+                           const std::string& samples) {
   return {request.seed, !request.over.empty(), request.show, request.upsample, fps,
           exposure,     !request.exposure,     samples};
 }
 
-std::optional<int> SamplesAsked(const std::map<std::string, std::string>& attributes) {
+std::string SamplesAsked(const std::map<std::string, std::string>& attributes) {
   const auto found = attributes.find(kSamplesKey);
-  if (found == attributes.end()) return std::nullopt;
-  const std::string& text = found->second;
-  int samples = 0;  // guides may come from anywhere
-  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), samples);
-  return failure == std::errc() && end == text.data() + text.size() ? std::optional(samples) : std::nullopt;
+  if (found == attributes.end()) return "";
+  // Guides may come from anywhere.
+  return found->second.find_first_not_of("0123456789-") == std::string::npos ? found->second : "";
 }
 
 bool IsReadEachFrame(const std::string& key) {

@@ -23,10 +23,10 @@ namespace scumble {
 // Settings that --resume compares, of styles that are at the picture's frame. Rate, exposure and the samples of the
 // guides' light where they are known already.
 PictureSettings SettingsOf(const PictureRequest& request, std::optional<FrameRate> fps, std::optional<double> exposure,
-                           std::optional<int> samples);
+                           const std::string& samples);
 
 // The value of the attribute kSamplesKey; empty where guides do not have it.
-std::optional<int> SamplesAsked(const std::map<std::string, std::string>& attributes);
+std::string SamplesAsked(const std::map<std::string, std::string>& attributes);
 
 // Where the guides come from.
 struct GuideSource {

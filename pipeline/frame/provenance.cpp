@@ -90,7 +90,7 @@ std::string SettingsText(const StyleSet& styles, const PictureSettings& settings
                                  HashOfStyles(styles, styles.chosen, known), seed, over ? "a picture" : "nothing",
                                  show ? ExplanationNames()[std::size_t(*show)] : "result", upsample);
   const auto chosen = std::span(styles.styles).first(styles.chosen);
-  if (samples && std::any_of(chosen.begin(), chosen.end(), AsksForLight)) text += fmt::format("; samples {}", *samples);
+  if (!samples.empty() && std::any_of(chosen.begin(), chosen.end(), AsksForLight)) text += "; samples " + samples;
   text += "; fps " + (fps ? fmt::format("{}", double(fps->numerator) / double(fps->denominator)) : kAnySetting);
   if (std::none_of(chosen.begin(), chosen.end(), LooksAtLight)) return text;
   text += "; exposure " + (exposure ? fmt::format("{}", *exposure) : kAnySetting);

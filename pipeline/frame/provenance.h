@@ -25,8 +25,8 @@ struct PictureSettings {
   std::optional<FrameRate> fps;    // where it is known
   std::optional<double> exposure;  // where it is known; counts for styles of several exemplars, as does the next
   std::optional<bool> measured;    // whether --exposure auto found it; empty: the stops alone count
-  std::optional<int>
-      samples;  // of a pixel of light in the guides, where it is known; counts for styles that ask for any
+  // Of a pixel of light in the guides, as SamplesText has it; empty: unknown. Counts for styles that ask for any.
+  std::string samples;
 };
 
 // All settings of the transfer, as text: equal texts, equal settings.

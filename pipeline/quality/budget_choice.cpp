@@ -28,6 +28,9 @@
 namespace scumble {
 namespace {
 
+// About as many samples of luminance and shadow as pixels choose, at most, in the mean of a picture.
+constexpr int kChosenSamples = 16;
+
 // One frame by the variant at a place of the ladder.
 using PaintVariant = std::function<Expected<double>(const Variant& variant)>;
 struct Trials {
@@ -153,7 +156,7 @@ std::string CommonCircumstances(StyleSet& styles, const PictureRequest& picture,
   ExemplarHashes hashes;
   const std::size_t all = styles.styles.size();
   const std::uint64_t tracks = HashOfTracks(styles);
-  PictureSettings settings = SettingsOf(picture, {}, {}, {});
+  PictureSettings settings = SettingsOf(picture, {}, {}, "");
   settings.measured.reset();  // stops that were measured before take as long as those that are measured now
   return fmt::format(
       "{}; {}{}{}{}{}", MachineName(context.threads), SettingsText(styles, settings, hashes),
@@ -273,7 +276,7 @@ Expected<std::optional<BudgetChoice>> ChooseForScene(const BudgetRequest& option
       !scene.samples_given && std::any_of(styles.styles.begin(), styles.styles.end(), AsksForLight);
   LadderFrame ladder{true, size.width, size.height, options.guides_are_fixed, may_have_fewer ? scene.samples : 0};
   const auto take = [&](const Variant& variant) {
-    if (variant.samples > 0) scene.samples = variant.samples;
+    if (variant.samples > 0) scene.samples = variant.samples, scene.samples_given = true;
     return Take(variant, styles, picture);
   };
   if (options.quality) {
@@ -291,21 +294,25 @@ Expected<std::optional<BudgetChoice>> ChooseForScene(const BudgetRequest& option
     SCUMBLE_ASSIGN(opened, OpenToMeasure(scene, frame, styles, silent));
     return Ok();
   };
-  const auto needs_samples = [&]() -> Expected<bool> {
-    SCUMBLE_RETURN_IF_ERROR(open());
-    return NeedSamples(opened->scene, opened->layers, scene);
+  using Needs = bool(const Scene&, const LayerSet&, const SceneRequest&);
+  const auto kept = [&](const char* question, Needs* needs) {
+    return KeptAnswer(question + circumstances, options.recalibrate, context, [&]() -> Expected<bool> {
+      SCUMBLE_RETURN_IF_ERROR(open());
+      return needs(opened->scene, opened->layers, scene);
+    });
   };
   if (ladder.samples > 0) {
-    SCUMBLE_ASSIGN(const bool needed,
-                   KeptAnswer("samples; " + circumstances, options.recalibrate, context, needs_samples));
-    if (!needed) ladder.samples = 0;
+    SCUMBLE_ASSIGN(const bool needed, kept("samples; ", NeedSamples));
+    SCUMBLE_ASSIGN(const bool paths, kept("paths; ", NeedPathSamples));
+    // Pixels that choose their samples take fewer than a step of many for each.
+    ladder.samples = !needed ? 0 : paths ? ladder.samples : std::min(ladder.samples, kChosenSamples);
   }
   double casting_ms = 0.0;
   const auto cast = [&](const Variant& variant) -> Expected<GuideSet> {
     SCUMBLE_RETURN_IF_ERROR(open());
     SceneRequest small = scene;
     small.size = {size.width / UpsampleOf(variant), size.height / UpsampleOf(variant)};
-    if (variant.samples > 0) small.samples = variant.samples;
+    if (variant.samples > 0) small.samples = variant.samples, small.samples_given = true;
     Stopwatch watch;
     SCUMBLE_ASSIGN(SceneGuides made,
                    CastScene(opened->scene, opened->view.camera, nullptr, small, opened->layers, silent, {}, false));

@@ -51,7 +51,7 @@ Status PictureSequence::ReadOverOfAll(int width, int height) {
 }
 
 Status PictureSequence::Check(int frame, const std::string& output, int width, int height, std::optional<FrameRate> fps,
-                              std::optional<int> samples) {
+                              const std::string& samples) {
   for (Style& style : styles_.styles) SCUMBLE_RETURN_IF_ERROR(SetStyleFrame(style, frame));
   const std::optional<double> exposure = request_.exposure;
   PictureShape shape{width, height, PictureChannels(output), PictureBits(output, {request_.bits}), {}};

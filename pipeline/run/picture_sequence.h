@@ -39,7 +39,7 @@ class PictureSequence {
   // Whether a picture that is there is one that Make would make, as far as can be told without its guides. `samples`:
   // of its guides' light, where that is known.
   Status Check(int frame, const std::string& output, int width, int height, std::optional<FrameRate> fps,
-               std::optional<int> samples);
+               const std::string& samples);
   bool MustLookAhead(const Sequence& sequence) const;
 
   Expected<FrameWrite> Make(int frame, const std::string& output, const GuidesAt& guides_at, double guides_share,

@@ -66,7 +66,7 @@ Expected<RunReport> StylizeSequence(const StylizeRequest& request, const Sequenc
   if (!fps && !IsBlenderScene(options.scene)) fps = FrameRate();
   const int width = size.width * request.picture.upsample, height = size.height * request.picture.upsample;
   work.check = [&](int frame, const std::string& output) {
-    return pictures.Check(frame, output, width, height, fps, options.samples);
+    return pictures.Check(frame, output, width, height, fps, SamplesText(options));
   };
   work.begin = [&](std::span<const int> frames, const Progress& progress) -> Status {
     std::vector<int> wanted(frames.begin(), frames.end());
@@ -119,7 +119,7 @@ Expected<std::optional<BudgetChoice>> ChooseForStylize(StylizeRequest& request, 
   const int before = request.picture.upsample;
   SCUMBLE_ASSIGN(const std::string over, OverOnTrial(request.picture, sequence));
   SCUMBLE_ASSIGN(auto choice, ChooseForScene(request.budget, scene, frame, over, styles, request.picture, context));
-  request.scene.samples = scene.samples;
+  request.scene.samples = scene.samples, request.scene.samples_given = scene.samples_given;
   if (request.picture.upsample != before) SCUMBLE_RETURN_IF_ERROR(ShrinkGuides(request));
   return choice;
 }

@@ -119,13 +119,16 @@ Expected<PreparedView> ViewScene(Scene& scene, const SceneRequest& options, cons
 
 namespace {
 
-// The samples that were asked for; where noise or the clock decides, the most there may be.
-int SamplesOf(const SceneRequest& options) {
-  const bool open_ended = options.noise > 0.0 || options.time_budget_seconds > 0.0;
-  return open_ended && !options.samples_given ? kMaxSamples : options.samples;
-}
+// Where samples are not given, pixels choose how many luminance and shadow take.
+double LightErrorOf(const SceneRequest& options) { return options.samples_given ? 0.0 : kUnseenLightError; }
 
 }  // namespace
+
+std::string SamplesText(const SceneRequest& options) {
+  if (options.samples_given) return std::to_string(options.samples);
+  const bool open_ended = options.noise > 0.0 || options.time_budget_seconds > 0.0;
+  return open_ended ? std::to_string(kMaxSamples) : fmt::format("{}-{}", kLeastLightSamples, options.samples);
+}
 
 std::string GuideSettings(const SceneRequest& options) {
   std::string text = fmt::format("scumble {}; aa {}; normals {}{}; seed {}", SCUMBLE_VERSION, options.aa,
@@ -143,7 +146,7 @@ std::string GuideSettings(const SceneRequest& options) {
   if (!options.blender.view_layer.empty()) add("view_layer", options.blender.view_layer);
   // All of them always: what a file does not name differs.
   return text + fmt::format("; robust {}; samples {}; bounces {}; noise {}", options.robust ? "yes" : "no",
-                            SamplesOf(options), options.max_bounces, options.noise);
+                            SamplesText(options), options.max_bounces, options.noise);
 }
 
 Expected<SceneGuides> CastScene(Scene& scene, const Camera& camera, const NextFrame* next, const SceneRequest& options,
@@ -162,6 +165,7 @@ Expected<SceneGuides> CastScene(Scene& scene, const Camera& camera, const NextFr
   guidegen.robust = options.robust;
   guidegen.progress = progress;
   guidegen.samples = options.samples;
+  guidegen.light_error = LightErrorOf(options);
   guidegen.max_bounces = options.max_bounces;
   guidegen.noise = options.noise;
   guidegen.seed = options.seed;
@@ -195,7 +199,7 @@ Expected<SceneGuides> CastScene(Scene& scene, const Camera& camera, const NextFr
   result.samples = rendered.samples, result.noise = rendered.noise;
   if (options.half) RoundColorLayersToHalf(result.guides);
   result.guides.attributes["scumble:settings"] = GuideSettings(options);
-  result.guides.attributes[kSamplesKey] = std::to_string(SamplesOf(options));
+  result.guides.attributes[kSamplesKey] = SamplesText(options);
   if (!scene.instances.empty()) WarnIfNothingShows(result.guides, options.scene, context);
   context.EndStage("guides", result.times);
   if (result.cost.textures_decoded > 0) result.times.insert(result.times.begin(), {"textures", textures_ms});

@@ -70,8 +70,10 @@ bool NeedsKeyLight(const SceneRequest& options, const LayerSet& layers);
 // How an open scene is seen; the key light, where a layer needs one, is added to it.
 Expected<PreparedView> ViewScene(Scene& scene, const SceneRequest& options, const LayerSet& layers);
 
-// The attribute that holds the samples which guides were asked to be cast with.
+// The attribute that holds the samples which guides were asked to be cast with, and its value: "64", or "4-64" where
+// each pixel chose. Where noise or the clock decides, it is the most there may be.
 inline constexpr const char* kSamplesKey = "scumble:samples_asked";
+std::string SamplesText(const SceneRequest& options);
 
 // The attribute scumble:settings of the guides: how they are seen, for --resume to compare.
 std::string GuideSettings(const SceneRequest& options);

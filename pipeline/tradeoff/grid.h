@@ -13,7 +13,7 @@ struct TradeGridOptions {
   int width = 0, height = 0;  // of the picture
   bool quick = false;         // the small grid
   bool chance = false;        // the guides need samples: lights with extent, or light paths
-  int samples = 0;            // the style's own
+  int samples = 0;            // the style's own, where they were given
 };
 
 struct TradeGrid {

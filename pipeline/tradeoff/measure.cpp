@@ -125,7 +125,7 @@ class Trade {
     auto chosen = ChooseVariants(stage_.grid.variants, setup_.only);
     if (chosen.ok() || !setup_.quick) return chosen;
     const TradeGrid whole =
-        MakeTradeGrid(stage_.style, {stage_.width, stage_.height, false, stage_.chance, setup_.scene.samples});
+        MakeTradeGrid(stage_.style, {stage_.width, stage_.height, false, stage_.chance, GivenSamples(setup_)});
     if (!ChooseVariants(whole.variants, setup_.only).ok()) return chosen;
     return UsageError("--only " + setup_.only + ": --quick leaves that out; leave out --quick");
   }

@@ -51,7 +51,7 @@ std::vector<std::string> TradeArguments(const TradeSetup& setup, const RunContex
   for (const std::string& set : setup.style.sets) add("--set", set);
   add("--size", SizeToText(setup.scene.size));
   for (const auto& [option, value] : SceneArguments(setup)) words.push_back(option + "=" + value);
-  if (setup.scene.samples != SceneRequest().samples) add("--samples", std::to_string(setup.scene.samples));
+  if (setup.scene.samples_given) add("--samples", std::to_string(setup.scene.samples));
   if (setup.scene.max_bounces != SceneRequest().max_bounces)
     add("--max-bounces", std::to_string(setup.scene.max_bounces));
   if (setup.scene.seed != 0) add("--seed", std::to_string(setup.scene.seed));

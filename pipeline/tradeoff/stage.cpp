@@ -73,7 +73,7 @@ Expected<TradeStage> OpenTradeStage(const TradeSetup& setup, const RunContext& c
   };
   SCUMBLE_ASSIGN(stage.scene, OpenSceneAt(setup.frame, setup.scene, layers, context));
   stage.chance = NeedSamples(stage.scene.scene, stage.scene.layers, setup.scene);
-  stage.grid = MakeTradeGrid(stage.style, {size.width, size.height, setup.quick, stage.chance, setup.scene.samples});
+  stage.grid = MakeTradeGrid(stage.style, {size.width, size.height, setup.quick, stage.chance, GivenSamples(setup)});
   SCUMBLE_RETURN_IF_ERROR(AddQualities(setup, context, stage));
   return stage;
 }
@@ -98,8 +98,8 @@ RepeatOptions RepeatVariant(const TradeSetup& setup, const TradeStage& stage, co
   add("--size", fmt::format("{}x{}", stage.width, stage.height));
   for (const auto& [option, value] : SceneArguments(setup)) add(option, value);
   if (UpsampleOf(variant) > 1) add("--upsample", std::to_string(UpsampleOf(variant)));
-  const int samples = variant.samples > 0 ? variant.samples : setup.scene.samples;
-  if (stage.chance && samples != SceneRequest().samples) add("--samples", std::to_string(samples));
+  const int samples = variant.samples > 0 ? variant.samples : GivenSamples(setup);
+  if (stage.chance && samples > 0) add("--samples", std::to_string(samples));
   if (setup.scene.max_bounces != SceneRequest().max_bounces) {
     add("--max-bounces", std::to_string(setup.scene.max_bounces));
   }

@@ -13,6 +13,9 @@
 
 namespace scumble {
 
+// Samples of a pixel of light; 0: not given, so that pixels choose.
+inline int GivenSamples(const TradeSetup& setup) { return setup.scene.samples_given ? setup.scene.samples : 0; }
+
 // The scene and the grid around the style, both opened once.
 struct TradeStage {
   StaticScene scene;

@@ -15,8 +15,13 @@ namespace scumble {
 
 bool NeedSamples(const Scene& scene, const LayerSet& layers, const SceneRequest& options) {
   const PathSupply supply = SupplyOf(scene);
+  const bool direct = layers.Has(Layer::kLuminance) || layers.Has(Layer::kShadow);
+  return (supply.light && supply.may_be_met && direct) || NeedPathSamples(scene, layers, options);
+}
+
+bool NeedPathSamples(const Scene& scene, const LayerSet& layers, const SceneRequest& options) {
+  const PathSupply supply = SupplyOf(scene);
   if (!supply.light) return false;
-  if (supply.may_be_met && (layers.Has(Layer::kLuminance) || layers.Has(Layer::kShadow))) return true;
   const PathFollower follower(layers, supply, options.max_bounces);
   return !follower.empty() && follower.NeedsSamples();
 }
@@ -29,7 +34,7 @@ Expected<VariantGuides> MakeVariantGuides(StaticScene& scene, const SceneRequest
   one.size = {size.width * super / up, size.height * super / up};
   one.robust = variant.robust;
   one.seed += static_cast<std::uint64_t>(variant.more_seed);
-  if (variant.samples > 0) one.samples = variant.samples;
+  if (variant.samples > 0) one.samples = variant.samples, one.samples_given = true;
   SCUMBLE_ASSIGN(SceneGuides made, CastScene(scene.scene, scene.view.camera, nullptr, one, layers, context, {}, false));
   VariantGuides result;
   for (const auto& [step, ms] : made.times) {

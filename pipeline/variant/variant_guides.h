@@ -12,6 +12,8 @@ namespace scumble {
 
 // Whether guides of these layers need chance there, so that their samples matter.
 bool NeedSamples(const Scene& scene, const LayerSet& layers, const SceneRequest& options);
+// Whether light paths need it, besides luminance and shadow, of which each pixel takes as many samples as show.
+bool NeedPathSamples(const Scene& scene, const LayerSet& layers, const SceneRequest& options);
 
 struct VariantGuides {
   GuideSet guides;  // as the transfer reads them

@@ -35,7 +35,7 @@ SceneRequest SceneOf(const std::string& name) {
   SceneRequest request;
   request.scene = kSource + "/scenes/" + name + ".glb";
   request.size = {96, 54};
-  request.samples = 2;
+  request.samples = 2, request.samples_given = true;
   return request;
 }
 

@@ -172,7 +172,10 @@ void AddSceneOptions(CLI::App& verb, SceneOptions& options) {
 }
 
 void AddSampleOptions(CLI::App& verb, SceneOptions& options) {
-  verb.add_option("--samples", options.request.samples, "paths a pixel, for lpe.* layers and under lights with extent")
+  verb.add_option(
+          "--samples", options.request.samples,
+          "paths a pixel, for lpe.* layers and under lights with extent; left out, each pixel takes 4 to 64 for "
+          "luminance and shadow, until more would hardly show")
       ->type_name("N")
       ->check(CLI::Range(1, kMaxSamples))
       ->each([&options](const std::string&) { options.request.samples_given = true; })
@@ -193,8 +196,8 @@ void AddLightPathOptions(CLI::App& verb, SceneOptions& options) {
   AddSampleOptions(verb, options);
   verb.get_option("--samples")
       ->description(
-          "paths a pixel, for lpe.* layers and under lights with extent; with --noise or --time-budget the most there "
-          "may be");
+          "paths a pixel, for lpe.* layers and under lights with extent; left out, each pixel takes 4 to 64 for "
+          "luminance and shadow, until more would hardly show; with --noise or --time-budget the most there may be");
   verb.add_option("--noise", options.request.noise,
                   "sample lpe.* layers, 16 times or more, until the estimated error, RMS over mean, is below this")
       ->type_name("X")

@@ -44,7 +44,7 @@ std::string AnimationName(const tinygltf::Model& model, std::size_t index) {
 
 glm::dquat ToQuaternion(const double* v) { return glm::dquat(v[3], v[0], v[1], v[2]); }
 
-bool HasDirection(const double* v) {
+bool HasLength(const double* v) {
   const double length = glm::length(ToQuaternion(v));
   return length > 0.0 && std::isfinite(length);
 }
@@ -129,7 +129,7 @@ class ChannelReader {
     if (width != 4) return Ok();
     for (std::size_t key = 0; key < track.times.size(); ++key) {
       const std::size_t at = 4 * (key * values_a_key + (values_a_key == 3 ? 1 : 0));
-      if (!HasDirection(track.values.data() + at)) {
+      if (!HasLength(track.values.data() + at)) {
         return Bad(where, "has a rotation of zero length at key " + std::to_string(key));
       }
     }
@@ -144,7 +144,7 @@ class ChannelReader {
 };
 
 void MakeUnit(std::vector<double>& rotation, const double* otherwise) {
-  const double* from = HasDirection(rotation.data()) ? rotation.data() : otherwise;
+  const double* from = HasLength(rotation.data()) ? rotation.data() : otherwise;
   const glm::dquat unit = ToQuaternion(from) / glm::length(ToQuaternion(from));
   rotation = {unit.x, unit.y, unit.z, unit.w};
 }

@@ -385,12 +385,40 @@ TEST_F(CliVerbs, ATimeBudgetSaysWhatRepeatsIt) {
   EXPECT_TRUE(Contains(capped, "; repeat with --samples 4\n")) << capped;
   for (const char* option : {"--noise", "--time-budget"}) {
     ExpectError(With(guidegen, {"--layers", "shadow", option, "1"}), 2,
-                {"is for lpe.* layers; luminance and shadow under lights with extent take a fixed number of samples"});
+                {"is for lpe.* layers; luminance and shadow under lights with extent take samples of their own"});
   }
   const std::string exact = RunOk(With(guidegen, {"--layers", "lpe.LSE", "--max-bounces", "0", "--noise", "1"})).out;
   EXPECT_TRUE(Contains(exact, "--samples")) << exact;
   const std::string none = RunOk(With(guidegen, {"--noise", "1"})).out;
   EXPECT_TRUE(Contains(none, "; free of noise, no samples\n")) << none;
+}
+
+// Left out, --samples is for each pixel to choose; a number is the number, the default one too.
+TEST_F(CliVerbs, PixelsChooseTheirSamplesUnlessTheyAreGiven) {
+  const Arguments guidegen = {"guidegen", Scene("ball.glb"), "--size", "64", "--layers", "luminance,shadow"};
+  const auto shadow_rays = [&](const Arguments& more) {
+    return RunOk(With(With(guidegen, more), {"-o", "g.exr", "--json"})).Json()["rays"]["shadow"].get<int>();
+  };
+  const int chosen = shadow_rays({"--threads", "1"});
+  const std::string bytes = Bytes("g.exr");
+  EXPECT_EQ(shadow_rays({"--threads", "3"}), chosen);
+  EXPECT_EQ(Bytes("g.exr"), bytes) << "threads decide nothing";
+  EXPECT_TRUE(Contains(bytes, "samples 4-64;")) << "the header has what was asked for";
+  EXPECT_TRUE(Contains(RunOk(With(guidegen, {"--explain"})).out, "4 to 64 samples per covered pixel"));
+  const int many = shadow_rays({"--samples", "64"});
+  EXPECT_LT(3 * chosen, many);
+  EXPECT_TRUE(Contains(Bytes("g.exr"), "samples 64;"));
+  EXPECT_EQ(shadow_rays({"--samples", "64", "--threads", "3"}), many);
+  EXPECT_TRUE(Contains(RunOk(With(guidegen, {"--samples", "64", "--explain"})).out, " 64 samples per covered pixel"));
+  EXPECT_GT(shadow_rays({"--samples", "4"}), 0);
+  EXPECT_LE(shadow_rays({"--samples", "4"}), chosen);
+  // --resume takes neither for the other.
+  const Arguments frames = With(guidegen, {"--frames", "1-2", "--resume", "--json", "-o", "s.#.exr"});
+  EXPECT_EQ(RunOk(frames).Json()["kept"], 0);
+  EXPECT_EQ(RunOk(With(frames, {"--samples", "64"})).Json()["kept"], 0);
+  EXPECT_EQ(RunOk(With(frames, {"--samples", "64"})).Json()["kept"], 2);
+  EXPECT_EQ(RunOk(frames).Json()["kept"], 0);
+  EXPECT_EQ(RunOk(frames).Json()["kept"], 2);
 }
 
 TEST_F(CliVerbs, SeedsOfGuidesDecideAndRepeat) {

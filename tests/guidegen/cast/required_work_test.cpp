@@ -195,6 +195,16 @@ TEST(RequiredWork, AnAreaLightCostsItsSamples) {
   scene.lights = {Panel(), Sun()};
   ExpectWork(scene, AboveFloor(), Asking({Layer::kLuminance}),
              {.shadow = all + kPixels, .light_samples = all + kPixels});
+  // With an allowed error, four samples show that nothing is in the way, eight at the borders of tiles.
+  GuidegenOptions few = Asking({Layer::kLuminance});
+  few.light_error = 0.05, few.samples = 64;
+  scene.lights = {Panel()};
+  std::size_t first = 0;
+  for (int i = 0; i < int(kPixels); ++i) {
+    const int column = i % kWidth % 16, row = i / kWidth % 16;
+    first += column == 0 || column == 15 || row == 0 || row == 15 ? 8 : 4;
+  }
+  ExpectWork(scene, AboveFloor(), few, {.shadow = first, .light_samples = first});
   // One that is turned away is sampled in vain, and no ray is cast for it.
   scene.lights = {Panel()};
   scene.lights[0].world_from_light *= glm::rotate(glm::dmat4(1.0), kPi, glm::dvec3(0, 1, 0));
