@@ -30,6 +30,10 @@ struct GuidegenOptions {
   // least one subsample, however thin the object.
   int aa = 1;
   NormalFrame normal_frame = NormalFrame::kCamera;
+  // Off: shading normals that would reflect the eye's ray into the surface are bent, as in Cycles, in every layer
+  // (guidegen/surface/shading_normal.h). On: they stay as they are interpolated and mapped;
+  // attributes["scumble:raw_normals"] is "true".
+  bool raw_normals = false;
   int threads = 0;  // 0: all
   std::string isa;  // Embree's "isa=" setting: "" (best of this machine), "sse2", "sse4.2", "avx", "avx2", "avx512"
   // Embree's robust mode: rays that hit an edge or a corner never pass between two triangles. Without it the tests of

@@ -199,6 +199,7 @@ struct RayCast {
     CheckTextures(scene, options);
 
     View view;
+    view.bends_normals = !options.raw_normals;
     SCUMBLE_ASSIGN(view.camera, CameraRays::Make(state.camera, options.width, options.height));
     if (NeedsLight(options.layers)) {
       SCUMBLE_ASSIGN(view.lights, PlaceLights(scene.lights, view.camera));

@@ -43,6 +43,7 @@ Expected<GuidegenResult> RenderSphereGuides(const SphereOptions& options) {
   SCUMBLE_RETURN_IF_ERROR(CheckOptions(cast));
 
   View view;
+  view.bends_normals = false;  // a sphere is its own geometry
   SCUMBLE_ASSIGN(view.camera, CameraRays::Make(SphereCamera(), options.size, options.size));
   SCUMBLE_ASSIGN(view.lights, PlaceLights({SphereSun(options)}, view.camera));
   Material material;

@@ -58,7 +58,8 @@ struct SceneRequest {
   std::optional<ViewAngles> view;  // instead of a camera
   int aa = 1;                      // N × N subsamples of the coverage, 1 … 16
   NormalFrame normal_frame = NormalFrame::kCamera;
-  std::string isa;  // as GuidegenOptions::isa
+  bool raw_normals = false;  // as GuidegenOptions::raw_normals
+  std::string isa;           // as GuidegenOptions::isa
   bool robust = true;
   bool half = false;                          // colour layers as half floats
   BlenderRequest blender;                     // for .blend scenes

@@ -59,6 +59,7 @@ Expected<SceneRequest> RequestOf(const SceneSettings& settings) {
   request.aa = settings.coverage_samples;
   request.samples = settings.light_samples;
   request.isa = settings.instruction_set;
+  request.raw_normals = settings.raw_normals;
   return request;
 }
 

@@ -25,7 +25,9 @@ float SmoothStep(float from, float to, float value) {
 }
 
 bool InCorner(const Picture& picture, int x, int y) {
-  const double dx = 2.0 * x + 1 - picture.width, dy = 2.0 * y + 1 - picture.height;
+  // In a picture that is no square, of the ellipse that fills it.
+  const double aspect = static_cast<double>(picture.width) / picture.height;
+  const double dx = 2.0 * x + 1 - picture.width, dy = (2.0 * y + 1 - picture.height) * aspect;
   return std::sqrt(dx * dx + dy * dy) >= kCornersFrom * picture.width;
 }
 
@@ -47,17 +49,28 @@ float Difference(glm::vec3 a, glm::vec3 b) {
 // 0 for paper, 1 for paint that hides it.
 float Opacity(glm::vec3 color, glm::vec3 paper) { return SmoothStep(kGrain, kFullPaint, Difference(color, paper)); }
 
-}  // namespace
-
-BarePaper FindBarePaper(const Picture& picture) {
+// The sum of alpha over the corners, and their pixels.
+struct Corners {
   double alpha = 0.0, count = 0.0;
-  for (int y = 0; y < picture.height; ++y) {
-    for (int x = 0; x < picture.width; ++x) {
-      if (InCorner(picture, x, y)) alpha += picture.At(x, y)[3] / 65535.0, count += 1.0;
+  explicit Corners(const Picture& picture) {
+    for (int y = 0; y < picture.height; ++y) {
+      for (int x = 0; x < picture.width; ++x) {
+        if (InCorner(picture, x, y)) alpha += picture.At(x, y)[3] / 65535.0, count += 1.0;
+      }
     }
   }
-  if (!(count > 0.0)) return {};
-  if (alpha < kMostPaintInCorners * count) return {BarePaper::Kind::kTransparent, glm::vec3(0.0f)};
+  bool AreClear() const { return count > 0.0 && alpha < kMostPaintInCorners * count; }
+};
+
+}  // namespace
+
+bool HasClearCorners(const Picture& picture) { return Corners(picture).AreClear(); }
+
+BarePaper FindBarePaper(const Picture& picture) {
+  const Corners corners(picture);
+  if (!(corners.count > 0.0)) return {};
+  if (corners.AreClear()) return {BarePaper::Kind::kTransparent, glm::vec3(0.0f)};
+  const double count = corners.count;
   std::vector<glm::vec3> colors, by_corner[4];
   for (int y = 0; y < picture.height; ++y) {
     for (int x = 0; x < picture.width; ++x) {

@@ -18,10 +18,13 @@ struct BarePaper {
   glm::vec3 color{0.0f};  // linear; for kPaper
 };
 
-// `picture` is square and its sphere fills it. The corners are what lies beyond 1.15 radii of it. They are bare where
-// at most a quarter of them is painted: opaque, or of another colour than their median; and where the four of them are
-// of about one colour.
+// The corners are what lies beyond 1.15 radii of the circle that fills a square, or of the ellipse that fills another
+// picture. They are bare where at most a quarter of them is painted: opaque, or of another colour than their median;
+// and where the four of them are of about one colour.
 BarePaper FindBarePaper(const Picture& picture);
+
+// Whether FindBarePaper finds the corners transparent. Takes no memory.
+bool HasClearCorners(const Picture& picture);
 
 // The paint alone: alpha becomes its opacity, and the colour what it must be so that the paint over the paper is again
 // what the picture shows, as far as colours reach. Paper as it is between strokes becomes transparent, its grain

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <glm/glm.hpp>
 #include <optional>
 #include <string>
 #include <variant>
@@ -116,6 +117,13 @@ struct TransferSettings {
   int reference_height = 1080;            // 0: lengths are plain pixels
 };
 
+// Where an exemplar's picture was cut out of its file, because the sphere does not fill that. Pixels of the file.
+struct SphereCut {
+  int left = 0, top = 0;  // of the cut; below 0 where it reaches beyond the file
+  int file_width = 0, file_height = 0;
+  double x = 0, y = 0, radius = 0;  // of the sphere
+};
+
 // A painted sphere, which fills a square picture exactly; or any painted scene with its guides.
 struct Exemplar {
   std::string name;  // for messages
@@ -127,6 +135,11 @@ struct Exemplar {
                                         // if false, guides are required
   std::filesystem::path guides_file = {};  // the file that guides are or would be read from; empty: none
   int margin = 0;                          // pixels of the template that were cut off the file on every side
+  std::optional<SphereCut> cut = {};       // of a sphere that does not fill its file
+  bool unclear = false;                    // the paint clearly does not fill the square, and shows no clear sphere
+
+  // The place of the picture's corner in the file.
+  glm::ivec2 Origin() const { return cut ? glm::ivec2(cut->left, cut->top) : glm::ivec2(margin); }
 };
 
 inline constexpr int kMaxExemplars = 4;

@@ -12,6 +12,7 @@
 #include "core/io/guide_file.h"
 #include "core/io/picture_file.h"
 #include "core/style/kit/sphere_template.h"
+#include "core/style/place_sphere.h"
 #include "core/style/style_keyframes.h"
 #include "core/style/style_keys.h"
 #include "core/style/toml_keys.h"
@@ -427,7 +428,8 @@ Expected<Style> LoadStyle(const fs::path& path, const std::vector<std::string>& 
   if (style.name.empty()) style.name = NameFor(path, fs::is_directory(kind));
   for (const std::string& text : overrides) SCUMBLE_RETURN_IF_ERROR(ApplyOverride(style, text));
   SCUMBLE_RETURN_IF_ERROR(ReadWeighedGuides(style, room));
-  for (const Exemplar& exemplar : style.exemplars) {
+  for (Exemplar& exemplar : style.exemplars) {
+    SCUMBLE_RETURN_IF_ERROR(PlaceSphere(exemplar));
     const Picture& picture = exemplar.picture;
     if (!exemplar.is_sphere || picture.width == picture.height) continue;
     return InputError(exemplar.name + " is " + SizeText(picture.width, picture.height) +

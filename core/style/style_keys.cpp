@@ -227,7 +227,7 @@ std::vector<StyleKey> MakeKeys() {
       {"transfer.match_step", "1", "pixels from one that is matched to the next, 1 to 8; 1: all are, slowest and best",
        true, Whole(&T::match_step, 1, kMaxMatchStep)},
       {"transfer.scale", "1.0", "exemplar size, above 0 to 64", true, Number(&T::scale, 1e-3, 64.0)},
-      {"transfer.rim", "2", "exemplar pixels at the painted edge that are never used", true,
+      {"transfer.rim", "2", "exemplar pixels at the painted edge that are never used, at least", true,
        Number(&T::rim, 0.0, 16384.0)},
       {"transfer.reference_height", "1080", "lengths are pixels at this output height; 0: plain pixels", true,
        Whole(&T::reference_height, 0, 32768)},

@@ -11,6 +11,7 @@
 #include "guidegen/cast/tile_store.h"
 #include "guidegen/light/area_light.h"
 #include "guidegen/rays/ray_offset.h"
+#include "guidegen/surface/shading_normal.h"
 
 namespace scumble {
 namespace {
@@ -101,12 +102,14 @@ glm::dvec2 TileCaster::MotionOf(const TileHits& hits, int pixel, const glm::dvec
   return from && to ? *to - *from : glm::dvec2(0.0);
 }
 
-// Pixels that the vector code cannot do: spheres, normal maps, degenerate triangles, rays that miss the pixel's centre.
+// Pixels that the vector code cannot do: spheres, normal maps, bent normals, degenerate triangles, rays that miss the
+// pixel's centre.
 void TileCaster::WritePlain(int pixel, const glm::dvec2& at, TileScratch& scratch) const {
   const TileHits& hits = scratch.hits;
   const PlacedObject& object = scene_.objects()[hits.object[pixel]];
   const ViewRay ray = view_.camera.Through(at.x, at.y);
-  const SurfacePoint point = FindSurfacePoint(object, hits.primitive[pixel], ray);
+  SurfacePoint point = FindSurfacePoint(object, hits.primitive[pixel], ray);
+  if (view_.bends_normals) BendShadingNormal(object, ray, point);
   scratch.guides.depth[pixel] = float(std::max(-point.position.z, 0.0));
   scratch.guides.object[pixel] = float(object.object_id);
   scratch.guides.material[pixel] = float(object.material_id);
@@ -210,7 +213,8 @@ void TileCaster::Fill(const Tile& tile, TriangleCache& triangles, TileScratch& s
   const TileHits& hits = scratch.hits;
   scratch.moved.clear();
   share.rays.coverage += primary_.Cover(tile, scratch.hits, scratch.coverage, scratch.moved);
-  FindTileSurface(hits, scratch.rays, triangles, scratch.guides, points_ ? &scratch.points : nullptr);
+  FindTileSurface(hits, scratch.rays, triangles, view_.bends_normals, scratch.guides,
+                  points_ ? &scratch.points : nullptr);
   for (int i = 0; i < scratch.guides.left_over_count; ++i) {
     const int pixel = scratch.guides.left_over[std::size_t(i)];
     WritePlain(pixel, Centre(tile, pixel), scratch);

@@ -12,6 +12,7 @@
 #include <limits>
 
 #include "guidegen/cast/tile_surface.h"
+#include "guidegen/surface/shading_normal.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace scumble {
@@ -51,7 +52,7 @@ HWY_INLINE void Blend(M lanes, const double* v, D3& into) {
 // The triangles of the lanes.
 struct LaneTriangles {
   D3 corner, first_edge, second_edge, area, facing;
-  D edge_on, largest;
+  D edge_on, area_length, largest;
   F normal[9];
 
   template <bool kPoints>
@@ -59,7 +60,7 @@ struct LaneTriangles {
     const Floats f;
     corner = SetAll(record.corner), first_edge = SetAll(record.first_edge);
     second_edge = SetAll(record.second_edge), area = SetAll(record.area);
-    edge_on = hn::Set(Doubles(), record.edge_on);
+    edge_on = hn::Set(Doubles(), record.edge_on), area_length = hn::Set(Doubles(), record.area_length);
     for (int i = 0; i < 9; ++i) normal[i] = hn::Set(f, record.normal[i]);
     if constexpr (kPoints) {
       facing = SetAll(record.facing);
@@ -73,6 +74,7 @@ struct LaneTriangles {
     Blend(lanes, record.corner, corner), Blend(lanes, record.first_edge, first_edge);
     Blend(lanes, record.second_edge, second_edge), Blend(lanes, record.area, area);
     edge_on = hn::IfThenElse(lanes, hn::Set(Doubles(), record.edge_on), edge_on);
+    area_length = hn::IfThenElse(lanes, hn::Set(Doubles(), record.area_length), area_length);
     for (int i = 0; i < 9; ++i) normal[i] = hn::IfThenElse(float_lanes, hn::Set(f, record.normal[i]), normal[i]);
     if constexpr (kPoints) {
       Blend(lanes, record.facing, facing);
@@ -140,10 +142,12 @@ double LongestRay(const TileRays& rays) {
 
 class TileWork {
  public:
-  TileWork(const TileHits& hits, const TileRays& rays, TriangleCache& triangles, TileGuides& guides, TilePoints* points)
+  TileWork(const TileHits& hits, const TileRays& rays, TriangleCache& triangles, bool bends_normals, TileGuides& guides,
+           TilePoints* points)
       : hits_(hits),
         rays_(rays),
         longest_ray_(LongestRay(rays)),
+        bends_normals_(bends_normals),
         triangles_(triangles),
         guides_(guides),
         points_(points) {
@@ -278,7 +282,15 @@ class TileWork {
         hn::And(hn::Gt(squared, hn::Set(d, kLeastPlainSquare)), hn::Lt(squared, hn::Set(d, kLargestPlainSquare)));
 
     const auto met_double = hn::RebindMask(d, met);
-    const auto left_over = hn::And(hn::Or(hn::Or(irregular, missed), hn::Not(hn::And(usable, ordinary))), met_double);
+    auto plain = hn::Or(hn::Or(irregular, missed), hn::Not(hn::And(usable, ordinary)));
+    if (bends_normals_) {
+      const D to_eye = hn::Neg(Dot(shading, direction));
+      const D to_facing = hn::Xor(Dot(shading, triangles.area), hn::Xor(hn::And(objects.winding, minus), side));
+      const D eye_height = hn::Mul(hn::Abs(along), squared);
+      const auto above = MirrorsAbove(to_eye, to_facing, eye_height, hn::Mul(triangles.area_length, squared));
+      plain = hn::Or(plain, hn::Not(above));
+    }
+    const auto left_over = hn::And(plain, met_double);
     if (HWY_UNLIKELY(!hn::AllFalse(d, left_over))) LeaveOver(pixel, left_over);
 
     const D infinity = hn::Set(d, std::numeric_limits<double>::infinity());
@@ -308,6 +320,16 @@ class TileWork {
       const D largest = hn::IfThenElse(hn::Lt(own, triangles.largest), triangles.largest, own);
       hn::Store(largest, d, points_->largest_coordinate.data() + pixel);
     }
+  }
+
+  // Whether the plain code would surely not bend the normal: BentNormal's test times the squared length of the normal
+  // and the lengths of the triangle's area and of the ray, with a margin for rounding. False for NaN.
+  HWY_INLINE Mask MirrorsAbove(D to_eye, D to_facing, D eye_height, D scale) const {
+    constexpr double kMargin = 1.001;
+    const Doubles d;
+    const D mirrored = hn::Sub(hn::Mul(hn::Set(d, 2.0), hn::Mul(to_eye, to_facing)), eye_height);
+    const auto steep = hn::Ge(mirrored, hn::Mul(eye_height, hn::Set(d, kMargin * kReflectionShare)));
+    return hn::Or(steep, hn::Ge(mirrored, hn::Mul(scale, hn::Set(d, kMargin * kReflectionHeight * longest_ray_))));
   }
 
   // MakeUnit for ordinary squares.
@@ -344,6 +366,7 @@ class TileWork {
   const TileHits& hits_;
   const LaneRays rays_;
   const double longest_ray_;
+  const bool bends_normals_;
   TriangleCache& triangles_;
   TileGuides& guides_;
   TilePoints* points_;
@@ -354,9 +377,9 @@ class TileWork {
   std::size_t work_count_ = 0;
 };
 
-void Surface(const TileHits& hits, const TileRays& rays, TriangleCache& triangles, TileGuides& guides,
-             TilePoints* points) {
-  TileWork work(hits, rays, triangles, guides, points);
+void Surface(const TileHits& hits, const TileRays& rays, TriangleCache& triangles, bool bends_normals,
+             TileGuides& guides, TilePoints* points) {
+  TileWork work(hits, rays, triangles, bends_normals, guides, points);
   if (points) {
     work.Run<true>();
   } else {
@@ -374,9 +397,10 @@ namespace scumble {
 
 HWY_EXPORT(Surface);
 
-void FindTileSurface(const TileHits& hits, const TileRays& rays, TriangleCache& triangles, TileGuides& guides,
-                     TilePoints* points) {
-  HWY_DYNAMIC_DISPATCH(Surface)(hits, rays, triangles, guides, points);
+void FindTileSurface(const TileHits& hits, const TileRays& rays, TriangleCache& triangles, bool bends_normals,
+                     TileGuides& guides, TilePoints* points) {
+  if (points) points->has_smooth_normal.fill(false);
+  HWY_DYNAMIC_DISPATCH(Surface)(hits, rays, triangles, bends_normals, guides, points);
 }
 
 SurfacePoint TilePoints::At(int pixel) const {
@@ -387,6 +411,7 @@ SurfacePoint TilePoints::At(int pixel) const {
   point.normal = {normal[0][i], normal[1][i], normal[2][i]};
   point.barycentric = {barycentric[0][i], barycentric[1][i]};
   point.largest_coordinate = largest_coordinate[i];
+  if (has_smooth_normal[i]) point.smooth_normal = smooth_normal[i];
   return point;
 }
 
@@ -399,6 +424,8 @@ void TilePoints::Set(int pixel, const SurfacePoint& point) {
   }
   for (int k = 0; k < 2; ++k) barycentric[k][i] = point.barycentric[k];
   largest_coordinate[i] = point.largest_coordinate;
+  has_smooth_normal[i] = true;
+  smooth_normal[i] = point.smooth_normal;
 }
 
 }  // namespace scumble

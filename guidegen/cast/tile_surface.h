@@ -27,13 +27,17 @@ struct TilePoints {
   alignas(64) std::array<std::array<double, kTilePixels>, 3> facing;
   alignas(64) std::array<std::array<double, kTilePixels>, 3> normal;
   alignas(64) std::array<double, kTilePixels> largest_coordinate;
+  // The vector code has no pixels where these differ.
+  std::array<bool, kTilePixels> has_smooth_normal;
+  std::array<glm::dvec3, kTilePixels> smooth_normal;
 
   SurfacePoint At(int pixel) const;  // without rest position and max_ray_offset
   void Set(int pixel, const SurfacePoint& point);
 };
 
-// Equal to FindSurfacePoint in every bit, on every machine. `points` may be null.
-void FindTileSurface(const TileHits& hits, const TileRays& rays, TriangleCache& triangles, TileGuides& guides,
-                     TilePoints* points);
+// Equal to FindSurfacePoint in every bit, on every machine. With `bends_normals`, pixels whose shading normal may have
+// to be bent are left over. `points` may be null.
+void FindTileSurface(const TileHits& hits, const TileRays& rays, TriangleCache& triangles, bool bends_normals,
+                     TileGuides& guides, TilePoints* points);
 
 }  // namespace scumble

@@ -8,12 +8,14 @@
 #include "guidegen/rays/ray_offset.h"
 #include "guidegen/rays/single_ray.h"
 #include "guidegen/surface/bsdf.h"
+#include "guidegen/surface/shading_normal.h"
 #include "guidegen/surface/work_counters.h"
 
 namespace scumble {
 namespace {
 
-// Seen from a white Lambert surface: the density with which it samples directions is also what it reflects.
+// Seen from a white Lambert surface: the density with which it samples directions is also what it reflects, but for the
+// shadow of its shading normal.
 double DiffuseDensity(const SurfacePoint& point, const glm::dvec3& direction) {
   const double cosine = glm::dot(point.normal, direction);
   return cosine > 0.0 && glm::dot(point.facing, direction) > 0.0 ? cosine * glm::one_over_pi<double>() : 0.0;
@@ -44,7 +46,8 @@ struct Sample {
     const double density = probability * draw.density;
     if (!(reflected > 0.0) || !(density > 0.0) || std::isinf(density)) return;
     const double other = LooksFor(light_number) ? reflected : 0.0;
-    const double light = Brightness(draw.radiance) * reflected / (density + other);
+    const double share = ShadingNormalShadow(point.normal, point.smooth_normal, draw.direction);
+    const double light = Brightness(draw.radiance) * reflected * share / (density + other);
     if (!(light > 0.0)) return;
     ++rays.shadow;
     const bool blocked = IsBlocked(scene, origin, draw);
@@ -80,7 +83,8 @@ struct Sample {
     const double up = std::sqrt(std::max(0.0, 1.0 - glm::dot(disc, disc)));
     const glm::dvec3 direction = glm::normalize(x * disc.x + y * disc.y + point.normal * up);
     const double reflected = DiffuseDensity(point, direction);
-    if (!(reflected > 0.0)) return;
+    const double share = ShadingNormalShadow(point.normal, point.smooth_normal, direction);
+    if (!(reflected * share > 0.0)) return;
     const auto met_before = [&](double length) {
       double light = std::isinf(length) ? Brightness(lights.world()) : 0.0;
       lights.VisitAnalytic(origin, direction, length, [&](int met, const glm::dvec3& radiance, double density) {
@@ -95,13 +99,14 @@ struct Sample {
         near_emitter ? Emitted(CastAmongEmitters(scene, origin, direction), direction, reflected) : 0.0;
     const double unoccluded = met_before(std::numeric_limits<double>::infinity()) + emitted;
     if (!(unoccluded > 0.0)) return;
-    sum.unoccluded += unoccluded;
+    sum.unoccluded += share * unoccluded;
     ++rays.shadow;
     const RTCRayHit hit = CastSingleRay(scene, origin, direction);
     if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
-      sum.reached += met_before(std::numeric_limits<double>::infinity());
+      sum.reached += share * met_before(std::numeric_limits<double>::infinity());
     } else {
-      sum.reached += met_before(double(hit.ray.tfar)) + (emitted > 0.0 ? Emitted(hit, direction, reflected) : 0.0);
+      const double met = emitted > 0.0 ? Emitted(hit, direction, reflected) : 0.0;
+      sum.reached += share * (met_before(double(hit.ray.tfar)) + met);
     }
   }
 

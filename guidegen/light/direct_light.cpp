@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/image/color.h"
+#include "guidegen/surface/shading_normal.h"
 #include "guidegen/surface/work_counters.h"
 
 namespace scumble {
@@ -146,6 +147,7 @@ LightSample SampleLight(const PlacedLight& light, const SurfacePoint& point) {
   irradiance = std::min(irradiance, kMaxIrradiance);
   irradiance *= SpotAttenuation(light, -direction);
   sample.luminance = irradiance * glm::one_over_pi<double>();
+  sample.luminance *= ShadingNormalShadow(point.normal, point.smooth_normal, direction);
   return sample;
 }
 

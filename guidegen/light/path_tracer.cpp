@@ -8,6 +8,7 @@
 #include "guidegen/light/light_visibility.h"
 #include "guidegen/rays/ray_offset.h"
 #include "guidegen/rays/single_ray.h"
+#include "guidegen/surface/shading_normal.h"
 
 namespace scumble {
 namespace {
@@ -46,6 +47,7 @@ LightPathTracer::Vertex LightPathTracer::MakeVertex(std::uint32_t object, std::u
                                                     double clear_from, double least_alpha) const {
   const PlacedObject& placed = scene_.objects()[object];
   SurfacePoint point = FindSurfacePoint(placed, primitive, ray);
+  if (view_.bends_normals) BendShadingNormal(placed, ray, point);
   point.max_ray_offset = MaxRayOffset(ray, clear_from, point.position);
   const SurfaceBsdf bsdf(placed, primitive, point, glm::normalize(-ray.direction), least_alpha);
   return {point, bsdf, ShadowRayOrigin(point), object, primitive};

@@ -13,6 +13,7 @@ namespace scumble {
 // All in the camera's view space. The objects are the EmbreeScene's.
 struct View {
   CameraRays camera;
+  bool bends_normals = true;        // as Cycles: surface/shading_normal.h
   std::vector<PlacedLight> lights;  // these and the following members only where a layer needs them
   glm::dvec3 world_radiance{0.0};
   PathSupply supply;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "guidegen/surface/shading_normal.h"
 #include "guidegen/surface/work_counters.h"
 
 namespace scumble {
@@ -68,7 +69,11 @@ glm::dvec2 SquareToDisc(double u, double v) {
 
 SurfaceBsdf::SurfaceBsdf(const PlacedObject& object, std::uint32_t primitive, const SurfacePoint& point,
                          const glm::dvec3& to_eye, double least_alpha)
-    : facing_(point.facing), normal_(point.normal), specular_normal_(point.normal), to_eye_(to_eye) {
+    : facing_(point.facing),
+      normal_(point.normal),
+      smooth_normal_(point.smooth_normal),
+      specular_normal_(point.normal),
+      to_eye_(to_eye) {
   const Material& material = *object.material;
   if (material.bsdf == Bsdf::kEmission) return;
   const glm::dvec3 base = NotNegative(glm::dvec3(SurfaceColor(object, primitive, point.barycentric)));
@@ -112,11 +117,12 @@ double SurfaceBsdf::Coupling(double cosine) const {
 
 // What the diffuse lobe reflects, over what Lambert's does.
 double SurfaceBsdf::DiffuseWeight(const glm::dvec3& to_light, double cosine) const {
-  if (!(diffuse_roughness_ > 0.0)) return Coupling(cosine);
+  const double share = ShadingNormalShadow(normal_, smooth_normal_, to_light);
+  if (!(diffuse_roughness_ > 0.0)) return share * Coupling(cosine);
   const double eye = std::max(glm::dot(normal_, to_eye_), 0.0);
   double slant = glm::dot(to_light, to_eye_) - cosine * eye;
   if (slant > 0.0) slant /= std::max(cosine, eye);
-  return pi * (1.0 + diffuse_roughness_ * slant) / (pi + (pi / 2.0 - 2.0 / 3.0) * diffuse_roughness_);
+  return share * pi * (1.0 + diffuse_roughness_ * slant) / (pi + (pi / 2.0 - 2.0 / 3.0) * diffuse_roughness_);
 }
 
 double SurfaceBsdf::DiffuseShare() const {

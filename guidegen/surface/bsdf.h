@@ -4,6 +4,7 @@
 // improvement of Oren-Nayar reflectance model", 2012, as in Cycles 3.4: color · (a + b·t), where
 //   a = 1 / (π + (π/2 − 2/3) σ),  b = σ·a,  s = l·v − (n·l)(n·v),  t = s for s ≤ 0, else s / max(n·l, n·v).
 // White returns πa of the light to an eye that faces it (0.78 at σ = 1), and all of it to a grazing eye, never more.
+// Shading normals that differ from the interpolated ones take some of it away: ShadingNormalShadow.
 //
 // Walter et al., "Microfacet models for refraction", EGSR 2007; Heitz, "Sampling the GGX distribution of visible
 // normals", JCGT 2018. Masking and shadowing are Smith's, separable, as in glTF 2.0 and in Cycles 3.4. Light between
@@ -35,8 +36,8 @@ class SurfaceBsdf {
     double density = 0.0;  // with which the lobe's Sample would have chosen that direction
   };
 
-  // `to_eye` points back along the path. If a shading normal faces away from it, the normal is bent for the specular
-  // lobe. The specular lobe is at least as rough as `least_alpha`.
+  // `to_eye` points back along the path. If a shading normal still faces away from it, the normal is bent for the
+  // specular lobe. The specular lobe is at least as rough as `least_alpha`.
   SurfaceBsdf(const PlacedObject& object, std::uint32_t primitive, const SurfacePoint& point, const glm::dvec3& to_eye,
               double least_alpha = 0.0);
 
@@ -61,6 +62,7 @@ class SurfaceBsdf {
 
   glm::dvec3 facing_;
   glm::dvec3 normal_;
+  glm::dvec3 smooth_normal_;  // as SurfacePoint has it
   glm::dvec3 specular_normal_;
   glm::dvec3 to_eye_;
   glm::dvec3 diffuse_{0.0};

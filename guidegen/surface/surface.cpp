@@ -98,13 +98,20 @@ const Picture* FindTexture(const PlacedObject& object, const TextureUse& use) {
   return &object.textures[use.texture];
 }
 
-// Object space, not normalised. Normal maps are applied here, before any scale bends them, as Cycles does.
+// Object space, not normalised.
 glm::dvec3 ObjectNormal(const PlacedObject& object, const glm::uvec3& triangle, const glm::dvec2& barycentric) {
-  const Mesh& mesh = *object.mesh;
-  if (mesh.normals.empty()) return glm::dvec3(0.0);
-  const glm::dvec3 normal = Interpolate(mesh.normals, triangle, barycentric);
-  if (!HasNormalMap(object) || !(glm::dot(normal, normal) > kShortestNormal * kShortestNormal)) return normal;
+  if (object.mesh->normals.empty()) return glm::dvec3(0.0);
+  return Interpolate(object.mesh->normals, triangle, barycentric);
+}
 
+// False for NaN.
+bool IsLongEnough(const glm::dvec3& normal) { return glm::dot(normal, normal) > kShortestNormal * kShortestNormal; }
+
+// In object space, before any scale bends it, as Cycles does. `normal` is the object's, long enough, and the result if
+// there is no tangent.
+glm::dvec3 MappedNormal(const PlacedObject& object, const glm::uvec3& triangle, const glm::dvec2& barycentric,
+                        const glm::dvec3& normal) {
+  const Mesh& mesh = *object.mesh;
   const TextureUse& use = object.material->normal_texture;
   const glm::vec4 texel =
       SampleRaw(*FindTexture(object, use), use, Interpolate(mesh.uvs[use.uv_set], triangle, barycentric));
@@ -135,10 +142,17 @@ SurfacePoint FindTrianglePoint(const PlacedObject& object, std::uint32_t primiti
   const double side = glm::dot(area, ray.direction) * object.winding > 0.0 ? -1.0 : 1.0;
   point.facing = area * (object.winding * side);
   if (!MakeUnit(point.facing)) point.facing = DirectionToEye(ray);
+  const auto shading = [&](const glm::dvec3& normal) {
+    glm::dvec3 result = object.view_from_normal * normal * side;
+    return IsLongEnough(normal) && MakeUnit(result) ? result : point.facing;
+  };
   const glm::dvec3 normal = ObjectNormal(object, corners, point.barycentric);
-  const bool usable = glm::dot(normal, normal) > kShortestNormal * kShortestNormal;  // false for NaN
-  point.normal = object.view_from_normal * normal * side;
-  if (!usable || !MakeUnit(point.normal)) point.normal = point.facing;
+  point.normal = shading(normal);
+  if (!HasNormalMap(object) || !IsLongEnough(normal)) return point;
+  const glm::dvec3 mapped = shading(MappedNormal(object, corners, point.barycentric, normal));
+  if (mapped == point.normal) return point;
+  point.smooth_normal = point.normal;
+  point.normal = mapped;
   return point;
 }
 

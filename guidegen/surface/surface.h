@@ -54,6 +54,7 @@ struct SurfacePoint {
   glm::dvec3 position{0.0};         // view space
   glm::dvec3 facing{0.0};           // unit geometric normal on the viewer's side
   glm::dvec3 normal{0.0};           // unit shading normal, view space
+  glm::dvec3 smooth_normal{0.0};    // unit interpolated normal, if `normal` is another one; 0: they are equal
   glm::dvec3 rest_position{0.0};    // object space
   glm::dvec2 barycentric{0.0};      // weights of the second and third corner
   double largest_coordinate = 0.0;  // of the point and its triangle: float rounding errors are relative to it
@@ -66,7 +67,8 @@ struct SurfacePoint {
 // Intersects the surface of Embree's hit again in double, because the hit has only a float's precision. If the exact
 // ray misses a triangle, or sees it edge on, the point is the nearest one to the ray on its edges. The point always
 // lies on the surface. A back face has both normals flipped, as in Cycles. If a shading normal is zero or NaN, the
-// geometric one replaces it; a triangle without area faces the eye.
+// geometric one replaces it; a triangle without area faces the eye. The shading normal is not bent: see
+// surface/shading_normal.h.
 SurfacePoint FindSurfacePoint(const PlacedObject& object, std::uint32_t primitive, const ViewRay& ray);
 
 // The place of a point of a mesh's triangle before any deformation, object space.

@@ -43,6 +43,7 @@ void TriangleCache::Fill(std::uint32_t object, std::uint32_t primitive, Triangle
   Put(triangle.corner[2] - triangle.corner[0], record.second_edge);
   Put(area, record.area);
   const double squared = glm::dot(area, area);
+  record.area_length = std::sqrt(squared);
   record.edge_on = 2.0 * kEdgeOn * LongestEdgeSquared(triangle);
   record.regular = squared > kLeastPlainSquare && squared < kLargestPlainSquare;
   for (int corner = 0; corner < 3; ++corner) {

@@ -26,6 +26,7 @@ struct TriangleRecord {
   double first_edge[3];   // back from the second corner to the first
   double second_edge[3];  // from the first corner to the third
   double area[3];         // the edges' cross product
+  double area_length;     // of `area`: twice the triangle's area
   double edge_on;         // kEdgeOn times the longest edge's square, and twice that as a safety margin
   float normal[9];        // of the three corners, object space
   bool regular;           // false: FindSurfacePoint itself is needed here

@@ -28,6 +28,9 @@ struct SceneSettings {
   std::optional<double> auto_smooth;
   int coverage_samples = 1;     // N × N samples of the silhouette, 1 … 16
   int light_samples = 64;       // of each pixel, where light is sampled
+  // On: shading normals that would mirror the eye's ray into the surface stay as they are. Off: they are bent, as in
+  // Blender's Cycles.
+  bool raw_normals = false;
   std::string instruction_set;  // "sse2", "sse4.2", "avx", "avx2", "avx512"; empty: the best of this machine
 };
 

@@ -60,6 +60,7 @@ AlphaReport MeasureAlpha(const PaintSheet& sheet) {
   }
   AlphaReport report;
   report.clear_corners = sheet.is_sphere() && FindBarePaper(picture).kind == BarePaper::Kind::kTransparent;
+  if (sheet.soft_edge() > sheet.style_rim()) report.soft_edge = sheet.soft_edge();
   if (not_opaque == 0) return report;
   const std::vector<std::uint8_t> beside = MostlySet(clear, picture.width, picture.height, kEdge, 1e-9);
   std::vector<std::uint8_t> holes = clear;

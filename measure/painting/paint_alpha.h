@@ -12,6 +12,7 @@ struct AlphaReport {
   double transparent_percent = 0.0;  // of the usable pixels: all that are not opaque
   double translucent_percent = 0.0;
   bool premultiplied = false;  // colours fade to black with alpha: they were saved multiplied by it
+  int soft_edge = 0;           // of a sphere, where it is wider than the style's rim: pixels (SoftEdge)
   bool clear_corners = false;  // of a sphere: everything beyond 1.15 radii is transparent
 };
 

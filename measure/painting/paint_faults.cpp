@@ -41,9 +41,9 @@ class Faults {
   void Add(const char* code, std::string what, std::string remedy) {
     found_.push_back({code, Weight::kMistake, std::move(what), std::move(remedy), std::nullopt});
   }
-  // `place` in the picture without its margin.
+  // `place` in the picture, which may be cut out of its file.
   void AddAt(const char* code, int x, int y, std::string what, std::string remedy) {
-    const std::pair<int, int> place(x + context_.margin, y + context_.margin);
+    const std::pair<int, int> place(x + context_.origin.x, y + context_.origin.y);
     found_.push_back({code, Weight::kMistake, fmt::format("{}, around x={}, y={}", what, place.first, place.second),
                       std::move(remedy), place});
   }
@@ -118,7 +118,7 @@ void Faults::LookAtDisc() {
     return Add(
         "off-centre",
         fmt::format("the painted sphere is {:.1f}% of its diameter off the middle; its centre is at x={:.0f}, y={:.0f}",
-                    100.0 * shift / size, disc.x + context_.margin, disc.y + context_.margin),
+                    100.0 * shift / size, disc.x + context_.origin.x, disc.y + context_.origin.y),
         fmt::format("move the painting {}", Variant(-dx, -dy)));
   }
   if (ratio < kTooSmall) {
@@ -126,8 +126,8 @@ void Faults::LookAtDisc() {
         fmt::format("the painted sphere fills {:.1f}% of the square's width; its rim takes what lies round it",
                     100.0 * ratio),
         fmt::format("enlarge the painting to {:.1f}%, or crop it to the sphere: {:.0f} pixels from x={:.0f}, y={:.0f}",
-                    100.0 / ratio, 2.0 * disc.radius, disc.x - disc.radius + context_.margin,
-                    disc.y - disc.radius + context_.margin));
+                    100.0 / ratio, 2.0 * disc.radius, disc.x - disc.radius + context_.origin.x,
+                    disc.y - disc.radius + context_.origin.y));
   }
 }
 
@@ -163,6 +163,10 @@ void Faults::LookAtHoles() {
 
 void Faults::LookAtAlpha() {
   const AlphaReport& alpha = traits_.alpha;
+  if (alpha.soft_edge > 0) {
+    Add("soft-edge", DescribeSoftEdge(alpha.soft_edge),
+        fmt::format("write rim = {} into [transfer], or flatten the picture on its paper", alpha.soft_edge));
+  }
   if (alpha.premultiplied) {
     Add("premultiplied", "colours fade to black where the paint is see-through: they were saved premultiplied by alpha",
         "export with straight (unassociated) alpha, or flatten the picture on its paper");
@@ -170,7 +174,7 @@ void Faults::LookAtAlpha() {
     AddAt("see-through", alpha.translucent.x, alpha.translucent.y,
           fmt::format("{} of the {} is half see-through; what is behind objects will shine through, most of it",
                       Percent(alpha.translucent_percent), Thing()),
-          "flatten the picture on its paper before you export it");
+          "flatten the picture on its paper before you export it; a soft edge alone is left out by a larger rim");
   }
   if (alpha.clear_corners && context_.has_paper && alpha.holes.pixels == 0 && alpha.translucent.pixels == 0) {
     Remark("clear-corners", "round the sphere the picture is transparent, and the style puts paper behind",
@@ -231,6 +235,11 @@ void Faults::LookAtPattern() {
 }
 
 }  // namespace
+
+std::string DescribeSoftEdge(int pixels) {
+  return fmt::format("the edge of the sphere is see-through up to {} pixel{} inside it, and is left out so far", pixels,
+                     pixels == 1 ? "" : "s");
+}
 
 std::vector<PaintFault> FindPaintFaults(const PaintTraits& traits, const PaintFaultContext& context) {
   Faults faults(traits, context);

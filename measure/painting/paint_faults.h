@@ -1,6 +1,7 @@
 // The usual mistakes in a painted exemplar: the mistake, its place, and the remedy.
 #pragma once
 
+#include <glm/glm.hpp>
 #include <optional>
 #include <string>
 #include <utility>
@@ -31,8 +32,11 @@ struct PaintFaultContext {
   bool has_paper = false;     // the style puts paper behind
   bool knows_guides = false;  // its guides give the direction of its light
   bool shows_marks = false;   // the template's marks are on it (LooksLikeTemplate)
-  int margin = 0;             // of the template, which was cut off the file
+  glm::ivec2 origin{0};       // of the exemplar's picture in its file
 };
+
+// What is said of a soft edge that is wider than the style's rim, a clause.
+std::string DescribeSoftEdge(int pixels);
 
 // In the order of gravity; empty if there are none. A mistake that explains another hides it: an off-centre sphere has
 // a fringe, which is not reported as well.

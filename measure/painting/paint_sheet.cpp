@@ -5,6 +5,7 @@
 
 #include "core/image/check.h"
 #include "core/image/color.h"
+#include "core/image/painting/soft_edge.h"
 
 namespace scumble {
 namespace {
@@ -24,7 +25,8 @@ PaintSheet::PaintSheet(const Exemplar& exemplar, double rim) : exemplar_(exempla
   const std::size_t count = std::size_t(paint.width) * paint.height;
   usable_.resize(count);
   lightness_.resize(count);
-  const double radius = 0.5 * paint.width, limit = radius - rim;
+  if (exemplar.is_sphere) soft_edge_ = SoftEdge(paint);
+  const double radius = 0.5 * paint.width, limit = radius - this->rim();
   for (int y = 0; y < paint.height; ++y) {
     for (int x = 0; x < paint.width; ++x) {
       const std::size_t i = Index(x, y);

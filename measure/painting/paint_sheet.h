@@ -1,6 +1,7 @@
 // A painted exemplar for the measures of paint: its picture, the usable pixels, and their normals.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -14,7 +15,8 @@ namespace scumble {
 // and axes are those of view space (core/image/guides.h).
 class PaintSheet {
  public:
-  // Usable pixels: on a sphere, those at least `rim` pixels inside the circle that fills the square; in a painted
+  // Usable pixels: on a sphere, those at least `rim` pixels, and its SoftEdge, inside the circle that fills the square;
+  // in a painted
   // scene, those that its guides cover. The picture is not empty; that of a sphere is square.
   PaintSheet(const Exemplar& exemplar, double rim);
 
@@ -25,7 +27,10 @@ class PaintSheet {
   std::size_t Index(int x, int y) const { return std::size_t(y) * width() + x; }
   bool Usable(int x, int y) const { return usable_[Index(x, y)] != 0; }
   std::size_t usable_pixels() const { return usable_pixels_; }
-  double rim() const { return rim_; }
+  // Pixels of a sphere that are not used: `rim`, or its soft edge where that is wider.
+  double rim() const { return std::max(rim_, static_cast<double>(soft_edge_)); }
+  double style_rim() const { return rim_; }
+  int soft_edge() const { return soft_edge_; }  // of a sphere
 
   // The unit normal at a usable pixel's centre.
   glm::vec3 Normal(int x, int y) const;
@@ -42,6 +47,7 @@ class PaintSheet {
  private:
   const Exemplar& exemplar_;
   double rim_;
+  int soft_edge_ = 0;
   std::vector<std::uint8_t> usable_;
   std::size_t usable_pixels_ = 0;
   std::vector<float> lightness_;

@@ -4,30 +4,28 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/image/bare_paper.h"
+#include "core/image/painting/paint_mask.h"
 #include "measure/painting/connected_regions.h"
 #include "measure/painting/paint_sheet.h"
 
 namespace scumble {
 
-// Separates paint from ground, by the corners of the picture (FindBarePaper), which must be bare but for a few
-// splashes. Spheres only.
+// A sheet with its PaintMask. Spheres only.
 class PaintOnGround {
  public:
   explicit PaintOnGround(const PaintSheet& sheet);
 
   // Whether the ground is distinct from the paint: paper of one colour, or transparency.
-  bool known() const { return ground_.kind != BarePaper::Kind::kCovered; }
-  const BarePaper& ground() const { return ground_; }
+  bool known() const { return mask_.known(); }
+  const BarePaper& ground() const { return mask_.ground(); }
   const PaintSheet& sheet() const { return sheet_; }
   // 1: paint. If the ground is unknown, all pixels are paint.
-  const std::vector<std::uint8_t>& mask() const { return mask_; }
-  bool IsPaint(int x, int y) const { return mask_[sheet_.Index(x, y)] != 0; }
+  const std::vector<std::uint8_t>& mask() const { return mask_.values(); }
+  bool IsPaint(int x, int y) const { return mask_.values()[sheet_.Index(x, y)] != 0; }
 
  private:
   const PaintSheet& sheet_;
-  BarePaper ground_;
-  std::vector<std::uint8_t> mask_;
+  PaintMask mask_;
 };
 
 // The circle of the paint's outline.
@@ -38,9 +36,8 @@ struct PaintedDisc {
   double outline = 0;  // share of all directions from the picture's middle in which the outline is on the circle, 0 … 1
 };
 
-// By random sampling of three outline points at a time (Fischler and Bolles 1981, with a fixed random seed), then least
-// squares over the points within 0.4% of the picture's width. A circle counts as found if half of all directions agree
-// on it. O(pixels).
+// The circle on which most of the outline lies (FitCircle), within 0.4% of the picture's width. It counts as found if
+// half of all directions agree on it. O(pixels).
 PaintedDisc FindPaintedDisc(const PaintOnGround& paint);
 
 // Share of the rim, 0 … 1, with a fringe of ground inside the usable disc although the paint beside it has a clearly

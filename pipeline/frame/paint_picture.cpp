@@ -9,11 +9,14 @@
 #include <set>
 #include <utility>
 
+#include "core/image/painting/soft_edge.h"
 #include "core/image/stopwatch.h"
 #include "core/io/file/atomic_file.h"
 #include "core/io/picture_file.h"
+#include "core/style/place_sphere.h"
 #include "core/style/style_keyframes.h"
 #include "measure/mosaic/coherence.h"
+#include "measure/painting/paint_faults.h"
 #include "pipeline/frame/explain_frame.h"
 #include "transfer/upsample_guides.h"
 
@@ -123,6 +126,19 @@ Expected<PreparedStyle> PrepareAndWarn(const Style& style, int height, const Run
   return prepared;
 }
 
+// Of exemplars that are used otherwise than as they stand in their files.
+void TellOfExemplars(const Style& style, const RunContext& context) {
+  for (const Exemplar& exemplar : style.exemplars) {
+    if (exemplar.cut) context.Note(exemplar.name + ": " + DescribeCut(*exemplar.cut));
+    if (exemplar.unclear) context.Warn(exemplar.name + ": " + DescribeUnclear() + "; crop it to the sphere");
+    const int soft_edge = exemplar.is_sphere ? SoftEdge(exemplar.picture) : 0;
+    if (soft_edge > style.transfer.rim) {
+      context.Warn(fmt::format("{}: {}; --set transfer.rim={} says so, or flatten the picture on its paper",
+                               exemplar.name, DescribeSoftEdge(soft_edge), soft_edge));
+    }
+  }
+}
+
 }  // namespace
 
 Status ReadOver(const std::string& file, PictureState& state) {
@@ -180,6 +196,7 @@ Status PrepareFrame(StyleSet& styles, const GuideSet& guides, const PictureReque
   for (std::size_t i = state.prepared.size(); i < styles.styles.size(); ++i) {
     SCUMBLE_RETURN_IF_ERROR(context.CheckNotCancelled());
     SCUMBLE_ASSIGN(PreparedStyle one, PrepareAndWarn(styles.styles[i], height, context));
+    TellOfExemplars(styles.styles[i], context);
     for (const auto& [image, what, fix] : EqualLights(styles.styles[i], one)) {
       context.Warn(image + " " + what + ": " + fix);
     }

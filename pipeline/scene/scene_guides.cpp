@@ -128,8 +128,9 @@ int SamplesOf(const SceneRequest& options) {
 }  // namespace
 
 std::string GuideSettings(const SceneRequest& options) {
-  std::string text = fmt::format("scumble {}; aa {}; normals {}; seed {}", SCUMBLE_VERSION, options.aa,
-                                 options.normal_frame == NormalFrame::kEye ? "eye" : "camera", options.seed);
+  std::string text = fmt::format("scumble {}; aa {}; normals {}{}; seed {}", SCUMBLE_VERSION, options.aa,
+                                 options.normal_frame == NormalFrame::kEye ? "eye" : "camera",
+                                 options.raw_normals ? " raw" : "", options.seed);
   const auto add = [&](const char* name, std::string value) {
     std::replace(value.begin(), value.end(), ';', ',');
     text += fmt::format("; {} '{}'", name, value);
@@ -155,6 +156,7 @@ Expected<SceneGuides> CastScene(Scene& scene, const Camera& camera, const NextFr
   guidegen.layers = layers;
   guidegen.aa = options.aa;
   guidegen.normal_frame = options.normal_frame;
+  guidegen.raw_normals = options.raw_normals;
   guidegen.threads = context.threads;
   guidegen.isa = options.isa;
   guidegen.robust = options.robust;

@@ -58,6 +58,7 @@ std::vector<std::string> TradeArguments(const TradeSetup& setup, const RunContex
   if (!setup.only.empty()) add("--only", setup.only);
   if (setup.repeats != TradeSetup().repeats) add("--repeat", std::to_string(setup.repeats));
   if (setup.quick) words.push_back("--quick");
+  if (setup.scene.raw_normals) words.push_back("--raw-normals");
   if (!setup.memory) words.push_back("--no-memory");
   if (context.threads != 0) add("--threads", std::to_string(context.threads));
   if (context.max_memory > 0) add("--max-memory", std::to_string(context.max_memory));

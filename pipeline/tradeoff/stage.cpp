@@ -103,6 +103,7 @@ RepeatOptions RepeatVariant(const TradeSetup& setup, const TradeStage& stage, co
   if (setup.scene.max_bounces != SceneRequest().max_bounces) {
     add("--max-bounces", std::to_string(setup.scene.max_bounces));
   }
+  if (setup.scene.raw_normals) text += " --raw-normals";
   if (!variant.robust) text += " --no-robust";
   if (stage.asks_for_styles) text += " --no-scene-styles";
   if (const std::uint64_t seed = SeedOf(setup, variant); seed != 0) add("--seed", std::to_string(seed));

@@ -94,6 +94,36 @@ def box(name, location, size, material):
     return thing
 
 
+def solid(name, build, location, material, turn=(0, 0, 0)):
+    """What `build` makes in a bmesh, shaded smooth however coarse it is."""
+    mesh = bmesh.new()
+    build(mesh)
+    for face in mesh.faces:
+        face.smooth = True
+    data = bpy.data.meshes.new(name)
+    mesh.to_mesh(data)
+    mesh.free()
+    data.materials.append(material)
+    thing = bpy.data.objects.new(name, data)
+    thing.location, thing.rotation_euler = location, Euler(turn)
+    bpy.context.scene.collection.objects.link(thing)
+    return thing
+
+
+def cone(sides, bottom, top, height, triangles=False):
+    return lambda mesh: bmesh.ops.create_cone(mesh, cap_ends=True, cap_tris=triangles, segments=sides, radius1=bottom,
+                                              radius2=top, depth=height)
+
+
+def creature(mesh):
+    """20,480 faces, whose folds are no wider than a few of them."""
+    bmesh.ops.create_icosphere(mesh, subdivisions=6, radius=0.75)
+    for vertex in mesh.verts:
+        x, y, z = vertex.co
+        folds = math.sin(23 * x + 2 * math.sin(9 * z)) * math.sin(19 * y + 1) * math.sin(21 * z + 3 * math.sin(7 * x))
+        vertex.co *= 1.0 + 0.09 * folds + 0.12 * math.sin(4 * x) * math.sin(3 * y + 1)
+
+
 # ---- Materials: pure shaders -----------------------------------------------------------------------------------------
 
 
@@ -258,6 +288,22 @@ def rough():
     lamp("AREA", 400, HIGH, shape="SQUARE", size=1.2)
 
 
+def coarse():
+    """Shading normals that mirror the line of sight into the surface, which Cycles bends: low-poly shapes shaded smooth,
+    caps as fans of triangles among them, and a dense folded one."""
+    materials = diffuse_set()
+    quad("Floor", (-2.5, -2.5, 0), (5, 0, 0), (0, 4.5, 0), materials["Floor"])
+    quad("Back", (-2.5, 2, 0), (5, 0, 0), (0, 0, 3), materials["Back"])
+    solid("Creature", creature, (-1.35, 0.3, 0.95), materials["Ball"])
+    solid("Cylinder", cone(8, 0.5, 0.5, 1.3), (0.1, 0.5, 0.75), materials["Side"], (0.2, 0.1, 0.3))
+    solid("Fan", cone(9, 0.7, 0.7, 0.3, True), (0.3, -1.1, 0.3), materials["Small"], (0.3, 0.2, 0.0))
+    solid("Cone", cone(6, 0.6, 0.0, 1.4), (1.5, 0.6, 0.8), material("glossy", (0.9, 0.8, 0.5), 0.5), (0.1, -0.2, 0.4))
+    rough_clay = material("diffuse", (0.8, 0.8, 0.8), 0.8)
+    solid("Trunk", cone(5, 0.45, 0.3, 0.9), (1.6, -0.9, 0.5), rough_clay, (0.0, 0.3, 0.2))
+    lamp("AREA", 300, HIGH, shape="SQUARE", size=1.2)
+    world((0.6, 0.75, 1.0), 0.2)
+
+
 def world_only():
     room(diffuse_set())
     world((0.6, 0.75, 1.0), 1.5)
@@ -337,6 +383,7 @@ DIFFUSE_LAYERS = ["full", "LDE", "LDDE", "LD12E"]
 SCENES = {  # builder, layers, size, samples
     "emissive": (emissive, DIFFUSE_LAYERS, LANDSCAPE, 256),
     "rough": (rough, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 128),
+    "coarse": (coarse, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 256),
     "world": (world_only, DIFFUSE_LAYERS, LANDSCAPE, 128),
     "mixed": (mixed, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 128),
     "stretched": (stretched, DIFFUSE_LAYERS, LANDSCAPE, 64),

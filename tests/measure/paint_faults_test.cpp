@@ -123,7 +123,7 @@ TEST(PaintFaults, Holes) {
   EXPECT_NEAR(hole.place->second, 200, 1);
   // Places are those of the file.
   PaintFaultContext cut;
-  cut.margin = 64;
+  cut.origin = {64, 64};
   EXPECT_NEAR(ExpectOne(Faults(picture, cut), "holes", {}).place->first, 364, 1);
   // A soft edge belongs to the hole.
   ForDisc(picture, 300, 200, 21, [&](int x, int y) {

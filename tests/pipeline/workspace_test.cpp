@@ -137,6 +137,10 @@ TEST(Workspace, AnotherSizeOrSeedBuildsNoAccelerationStructure) {
   EXPECT_EQ(workspace.counters().structures_built, 1u);
   Workspace fresh(Context());
   EXPECT_EQ(large.rgba, Painted(fresh, scene, StyleOf("chiaroscuro")).rgba);
+  scene.raw_normals = true;
+  Painted(workspace, scene, StyleOf("chiaroscuro"));
+  EXPECT_EQ(workspace.counters().guides_cast, 4u);
+  EXPECT_EQ(workspace.counters().structures_built, 1u);
 }
 
 TEST(Workspace, AFrameOfAnAnimationLoadsNoFile) {

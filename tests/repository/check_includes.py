@@ -15,7 +15,7 @@ import sys
 # "parent/child".
 LIBRARIES = {
     "public": ("include/scumble", set(), []),
-    "image": ("core/image", {"public"}, []),
+    "image": ("core/image", {"public"}, ["painting"]),
     "io": ("core/io", {"public", "image"}, ["file", "png", "exr", "picture", "guides", "blender", "oiio"]),
     "filter": ("core/filter", {"public", "image"}, []),
     "style": ("core/style", {"public", "image", "io"}, ["kit", "scan"]),

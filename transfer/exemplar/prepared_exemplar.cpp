@@ -9,6 +9,7 @@
 #include "core/filter/resample.h"
 #include "core/image/check.h"
 #include "core/image/hash.h"
+#include "core/image/painting/soft_edge.h"
 #include "transfer/exemplar/paint_by_normal.h"
 #include "transfer/exemplar/usable_mask.h"
 #include "transfer/nearest/guide_tree.h"
@@ -87,11 +88,13 @@ PreparedExemplar::PreparedExemplar(std::span<const Picture* const> pictures, dou
     : PreparedExemplar() {
   size_ = size;
   SCUMBLE_CHECK(!pictures.empty() && size >= 1 && size <= 32767);
-  const auto fraction = [rim](const Picture& picture) { return 1.0 - rim / (0.5 * picture.width); };
   limit_ = std::numeric_limits<std::int64_t>::max();
+  std::vector<double> fractions;
   for (const Picture* picture : pictures) {
     SCUMBLE_CHECK_EQ(picture->width, picture->height);
-    limit_ = std::min(limit_, UsableLimit(size, fraction(*picture)));
+    const double unused = std::max(rim, static_cast<double>(SoftEdge(*picture)));
+    fractions.push_back(1.0 - unused / (0.5 * picture->width));
+    limit_ = std::min(limit_, UsableLimit(size, fractions.back()));
   }
   usable_radius_ = static_cast<float>(std::sqrt(static_cast<double>(limit_)) / size);
   coordinate_.resize(std::size_t(size) + 2 * ExemplarRows::kPad);
@@ -106,8 +109,9 @@ PreparedExemplar::PreparedExemplar(std::span<const Picture* const> pictures, dou
     first_usable_.push_back(static_cast<std::int16_t>(first));
     last_usable_.push_back(static_cast<std::int16_t>(last));
   }
-  for (const Picture* picture : pictures) {
-    pictures_.push_back(Resample(ExtendPaint(*picture, UsableLimit(picture->width, fraction(*picture))), size, size));
+  for (std::size_t k = 0; k < pictures.size(); ++k) {
+    const Picture& picture = *pictures[k];
+    pictures_.push_back(Resample(ExtendPaint(picture, UsableLimit(picture.width, fractions[k])), size, size));
   }
 }
 

@@ -44,8 +44,9 @@ struct ExemplarRows {
 class PreparedExemplar {
  public:
   // A sphere. One picture or several, the same sphere under different light; all are resized to N = `size`, 1 … 32767.
-  // `rim` is in pixels of each picture; all must be square. Paint is extended outward from the rim before resizing, so
-  // that no colour from outside the painted disc reaches a usable texel.
+  // `rim` is in pixels of each picture; all must be square. The rim of a sphere that is cut out of its picture is at
+  // least as wide as its SoftEdge. Paint is extended outward from the rim before resizing, so that no colour from
+  // outside the painted disc reaches a usable texel.
   PreparedExemplar(std::span<const Picture* const> pictures, double rim, int size);
   PreparedExemplar(const Picture& picture, double rim, int size)
       : PreparedExemplar(std::vector<const Picture*>{&picture}, rim, size) {}

@@ -1,5 +1,7 @@
 #include "transfer/outline/rim_paint.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -32,26 +34,40 @@ Texel Mixed(const std::uint16_t* a, const std::uint16_t* b, double share) {
   return mixed;
 }
 
+// The paint of a ring without its paper, from and to these distances from the picture's middle, in pixels. Paint
+// elsewhere stays as it is.
+Picture LiftedRing(Picture picture, const BarePaper& paper, double from, double to) {
+  const double half = 0.5 * picture.width;
+  tbb::parallel_for(0, picture.height, [&](int y) {
+    for (int x = 0; x < picture.width; ++x) {
+      const double r = Length(x + 0.5 - half, y + 0.5 - half);
+      if (r >= from && r <= to) LiftPaint(paper, picture.At(x, y));
+    }
+  });
+  return picture;
+}
+
 }  // namespace
 
 RimPaint::RimPaint(const Picture& picture, int size)
     : size_(size), band_(std::max(1, static_cast<int>(std::ceil(kBand * 0.5 * size)))), margin_(band_ + 2) {
   const BarePaper paper = FindBarePaper(picture);
-  Picture lifted = Resample(picture, size, size);
   const int side = size + 2 * margin_;
   const double half = 0.5 * size;
+  // Paint deeper inside is never used.
+  const double from = half - 2.0 * band_ - 2.0;
+  // Paint is lifted before it is resized: paper mixed into strokes of less than a pixel would pass for its own grain.
+  constexpr double kFilterReach = 4.0;  // of the resized picture's pixels, beyond what is used
+  const double unit = std::max(1.0, static_cast<double>(picture.width) / size);
+  const double ratio = static_cast<double>(picture.width) / size;
+  const Picture lifted = Resample(
+      LiftedRing(picture, paper, ratio * from - kFilterReach * unit, ratio * (half + margin_) + kFilterReach * unit),
+      size, size);
   const auto inside = [&](double x, double y) {
     const int u = std::clamp(static_cast<int>(std::floor(x + half)), 0, size - 1);
     const int v = std::clamp(static_cast<int>(std::floor(y + half)), 0, size - 1);
     return lifted.At(u, v);
   };
-  // Paint deeper inside is never used.
-  const double from = half - 2.0 * band_ - 2.0;
-  for (int y = 0; y < size; ++y) {
-    for (int x = 0; x < size; ++x) {
-      if (Length(x + 0.5 - half, y + 0.5 - half) >= from) LiftPaint(paper, lifted.At(x, y));
-    }
-  }
   paint_ = Picture(side, side);
   double paint = 0.0, count = 0.0;
   for (int y = 0; y < side; ++y) {

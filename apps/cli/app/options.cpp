@@ -124,6 +124,9 @@ void AddCastOptions(CLI::App& verb, SceneOptions& options) {
       ->type_name("camera|eye")
       ->check(CLI::IsMember({"camera", "eye"}))
       ->capture_default_str();
+  verb.add_flag("--raw-normals", options.request.raw_normals,
+                "keep shading normals that would mirror the line of sight into the surface, as on coarse smooth "
+                "meshes; left out: they are bent, in guides and in light, as Cycles does");
   verb.add_option("--isa", options.request.isa,
                   "Embree's instruction set: sse2, sse4.2, avx, avx2 or avx512; left out: the best of this machine. "
                   "Name one where several machines must give the same bytes")

@@ -9,14 +9,14 @@ nlohmann::ordered_json LightToJson(const PaintedLight& light) {
   return {{"azimuth", light.azimuth}, {"elevation", light.elevation}, {"correlation", light.correlation}};
 }
 
-nlohmann::ordered_json PatchesToJson(const Patches& patches, int margin) {
+nlohmann::ordered_json PatchesToJson(const Patches& patches, glm::ivec2 origin) {
   nlohmann::ordered_json json{{"count", patches.count}, {"pixels", patches.pixels}};
   if (patches.count > 0)
-    json["largest"] = {{"pixels", patches.largest}, {"x", patches.x + margin}, {"y", patches.y + margin}};
+    json["largest"] = {{"pixels", patches.largest}, {"x", patches.x + origin.x}, {"y", patches.y + origin.y}};
   return json;
 }
 
-nlohmann::ordered_json RegularityToJson(const RegularityReport& report, int margin) {
+nlohmann::ordered_json RegularityToJson(const RegularityReport& report, glm::ivec2 origin) {
   nlohmann::ordered_json json{{"windows", report.windows},
                               {"autocorrelation_peak", report.peak},
                               {"echo", report.echo},
@@ -25,22 +25,23 @@ nlohmann::ordered_json RegularityToJson(const RegularityReport& report, int marg
     json["period"] = report.period;
     json["direction"] = report.direction;
     json["kind"] = report.grid ? "grid" : "lines";
-    json["x"] = report.x + margin, json["y"] = report.y + margin;
+    json["x"] = report.x + origin.x, json["y"] = report.y + origin.y;
   }
   return json;
 }
 
 }  // namespace
 
-nlohmann::ordered_json TraitsToJson(const PaintTraits& traits, int margin) {
+nlohmann::ordered_json TraitsToJson(const PaintTraits& traits, const Exemplar& exemplar) {
+  const glm::ivec2 origin = exemplar.Origin();
   nlohmann::ordered_json json{{"width", traits.width},
                               {"height", traits.height},
-                              {"margin", margin},
+                              {"margin", exemplar.margin},
                               {"covered_percent", traits.covered_percent},
                               {"transparent_percent", traits.alpha.transparent_percent},
                               {"translucent_percent", traits.alpha.translucent_percent},
                               {"premultiplied", traits.alpha.premultiplied},
-                              {"holes", PatchesToJson(traits.alpha.holes, margin)},
+                              {"holes", PatchesToJson(traits.alpha.holes, origin)},
                               {"lightness",
                                {{"darkest", traits.tone.darkest},
                                 {"brightest", traits.tone.brightest},
@@ -48,20 +49,22 @@ nlohmann::ordered_json TraitsToJson(const PaintTraits& traits, int margin) {
                                 {"range", traits.tone.range()}}},
                               {"painted_light", LightToJson(traits.light)},
                               {"anisotropy", traits.texture.anisotropy},
-                              {"regularity", RegularityToJson(traits.texture.regularity, margin)}};
+                              {"regularity", RegularityToJson(traits.texture.regularity, origin)}};
   if (!traits.is_sphere) return json;
+  if (exemplar.cut) json["sphere"] = {{"x", exemplar.cut->x}, {"y", exemplar.cut->y}, {"radius", exemplar.cut->radius}};
   json["ground_known"] = traits.ground_known;
   if (traits.disc.found) {
-    json["disc"] = {{"x", traits.disc.x + margin},
-                    {"y", traits.disc.y + margin},
+    json["disc"] = {{"x", traits.disc.x + origin.x},
+                    {"y", traits.disc.y + origin.y},
                     {"radius", traits.disc.radius},
                     {"outline_share", traits.disc.outline}};
   }
+  json["soft_edge"] = traits.alpha.soft_edge;
   json["fringe_percent"] = traits.fringe_percent;
-  json["bare_shade"] = PatchesToJson(traits.bare_shade, margin);
+  json["bare_shade"] = PatchesToJson(traits.bare_shade, origin);
   if (traits.template_light) {
     json["template_percent"] = traits.template_percent;
-    json["bare_template"] = PatchesToJson(traits.bare_template, margin);
+    json["bare_template"] = PatchesToJson(traits.bare_template, origin);
     json["template_light"] = LightToJson(*traits.template_light);
   }
   return json;

@@ -10,8 +10,9 @@
 
 namespace scumble {
 
-// All figures. Lengths and places are pixels of the file, `margin` being the part that was cut off; shares are percent.
-nlohmann::ordered_json TraitsToJson(const PaintTraits& traits, int margin);
+// All figures. Lengths and places are pixels of the file, which the exemplar may have been cut out of; shares are
+// percent.
+nlohmann::ordered_json TraitsToJson(const PaintTraits& traits, const Exemplar& exemplar);
 
 // The figures for painters, one indented line each.
 std::string TraitsToText(const PaintTraits& traits);

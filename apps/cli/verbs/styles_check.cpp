@@ -11,6 +11,7 @@
 #include "apps/cli/app/options.h"
 #include "apps/cli/verbs/paint_report.h"
 #include "core/style/kit/sphere_kit.h"
+#include "core/style/place_sphere.h"
 #include "measure/painting/paint_faults.h"
 #include "measure/painting/paint_traits.h"
 #include "pipeline/file_cache.h"
@@ -45,6 +46,16 @@ std::vector<PaintFault> AmbiguityFaults(const AmbiguityReport& report) {
          "paint a rounder shape, or a larger picture of it", std::nullopt}};
   }
   return {};
+}
+
+// Of a sphere that does not fill its file.
+std::vector<PaintFault> PlaceFaults(const Exemplar& exemplar) {
+  if (exemplar.unclear) {
+    return {{"no-clear-sphere", Weight::kMistake, DescribeUnclear(), "crop it to the sphere", std::nullopt}};
+  }
+  if (!exemplar.cut) return {};
+  return {{"taken-as-it-lies", Weight::kRemark, DescribeCut(*exemplar.cut),
+           "crop it to the sphere, if that is not where it is", std::nullopt}};
 }
 
 // An exemplar for more light that is darker than one for less is legal, and most often a mistake.
@@ -133,8 +144,9 @@ void FindFaults(CheckedStyle& checked) {
     context.brightest = !context.several || luminances[k] == most_light;
     context.knows_guides = !exemplar.guides_file.empty();
     context.shows_marks = exemplar.is_sphere && LooksLikeTemplate(exemplar.picture);
-    context.margin = exemplar.margin;
+    context.origin = exemplar.Origin();
     std::vector<PaintFault> faults = FindPaintFaults(checked.traits[k], context);
+    for (PaintFault& fault : PlaceFaults(exemplar)) faults.push_back(std::move(fault));
     if (context.several) {
       for (PaintFault& fault : OppositeLights(style, luminances, checked.traits, k)) faults.push_back(std::move(fault));
     }
@@ -189,7 +201,7 @@ nlohmann::ordered_json ToJson(const CheckedStyle& checked) {
     const Exemplar& exemplar = style.exemplars[k];
     nlohmann::ordered_json entry{{"image", exemplar.name}};
     if (several) entry["light"] = DescribeLuminance(exemplar, style.transfer.rim);
-    entry.update(TraitsToJson(checked.traits[k], exemplar.margin));
+    entry.update(TraitsToJson(checked.traits[k], exemplar));
     json["exemplars"].push_back(std::move(entry));
   }
   const AmbiguityReport& report = checked.directions;

@@ -113,7 +113,7 @@ std::string WesternLetters(const std::string& utf8) {
   return text;
 }
 
-std::vector<std::string> Words(const KitLight& light, int dpi, const std::string& painting) {
+std::vector<std::string> CaptionLines(const KitLight& light, int dpi, const std::string& painting) {
   char size_text[160];
   const double across = MillimetresOf(light.guides.width(), dpi);
   std::snprintf(size_text, sizeof size_text, "The sphere is %.1f mm (%.2f in) across: %d pixels at %d dpi.", across,
@@ -163,7 +163,7 @@ void DrawWords(HPDF_Doc document, const Sheet& sheet, const KitLight& light, con
     y += feed_mm * pixels_per_mm;
   };
   write(bold, 12, "A sphere to paint over: " + painting, 6.5);
-  for (const std::string& line : Words(light, dpi, painting)) write(plain, 9, line, 5.0);
+  for (const std::string& line : CaptionLines(light, dpi, painting)) write(plain, 9, line, 5.0);
   DrawScaleBar(sheet, left, y + 1.5 * pixels_per_mm, pixels_per_mm);
 }
 

@@ -1,14 +1,20 @@
 // Exemplars with their own guides, from the command line: painted scenes, the cache of tables, styles check.
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "tests/support/cli_harness.h"
+#include "tests/support/painted_spheres.h"
 
 namespace scumble {
 namespace {
 
 namespace fs = std::filesystem;
+
+bool Contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 class CliExemplar : public CliTest {
  protected:
@@ -174,6 +180,101 @@ TEST_F(CliExemplar, CheckReportsDirectionsAndRepeats) {
   EXPECT_EQ(RunOk({"styles", "check", "wedge", "--json"}).out, RunOk({"styles", "check", "wedge", "--json"}).out);
   ExpectError({"transfer", "wedge/wedge.exr", "--style", "wedge", "--set", "transfer.nearest=analytic", "-o", "x.png"},
               2, {"transfer.nearest", "spheres"});
+}
+
+// A sphere of that radius in a picture of another size, cut out with a soft edge, or on white paper.
+Picture Laid(int width, int height, double x, double y, double radius, double soft, bool cut_out) {
+  PaintedSphere painted;
+  painted.size = static_cast<int>(2 * radius), painted.reach = 2.0;
+  const Picture sphere = PaintSphere(painted);
+  Picture picture(width, height);
+  for (int v = 0; v < height; ++v) {
+    for (int u = 0; u < width; ++u) {
+      SetGrey(picture, u, v, 1.0);
+      const double r = std::hypot(u + 0.5 - x, v + 0.5 - y);
+      const double share = std::clamp(0.5 + (radius - soft - r) / (2.0 * soft), 0.0, 1.0);
+      if (share > 0.0) {
+        const int i = std::clamp(static_cast<int>(u - x + radius), 0, sphere.width - 1);
+        const int j = std::clamp(static_cast<int>(v - y + radius), 0, sphere.width - 1);
+        std::copy_n(sphere.At(i, j), 4, picture.At(u, v));
+      }
+      if (cut_out) picture.At(u, v)[3] = static_cast<std::uint16_t>(65535.0 * share + 0.5);
+    }
+  }
+  return picture;
+}
+
+// Nothing of a soft edge ends up inside objects, and a warning names the rim.
+TEST_F(CliExemplar, ASoftEdgeIsLeftOutAndSaidToBe) {
+  WriteGuideFile("ball.exr", Ball(200));
+  fs::create_directory(At("cut"));
+  ASSERT_TRUE(WritePicture(At("cut/lit.png"), Laid(400, 400, 200, 200, 200, 2.0, true)).ok());
+  WriteText("cut/style.toml", "[transfer]\nreference_height = 0\n[[exemplar]]\nimage = \"lit.png\"\n");
+  const CommandResult run = RunOk({"transfer", "ball.exr", "--style", "cut", "-o", "soft.png"});
+  EXPECT_TRUE(Contains(run.Warning(), "lit.png: the edge of the sphere is see-through up to 4 pixels inside it"))
+      << run.err;
+  EXPECT_TRUE(Contains(run.Warning(), "--set transfer.rim=4")) << run.err;
+  const Expected<Picture> picture = ReadPicture(At("soft.png"));
+  ASSERT_TRUE(picture);
+  int inside = 0;
+  for (int i = 0; i < 200 * 200; ++i) {
+    if (std::hypot(i % 200 - 99.5, i / 200 - 99.5) > 98.0) continue;
+    inside += picture->rgba[std::size_t(i) * 4 + 3] < 65000;
+  }
+  EXPECT_EQ(inside, 0) << "half transparent pixels inside the ball";
+  const CommandResult wide =
+      RunOk({"transfer", "ball.exr", "--style", "cut", "--set", "transfer.rim=4", "-o", "wide.png"});
+  EXPECT_EQ(wide.Warning(), "");
+  EXPECT_EQ(Bytes("wide.png").size() > 0 && Pixels("wide.png") == Pixels("soft.png"), true) << "rim says the same";
+  const CommandResult check = RunOk({"styles", "check", "cut"});
+  EXPECT_TRUE(Contains(check.Warning(), "see-through up to 4 pixels")) << check.err;
+  EXPECT_TRUE(Contains(check.Warning(), "write rim = 4 into [transfer]")) << check.err;
+  EXPECT_FALSE(Contains(check.err, "half see-through")) << check.err;
+}
+
+// Any picture of one painted ball works, and the run says where it is.
+TEST_F(CliExemplar, ASphereIsTakenAsItLies) {
+  WriteGuideFile("ball.exr", Ball(64));
+  ASSERT_TRUE(WritePicture(At("aside.png"), Laid(640, 400, 250, 180, 150, 0.5, false)).ok());
+  const CommandResult run = RunOk({"transfer", "ball.exr", "--style", "aside.png", "-o", "out.png"});
+  EXPECT_EQ(run.Warning(), "");
+  EXPECT_TRUE(Contains(run.err,
+                       "aside.png: its sphere does not fill the picture of 640×400; it is taken as it lies, "
+                       "around x=250, y=180, with a radius of 1"))
+      << run.err;
+  const CommandResult quiet = RunOk({"transfer", "ball.exr", "--style", "aside.png", "-q", "-o", "out.png"});
+  EXPECT_EQ(quiet.err, "");
+  const CommandResult check = RunOk({"styles", "check", "aside.png", "--strict"});
+  EXPECT_EQ(check.err, "");
+  EXPECT_TRUE(Contains(check.out, "remark: aside.png: its sphere does not fill")) << check.out;
+  const nlohmann::json json = RunOk({"styles", "check", "aside.png", "--json"}).Json();
+  EXPECT_EQ(json["faults"][0]["code"], "taken-as-it-lies");
+  EXPECT_NEAR(json["exemplars"][0]["sphere"]["x"].get<double>(), 250, 1.5);
+  EXPECT_NEAR(json["exemplars"][0]["sphere"]["radius"].get<double>(), 150, 2.5);
+}
+
+TEST_F(CliExemplar, WhatIsNoSphereIsRefusedInWords) {
+  WriteGuideFile("ball.exr", Ball(64));
+  Picture two = Laid(640, 400, 150, 180, 120, 0.5, false);
+  const Picture other = Laid(640, 400, 450, 200, 130, 0.5, false);
+  for (std::size_t i = 0; i < two.rgba.size(); ++i) two.rgba[i] = std::min(two.rgba[i], other.rgba[i]);
+  ASSERT_TRUE(WritePicture(At("two.png"), two).ok());
+  ExpectError({"transfer", "ball.exr", "--style", "two.png", "-o", "out.png"}, 3,
+              {"two.png shows more than one sphere", "crop the picture to it"});
+  ExpectError({"styles", "check", "two.png"}, 3, {"two.png shows more than one sphere"});
+  Picture box(300, 300);
+  for (int i = 0; i < 300 * 300; ++i) {
+    const bool inside = std::max(std::abs(i % 300 - 150), std::abs(i / 300 - 150)) < 80;
+    SetGrey(box, i % 300, i / 300, inside ? 0.2 + 0.001 * (i % 300) : 1.0);
+  }
+  ASSERT_TRUE(WritePicture(At("box.png"), box).ok());
+  const CommandResult run = RunOk({"transfer", "ball.exr", "--style", "box.png", "-o", "out.png"});
+  EXPECT_TRUE(Contains(run.Warning(), "box.png: its paint clearly does not fill the picture")) << run.err;
+  const nlohmann::json json = RunOk({"styles", "check", "box.png", "--json"}).Json();
+  EXPECT_EQ(json["faults"][0]["image"], "box.png");
+  bool said = false;
+  for (const auto& fault : json["faults"]) said = said || fault["code"] == "no-clear-sphere";
+  EXPECT_TRUE(said) << json["faults"];
 }
 
 }  // namespace

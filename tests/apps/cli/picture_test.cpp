@@ -54,6 +54,26 @@ TEST_F(CliOneStepOrTwo, SameBytesHoweverItIsAsked) {
   EXPECT_EQ(ExpectSameBytes("style", {{"--half"}, {}}), plain);  // a style of normals has no colour layer to round
 }
 
+// One triangle whose normals lean away from the viewer, by 80°.
+TEST_F(CliPictures, NormalsThatLeanAwayAreBentUnlessRawOnesAreAskedFor) {
+  WriteStyle("style");
+  WriteText("leaning.obj", "v -1 -1 0\nv 1 -1 0\nv 0 1 0\nvn 0.985 0 0.174\nf 1//1 2//1 3//1\n");
+  const Arguments scene = {"leaning.obj", "--size", "32", "--view", "0,0"};
+  RunOk(With(With({"guidegen"}, scene), {"-o", "bent.exr"}));
+  RunOk(With(With({"guidegen"}, scene), {"--raw-normals", "-o", "raw.exr"}));
+  const auto bent = ReadGuides(At("bent.exr"), {}), raw = ReadGuides(At("raw.exr"), {});
+  ASSERT_TRUE(bent.ok() && raw.ok());
+  const std::size_t middle = bent->Index(16, 16);
+  EXPECT_NEAR(raw->Vec3(Layer::kNormal, middle).z, 0.174, 1e-3);
+  const glm::dvec3 normal(bent->Vec3(Layer::kNormal, middle));
+  EXPECT_NEAR(2.0 * normal.z * normal.z - 1.0, 0.01, 0.02) << "the mirrored ray runs along the surface";
+  EXPECT_EQ(bent->attributes.count("scumble:raw_normals"), 0u);
+  EXPECT_EQ(raw->attributes.at("scumble:raw_normals"), "true");
+  RunOk(With(With({"stylize"}, scene), {"--style", "style", "-o", "bent.png"}));
+  RunOk(With(With({"stylize"}, scene), {"--style", "style", "--raw-normals", "-o", "raw.png"}));
+  EXPECT_FALSE(Pixels("bent.png") == Pixels("raw.png"));
+}
+
 TEST_F(CliPictures, AnEdgeThatTheExemplarHasNotIsWarnedOf) {
   WriteStyle("style");
   WriteGuideFile("g.exr", Ball(64));

@@ -198,7 +198,7 @@ TEST_F(CliSequence, ResumeKnowsEveryKindOfOutput) {
   EXPECT_TRUE(Contains(RunOk(With(guidegen, {"--resume"})).out, "1 made, 2 kept;"));
   EXPECT_EQ(Bytes("g2.exr"), whole);
   for (const Arguments& other :
-       {Arguments{"--samples", "4"}, {"--max-bounces", "1"}, {"--no-robust"}, {"--cryptomatte"}}) {
+       {Arguments{"--samples", "4"}, {"--max-bounces", "1"}, {"--raw-normals"}, {"--no-robust"}, {"--cryptomatte"}}) {
     EXPECT_TRUE(Contains(RunOk(With(With(guidegen, {"--resume"}), other)).out, "3 made, 0 kept;")) << other[0];
     EXPECT_TRUE(Contains(RunOk(With(With(guidegen, {"--resume"}), other)).out, "0 made, 3 kept;")) << other[0];
   }

@@ -113,10 +113,11 @@ TEST_F(Tradeoff, WritesAPageFiguresAndPicturesThatAgree) {
 }
 
 TEST_F(Tradeoff, OptionsRepeatThePictureByteForByte) {
-  RunOk(Small(Scene("suzanne.glb"), {"--only",
-                                     "method litsphere,levels 3,threshold 0.25,blend_radius 4,edge_aware,match_step 2,"
-                                     "nearest tree,nearest table 64,resolution,robust,seed,quality",
-                                     "--seed", "3", "--aa", "2", "--normal-frame", "eye", "-o", "out"}));
+  RunOk(
+      Small(Scene("suzanne.glb"), {"--only",
+                                   "method litsphere,levels 3,threshold 0.25,blend_radius 4,edge_aware,match_step 2,"
+                                   "nearest tree,nearest table 64,resolution,robust,seed,quality",
+                                   "--seed", "3", "--aa", "2", "--normal-frame", "eye", "--raw-normals", "-o", "out"}));
   const nlohmann::json json = nlohmann::json::parse(Bytes("out/tradeoff.json"));
   int repeated = 0;
   for (const auto& way : json["ways"]) {

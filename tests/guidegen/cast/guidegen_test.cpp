@@ -171,8 +171,14 @@ TEST(Guides, NormalMapsBendTheNormal) {
   scene.textures.push_back(picture);
   scene.materials[0].normal_texture.texture = 0;
   scene.meshes[0].tangents.assign(4, {1, 0, 0, 1});
-  const auto result = Render(scene, FlatCamera(3.0, 0.5), Sized(2, 2));
+  GuidegenOptions options = Sized(2, 2);
+  options.raw_normals = true;
+  const auto result = Render(scene, FlatCamera(3.0, 0.5), options);
   ExpectNear(result.guides.Vec3(Layer::kNormal, 0), stored, 1e-4);
+  // Its mirrored ray would go 6° below the surface.
+  const glm::dvec3 bent = Render(scene, FlatCamera(3.0, 0.5), Sized(2, 2)).guides.Vec3(Layer::kNormal, 0);
+  EXPECT_NEAR(2.0 * bent.z * bent.z - 1.0, 0.01, 1e-6);
+  EXPECT_NEAR(bent.y / bent.x, stored.y / stored.x, 1e-4) << "it is turned straight towards the surface's own normal";
 }
 
 TEST(Guides, EyeFrameSeesASphereTheSameEverywhere) {

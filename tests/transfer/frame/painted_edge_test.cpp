@@ -1,6 +1,7 @@
 // Silhouettes with the exemplar's own painted edge.
 #include <algorithm>
 
+#include "core/image/color.h"
 #include "tests/support/transfer_fixtures.h"
 
 namespace scumble {
@@ -220,6 +221,48 @@ TEST(PaintedEdge, OnOtherBallsTheRimFacesAsTheyDo) {
     EXPECT_LT(turns.mean, 0.2) << radius;
     EXPECT_LT(turns.worst, 0.75) << radius << ": 0.3 within a piece, less than 0.5 of freedom";
   }
+}
+
+// Grey paint on white paper, and thin radial strokes past the rim: 2 pixels wide, 8 apart.
+Picture StrokesPastTheRim(int size) {
+  Picture picture(size, size);
+  const double half = size / 2.0, strokes = std::floor(3.14159265 * size / 8.0);
+  for (int y = 0; y < size; ++y) {
+    for (int x = 0; x < size; ++x) {
+      const double dx = x + 0.5 - half, dy = y + 0.5 - half, r = std::hypot(dx, dy) / half;
+      const double turn = std::atan2(dy, dx) / 6.2831853 + 0.5, across = turn * strokes - std::floor(turn * strokes);
+      const bool stroke = r < 1.02 && std::fabs(across - 0.5) < 0.125;
+      const double grey = r < 1.0 && !stroke ? 0.6 : stroke ? 0.45 : 1.0;
+      std::uint16_t* texel = picture.At(x, y);
+      texel[0] = texel[1] = texel[2] = static_cast<std::uint16_t>(65535 * grey), texel[3] = 65535;
+    }
+  }
+  return picture;
+}
+
+// The light that the strokes outside a ball take from white paper, as a share of the ring that they lie on.
+double InkPastTheRim(double scale) {
+  Style style = PlainStyle(StrokesPastTheRim(800));
+  style.transfer.edge = EdgeMode::kExemplar, style.transfer.scale = scale;
+  const int size = static_cast<int>(500 * scale);
+  const double radius = 200.0 * scale;
+  const Picture picture = MustTransfer(style, BallOf(size, radius)).picture;
+  double ink = 0.0;
+  for (int y = 0; y < size; ++y) {
+    for (int x = 0; x < size; ++x) {
+      const double past = std::hypot(x + 0.5 - size / 2.0, y + 0.5 - size / 2.0) - radius;
+      if (past < 0.5) continue;
+      const std::uint16_t* texel = picture.At(x, y);
+      ink += texel[3] / 65535.0 * (1.0 - Srgb16ToLinear(texel[0]));
+    }
+  }
+  return ink / (6.2831853 * radius * 8.0 * scale);
+}
+
+TEST(PaintedEdge, StrokesOfLessThanAPixelKeepTheirTone) {
+  const double whole = InkPastTheRim(1.0);
+  EXPECT_GT(whole, 0.1);
+  for (const double scale : {0.6, 0.3, 0.2}) EXPECT_NEAR(InkPastTheRim(scale), whole, 0.2 * whole) << scale;
 }
 
 // The direction of the rim along a straight horizontal outline, just outside of it.

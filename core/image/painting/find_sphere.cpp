@@ -1,0 +1,254 @@
+#include "core/image/painting/find_sphere.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/image/painting/paint_mask.h"
+
+namespace scumble {
+namespace {
+
+constexpr double kReaches = 0.0075;                   // of a side: paint that comes so near reaches it
+constexpr double kPaintedLine = 0.005;                // of a row or column: more of it than specks
+constexpr double kFree = 0.03, kFreeOpposite = 0.1;   // of a side, where paint clearly does not reach it
+constexpr double kFlattened = 0.02;                   // of a side: an ellipse leaves it free on two
+constexpr double kTooSmall = 0.985;                   // of the radius
+constexpr double kOffCentre = 0.01, kCovers = 0.995;  // of the width, of the radius
+constexpr double kLeastTolerance = 0.004;             // of the width
+constexpr double kMostTolerance = 0.025;              // of the radius
+constexpr double kLeastOutline = 0.8;                 // of all directions
+constexpr double kMostBeyond = 0.04;                  // of the circle's area
+constexpr double kMostCut = 0.015;                    // of the radius, beyond the picture's sides
+constexpr double kLeastRadius = 15.0;                 // pixels
+constexpr double kRound = 0.95;                       // the shorter diameter of a circle to the longer
+constexpr double kLeastOther = 0.05;                  // of the largest region's pixels: another region of paint
+
+// How far from each side the first painted line is, as a share of the picture: left, right, top, bottom.
+struct Gaps {
+  std::array<double, 4> of{1.0, 1.0, 1.0, 1.0};
+  bool AllWithin(double share) const {
+    return std::ranges::all_of(of, [&](double gap) { return gap <= share; });
+  }
+  bool ClearlyInside() const {
+    return std::ranges::count_if(of, [](double gap) { return gap > kFree; }) >= 3 || OppositeBeyond(kFreeOpposite);
+  }
+  bool OppositeBeyond(double share) const {
+    return (of[0] > share && of[1] > share) || (of[2] > share && of[3] > share);
+  }
+};
+
+// `is_paint(x, y)` is asked up to `deepest` of each side.
+template <class IsPaintAt>
+Gaps GapsOf(int width, int height, double deepest, const IsPaintAt& is_paint) {
+  Gaps gaps;
+  for (std::size_t side = 0; side < 4; ++side) {
+    const bool upright = side < 2, from_end = side % 2 == 1;
+    const int lines = upright ? width : height, length = upright ? height : width;
+    const double least = std::max(2.0, kPaintedLine * length);
+    for (int line = 0; line <= deepest * lines && line < lines; ++line) {
+      const int at = from_end ? lines - 1 - line : line;
+      int painted = 0;
+      for (int k = 0; k < length; ++k) painted += upright ? is_paint(at, k) : is_paint(k, at);
+      if (painted < least) continue;
+      gaps.of[side] = static_cast<double>(line) / lines;
+      break;
+    }
+  }
+  return gaps;
+}
+
+glm::dvec2 MiddleOf(const std::vector<std::uint8_t>& mask, int width) {
+  glm::dvec2 sum(0.0);
+  double count = 0.0;
+  for (std::size_t i = 0; i < mask.size(); ++i) {
+    if (!mask[i]) continue;
+    sum += glm::dvec2(static_cast<double>(i % std::size_t(width)) + 0.5,
+                      static_cast<double>(i / std::size_t(width)) + 0.5);
+    count += 1.0;
+  }
+  return count > 0.0 ? sum / count : sum;
+}
+
+// The pixels of each 4-connected region of paint, largest first.
+std::vector<std::vector<std::size_t>> Regions(const PaintMask& mask) {
+  const int width = mask.width(), height = mask.height();
+  std::vector<std::uint8_t> left = mask.values();
+  std::vector<std::vector<std::size_t>> regions;
+  for (std::size_t start = 0; start < left.size(); ++start) {
+    if (!left[start]) continue;
+    std::vector<std::size_t> region(1, start);
+    left[start] = 0;
+    for (std::size_t next = 0; next < region.size(); ++next) {
+      const std::size_t i = region[next];
+      const int x = static_cast<int>(i % std::size_t(width)), y = static_cast<int>(i / std::size_t(width));
+      const auto visit = [&](bool inside, std::size_t neighbour) {
+        if (!inside || !left[neighbour]) return;
+        left[neighbour] = 0;
+        region.push_back(neighbour);
+      };
+      visit(x > 0, i - 1), visit(x + 1 < width, i + 1);
+      visit(y > 0, i - std::size_t(width)), visit(y + 1 < height, i + std::size_t(width));
+    }
+    regions.push_back(std::move(region));
+  }
+  std::ranges::stable_sort(regions, [](const auto& a, const auto& b) { return a.size() > b.size(); });
+  return regions;
+}
+
+// The circle or ellipse of an outline of paint in a picture.
+class OutlineJudge {
+ public:
+  OutlineJudge(const std::vector<std::uint8_t>& mask, int width, int height)
+      : mask_(mask), width_(width), height_(height), size_(std::min(width, height)) {
+    glm::dvec2 towards = MiddleOf(mask, width);
+    // From the middle of the paint first, then from that of the circle.
+    for (int round = 0; round < 2; ++round) {
+      points_ = PaintOutline(mask, width, height, towards);
+      const auto rough = FitCircle(points_, 0.01 * size_, kLeastRadius, size_);
+      if (!rough) return;
+      const auto fit = FitCircle(points_, ToleranceFor(rough->circle), kLeastRadius, size_);
+      if (!fit) return;
+      circle_ = fit->circle, agree_ = fit->agree;
+      towards = {circle_->x, circle_->y};
+      if (towards.x < 1 || towards.y < 1 || towards.x > width - 1 || towards.y > height - 1) return;
+    }
+    SetRadius();
+  }
+
+  const std::optional<Circle>& circle() const { return circle_; }
+  double outline_radius() const { return outline_radius_; }  // of the circle's line, before it is moved inward
+
+  // Whether the circle is sure: on it lies the outline, and beyond it hardly any paint.
+  bool IsSure() const {
+    const bool is_circle = circle_ && outline_radius_ >= kLeastRadius && agree_ >= kLeastOutline * kOutlineDirections;
+    return is_circle && IsInPicture() && IsAlone();
+  }
+
+  std::optional<EllipseFit> Ellipse() const {
+    if (points_.size() < kLeastOutline * kOutlineDirections) return std::nullopt;
+    const auto fit = FitEllipse(points_, MiddleOf(mask_, width_), std::max(1.0, 0.01 * size_));
+    if (!fit || fit->agree < kLeastOutline * kOutlineDirections || fit->shorter < 2.0 * kLeastRadius)
+      return std::nullopt;
+    return fit->shorter < kRound * fit->longer ? fit : std::nullopt;
+  }
+
+ private:
+  // Where the square's own circle is far away, an uneven outline cannot be mistaken for it.
+  double ToleranceFor(const Circle& circle) const {
+    const double half = 0.5 * size_,
+                 off = std::sqrt(std::pow(circle.x - 0.5 * width_, 2.0) + std::pow(circle.y - 0.5 * height_, 2.0));
+    const double least = std::max(1.0, kLeastTolerance * size_);
+    const double apart = width_ == height_ ? std::max(0.0, half - circle.radius + off) : half;
+    return std::max(least, std::min(0.25 * apart, kMostTolerance * circle.radius));
+  }
+
+  // Moves the circle's line inward, to where there is paint in 95% of the directions on it.
+  void SetRadius() {
+    const double tolerance = ToleranceFor(*circle_);
+    std::vector<double> distances;
+    for (const glm::dvec2 p : points_) {
+      if (circle_->Off(p) > tolerance) continue;
+      const glm::dvec2 d = p - glm::dvec2(circle_->x, circle_->y);
+      distances.push_back(std::sqrt(glm::dot(d, d)));
+    }
+    outline_radius_ = circle_->radius;
+    if (distances.empty()) return;
+    const auto low = distances.begin() + std::ptrdiff_t(distances.size() / 20);
+    std::nth_element(distances.begin(), low, distances.end());
+    circle_->radius = *low;
+  }
+
+  bool IsInPicture() const {
+    const double most = std::max(2.0, kMostCut * circle_->radius), r = circle_->radius - most;
+    return circle_->x - r >= 0.0 && circle_->y - r >= 0.0 && circle_->x + r <= width_ && circle_->y + r <= height_;
+  }
+
+  bool IsAlone() const {
+    const double beyond = circle_->radius + 2.0 * ToleranceFor(*circle_) + 2.0;
+    double count = 0.0;
+    for (std::size_t i = 0; i < mask_.size(); ++i) {
+      if (!mask_[i]) continue;
+      const double dx = static_cast<double>(i % std::size_t(width_)) + 0.5 - circle_->x;
+      const double dy = static_cast<double>(i / std::size_t(width_)) + 0.5 - circle_->y;
+      count += dx * dx + dy * dy > beyond * beyond;
+    }
+    return count <= kMostBeyond * 3.14159 * circle_->radius * circle_->radius;
+  }
+
+  const std::vector<std::uint8_t>& mask_;
+  int width_, height_;
+  double size_;
+  std::vector<glm::dvec2> points_;
+  std::optional<Circle> circle_;
+  double outline_radius_ = 0.0;
+  std::size_t agree_ = 0;
+};
+
+// Two regions of paint that are spheres both.
+std::optional<FoundSphere> TwoSpheres(const PaintMask& mask) {
+  const auto regions = Regions(mask);
+  if (regions.size() < 2 ||
+      static_cast<double>(regions[1].size()) < kLeastOther * static_cast<double>(regions[0].size())) {
+    return std::nullopt;
+  }
+  // Dots and strokes are regions too.
+  std::size_t all = 0;
+  for (const auto& region : regions) all += region.size();
+  if (2 * (regions[0].size() + regions[1].size()) < all) return std::nullopt;
+  std::array<Circle, 2> circles;
+  for (std::size_t k = 0; k < 2; ++k) {
+    std::vector<std::uint8_t> alone(mask.values().size(), 0);
+    for (const std::size_t i : regions[k]) alone[i] = 1;
+    const OutlineJudge judge(alone, mask.width(), mask.height());
+    if (!judge.IsSure() || judge.Ellipse()) return std::nullopt;
+    circles[k] = *judge.circle();
+  }
+  FoundSphere found{FoundSphere::Kind::kSeveral};
+  found.circle = circles[0], found.second = circles[1];
+  return found;
+}
+
+bool FillsSquare(const Circle& circle, int size) {
+  const double half = 0.5 * size, dx = circle.x - half, dy = circle.y - half, off = std::sqrt(dx * dx + dy * dy);
+  const bool aside = off > kOffCentre * size && circle.radius - off < kCovers * half;
+  return circle.radius >= kTooSmall * half && !aside;
+}
+
+}  // namespace
+
+FoundSphere FindSphere(const Picture& picture) {
+  using Kind = FoundSphere::Kind;
+  const int width = picture.width, height = picture.height;
+  const bool is_square = width == height;
+  const BarePaper ground = FindBarePaper(picture);
+  if (ground.kind == BarePaper::Kind::kCovered) return {Kind::kNoGround};
+  const auto is_paint = [&](int x, int y) { return IsPaint(picture, ground, x, y); };
+  if (is_square && GapsOf(width, height, kReaches, is_paint).AllWithin(kReaches)) return {Kind::kFills};
+  const PaintMask mask(picture, ground);
+  if (!mask.known()) return {Kind::kNoGround};
+  const std::vector<std::uint8_t>& values = mask.values();
+  const Gaps gaps = GapsOf(width, height, 1.0, [&](int x, int y) { return values[std::size_t(y) * width + x] != 0; });
+  // An empty sheet shows nothing that could lie anywhere else.
+  const auto painted = static_cast<double>(std::ranges::count(values, std::uint8_t{1}));
+  if (painted < kPaintedLine * static_cast<double>(values.size())) return {is_square ? Kind::kFills : Kind::kUnclear};
+  const bool clearly_inside = !is_square || gaps.ClearlyInside();
+  const FoundSphere unclear{clearly_inside ? Kind::kUnclear : Kind::kFills};
+  if (const auto two = TwoSpheres(mask)) return *two;
+  const OutlineJudge judge(values, width, height);
+  if (const auto ellipse = judge.Ellipse(); ellipse && (!is_square || gaps.OppositeBeyond(kFlattened))) {
+    FoundSphere found{Kind::kEllipse};
+    found.longer = ellipse->longer, found.shorter = ellipse->shorter;
+    return found;
+  }
+  if (!judge.IsSure()) return unclear;
+  const Circle outline{judge.circle()->x, judge.circle()->y, judge.outline_radius()};
+  FoundSphere found{is_square && FillsSquare(outline, width) ? Kind::kFills : Kind::kInside};
+  found.circle = *judge.circle();
+  return found;
+}
+
+}  // namespace scumble

@@ -1,0 +1,90 @@
+#include "core/style/place_sphere.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/image/painting/find_sphere.h"
+#include "core/style/kit/sphere_template.h"
+
+namespace scumble {
+namespace {
+
+using Kind = FoundSphere::Kind;
+
+std::string Rounded(double value) { return std::to_string(std::lround(value)); }
+
+std::string SizeText(const Picture& picture) {
+  return std::to_string(picture.width) + "×" + std::to_string(picture.height);
+}
+
+std::string PlaceText(const Circle& circle) { return "x=" + Rounded(circle.x) + ", y=" + Rounded(circle.y); }
+
+void CutTo(const Circle& circle, Exemplar& exemplar) {
+  const Picture& file = exemplar.picture;
+  const int side = std::max(1, static_cast<int>(std::lround(2.0 * circle.radius)));
+  const int left = static_cast<int>(std::lround(circle.x - 0.5 * side));
+  const int top = static_cast<int>(std::lround(circle.y - 0.5 * side));
+  Picture cut(side, side);
+  for (int y = 0; y < side; ++y) {
+    for (int x = 0; x < side; ++x) {
+      const int u = std::clamp(left + x, 0, file.width - 1), v = std::clamp(top + y, 0, file.height - 1);
+      std::copy_n(file.At(u, v), 4, cut.At(x, y));
+    }
+  }
+  exemplar.cut = SphereCut{left, top, file.width, file.height, circle.x, circle.y, circle.radius};
+  exemplar.picture = std::move(cut);
+}
+
+// What a picture that is no square shows instead of a sphere.
+std::string WhyNone(Kind kind) {
+  return kind == Kind::kNoGround ? "its corners are neither transparent nor paper of one colour to find a sphere on"
+                                 : "it shows no clear sphere on its ground";
+}
+
+}  // namespace
+
+Status PlaceSphere(Exemplar& exemplar) {
+  const Picture& picture = exemplar.picture;
+  if (!exemplar.is_sphere || !exemplar.guides_file.empty() || exemplar.guides || picture.empty()) return Ok();
+  const FoundSphere found = FindSphere(picture);
+  const bool is_square = picture.width == picture.height;
+  if (is_square && (found.kind == Kind::kFills || found.kind == Kind::kNoGround || LooksLikeTemplate(picture)))
+    return Ok();
+  switch (found.kind) {
+    case Kind::kInside:
+      CutTo(found.circle, exemplar);
+      return Ok();
+    case Kind::kEllipse:
+      return InputError(exemplar.name + " shows an ellipse, " + Rounded(found.longer) + " pixels long and " +
+                        Rounded(found.shorter) +
+                        " wide: an exemplar shows a sphere; scale the picture in one direction until it is round");
+    case Kind::kSeveral:
+      return InputError(exemplar.name + " shows more than one sphere, around " + PlaceText(found.circle) + " and " +
+                        PlaceText(found.second) + ": an exemplar shows one; crop the picture to it");
+    case Kind::kFills:
+    case Kind::kNoGround:
+    case Kind::kUnclear:
+      break;
+  }
+  if (!is_square) {
+    return InputError(exemplar.name + " is " + SizeText(picture) + ", and " + WhyNone(found.kind) +
+                      ": an exemplar is a square that its sphere fills; crop it to the sphere, or give the guides of "
+                      "the scene that it shows");
+  }
+  exemplar.unclear = true;
+  return Ok();
+}
+
+std::string DescribeCut(const SphereCut& cut) {
+  return "its sphere does not fill the picture of " + std::to_string(cut.file_width) + "×" +
+         std::to_string(cut.file_height) + "; it is taken as it lies, around " + PlaceText({cut.x, cut.y, cut.radius}) +
+         ", with a radius of " + Rounded(cut.radius) + " pixels";
+}
+
+std::string DescribeUnclear() {
+  return "its paint clearly does not fill the picture, and its outline is no clear circle, so it is taken as if the "
+         "sphere filled the square";
+}
+
+}  // namespace scumble

@@ -1,0 +1,149 @@
+// Exemplars whose sphere does not fill the file, as files.
+#include "core/style/place_sphere.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <string>
+
+#include "core/io/picture_file.h"
+#include "core/style/kit/sphere_kit.h"
+#include "core/style/style_file.h"
+#include "tests/support/painted_spheres.h"
+#include "tests/support/temporary_folder.h"
+
+namespace scumble {
+namespace {
+
+class PlaceSphereTest : public testing::Test {
+ protected:
+  std::string Write(const std::string& name, const Picture& picture) {
+    const std::filesystem::path path = folder_.path() / name;
+    EXPECT_TRUE(WritePicture(path, picture).ok());
+    return path.string();
+  }
+  TemporaryFolder folder_;
+};
+
+// The painting of a sphere that fills its square, laid into a larger sheet.
+Picture Laid(const Picture& sphere, int width, int height, int left, int top, double paper) {
+  Picture sheet(width, height);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      SetGrey(sheet, x, y, std::max(0.0, paper));
+      if (paper < 0.0) sheet.At(x, y)[3] = 0;
+    }
+  }
+  const double half = 0.5 * sphere.width;
+  for (int y = 0; y < sphere.height; ++y) {
+    for (int x = 0; x < sphere.width; ++x) {
+      if (std::hypot(x + 0.5 - half, y + 0.5 - half) <= half)
+        std::copy_n(sphere.At(x, y), 4, sheet.At(left + x, top + y));
+    }
+  }
+  return sheet;
+}
+
+// The part that is cut is the painting that was laid there, but for a pixel.
+TEST_F(PlaceSphereTest, TakesTheSphereAsItLies) {
+  PaintedSphere painted;
+  painted.size = 300, painted.reach = 2.0;
+  const Picture sphere = PaintSphere(painted);
+  for (const auto& [width, height, paper] : {std::tuple{512, 512, 1.0}, {512, 512, -1.0}, {640, 400, 0.9}}) {
+    const std::string file = Write("ball.png", Laid(sphere, width, height, 60, 80, paper));
+    const Expected<Style> style = LoadStyle(file);
+    ASSERT_TRUE(style) << style.error().message;
+    const Exemplar& exemplar = style->exemplars.front();
+    ASSERT_TRUE(exemplar.cut);
+    EXPECT_FALSE(exemplar.unclear);
+    EXPECT_NEAR(exemplar.cut->left, 60, 2);
+    EXPECT_NEAR(exemplar.cut->top, 80, 2);
+    EXPECT_NEAR(exemplar.picture.width, 300, 4);
+    EXPECT_EQ(exemplar.picture.width, exemplar.picture.height);
+    EXPECT_EQ(exemplar.Origin(), glm::ivec2(exemplar.cut->left, exemplar.cut->top));
+    for (int y = 100; y < 200; ++y) {
+      const int u = 60 - exemplar.cut->left, v = 80 - exemplar.cut->top;
+      ASSERT_NEAR(exemplar.picture.At(150 + u, y + v)[0], sphere.At(150, y)[0], 257) << y;
+    }
+    const std::string said = DescribeCut(*exemplar.cut);
+    EXPECT_NE(said.find(std::to_string(width) + "×" + std::to_string(height)), std::string::npos) << said;
+    EXPECT_NE(said.find("around x=2"), std::string::npos) << said;
+    EXPECT_NE(said.find("radius of 1"), std::string::npos) << said;
+  }
+}
+
+TEST_F(PlaceSphereTest, WhatFillsItsSquareStaysByteForByte) {
+  for (const double reach : {1.12, 2.0, 1.0}) {
+    PaintedSphere painted;
+    painted.size = 256, painted.reach = reach;
+    const Picture picture = PaintSphere(painted);
+    const std::string file = Write("fills.png", picture);
+    const Expected<Style> style = LoadStyle(file);
+    ASSERT_TRUE(style) << style.error().message;
+    EXPECT_FALSE(style->exemplars.front().cut) << reach;
+    EXPECT_EQ(style->exemplars.front().picture.rgba, ReadPicture(file)->rgba) << reach;
+  }
+}
+
+TEST_F(PlaceSphereTest, RefusesInWords) {
+  PaintedSphere painted;
+  painted.size = 200, painted.reach = 2.0;
+  const Picture sphere = PaintSphere(painted);
+  const auto refusal = [&](const Picture& picture) {
+    const Expected<Style> style = LoadStyle(Write("odd.png", picture));
+    EXPECT_FALSE(style);
+    if (style) return std::string();
+    EXPECT_EQ(style.error().kind, ErrorKind::kInput);
+    return style.error().message;
+  };
+  const auto expect = [&](const Picture& picture, const std::vector<std::string>& words) {
+    const std::string said = refusal(picture);
+    for (const std::string& word : words) EXPECT_NE(said.find(word), std::string::npos) << word << ": " << said;
+  };
+  Picture two = Laid(sphere, 500, 500, 20, 20, 1.0);
+  const Picture other = Laid(sphere, 500, 500, 260, 270, 1.0);
+  for (std::size_t i = 0; i < two.rgba.size(); ++i) two.rgba[i] = std::min(two.rgba[i], other.rgba[i]);
+  expect(two, {"odd.png shows more than one sphere, around x=", "crop the picture to it"});
+  Picture flat(400, 400);  // every second line of a sphere's height
+  const Picture tall = Laid(sphere, 400, 400, 100, 100, 1.0);
+  for (int y = 0; y < 400; ++y) {
+    const int from = std::clamp(200 + (y - 200) * 3 / 2, 0, 399);
+    std::copy_n(tall.At(0, from), 4 * 400, flat.At(0, y));
+  }
+  expect(flat, {"odd.png shows an ellipse, 2", "pixels long and 13", "until it is round"});
+  Picture noise(300, 200);
+  for (int i = 0; i < 300 * 200; ++i) SetGrey(noise, i % 300, i / 300, UnitFloat(Hash(i)));
+  expect(noise, {"odd.png is 300×200", "its corners are neither", "a square that its sphere fills; crop it"});
+  Picture bar = Laid(sphere, 640, 360, 100, 100, 1.0);
+  for (int y = 120; y < 200; ++y) {
+    for (int x = 200; x < 600; ++x) SetGrey(bar, x, y, 0.3);
+  }
+  expect(bar, {"odd.png is 640×360", "shows no clear sphere", "crop it to the sphere"});
+}
+
+// Where a square's sphere is not clear, it is taken as ever, and says so.
+TEST_F(PlaceSphereTest, AnUnclearSquareStaysAsItIs) {
+  Picture picture(400, 400);
+  for (int i = 0; i < 400 * 400; ++i) SetGrey(picture, i % 400, i / 400, 1.0);
+  for (int y = 100; y < 300; ++y) {
+    for (int x = 100; x < 300; ++x) SetGrey(picture, x, y, 0.3);
+  }
+  const Expected<Style> style = LoadStyle(Write("box.png", picture));
+  ASSERT_TRUE(style) << style.error().message;
+  EXPECT_TRUE(style->exemplars.front().unclear);
+  EXPECT_EQ(style->exemplars.front().picture.width, 400);
+}
+
+// Guides say where the sphere is, and marks that there is a margin.
+TEST_F(PlaceSphereTest, AKitsSphereIsWhereItsGuidesAre) {
+  PaintedSphere painted;
+  painted.size = 200, painted.reach = 2.0;
+  Exemplar exemplar = ExemplarOf(Laid(PaintSphere(painted), 300, 300, 60, 40, 1.0));
+  exemplar.guides_file = "guides.exr";
+  ASSERT_TRUE(PlaceSphere(exemplar).ok());
+  EXPECT_FALSE(exemplar.cut);
+  EXPECT_EQ(exemplar.picture.width, 300);
+}
+
+}  // namespace
+}  // namespace scumble
