@@ -391,7 +391,7 @@ SCENES = {  # builder, layers, size, samples
     "principled": (principled, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 128),
     "orthographic": (camera_scene(type="ORTHO", ortho_scale=6.0), DIFFUSE_LAYERS, LANDSCAPE, 64),
     "shifted": (camera_scene(shift_x=0.12, shift_y=-0.08), DIFFUSE_LAYERS, LANDSCAPE, 64),
-    "shapes": (shapes, [], LANDSCAPE, 0),
+    "shapes": (shapes, [], "240x135", 0),
 }
 for fit in ("AUTO", "HORIZONTAL", "VERTICAL"):
     for way, pixels in (("landscape", LANDSCAPE), ("portrait", PORTRAIT)):

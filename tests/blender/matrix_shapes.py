@@ -18,7 +18,7 @@ def add(name, data, material):
     if not data.materials:
         data.materials.append(material)
     thing.location = (APART * (number % COLUMNS - 2), 0.0, APART * (number // COLUMNS))
-    thing.rotation_euler = Euler((0.3, 0.2, 0.4))
+    thing.rotation_euler = Euler((0.9, 0.2, 0.4))
     scene.collection.objects.link(thing)
     return thing
 
@@ -129,6 +129,8 @@ def build(material):
     add_sheet(material)
     add_mesh("Bent", bent, material, False)
     add_mesh("Soft", bent, material, True)
+    for face in add_mesh("Mixed", bent, material, True).data.polygons:
+        face.use_smooth = face.index % 3 > 0
     add_auto_smooth("Auto", material)
     own = add_auto_smooth("Own", material).data
     own.normals_split_custom_set_from_vertices(
@@ -143,6 +145,6 @@ def build(material):
     add("Twisted", curve, material).modifiers.new("Twist", "SIMPLE_DEFORM").angle = 1.5
     camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
     bpy.context.scene.collection.objects.link(camera)
-    camera.data.type, camera.data.ortho_scale = "ORTHO", 7.8
-    camera.location, camera.rotation_euler = (0, -10, 1.5), Euler((math.pi / 2, 0, 0))
+    camera.data.type, camera.data.ortho_scale = "ORTHO", 8.4
+    camera.location, camera.rotation_euler = (0, -10, APART), Euler((math.pi / 2, 0, 0))
     bpy.context.scene.camera = camera
