@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 import bpy
 
+import export_normals
 from blend_common import camera_rank, cameras_of, can_be_looked_through, note_crooked_camera
 
 MESH_TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
@@ -30,6 +31,7 @@ class FlatScene:
     lamps: list = field(default_factory=list)
     cameras: list = field(default_factory=list)  # the active one first
     materials: dict = field(default_factory=dict)  # by the key that MaterialKey gives
+    normals: dict = field(default_factory=dict)  # of metaballs' vertices, by the object's full name
 
 
 def material_key(material):
@@ -121,6 +123,8 @@ def mesh_key(instance, depsgraph):
     thing = instance.object
     slots = tuple(material_key(slot.material) for slot in thing.material_slots)
     original = thing.original
+    if thing.type != "MESH":
+        return ("made", original.name_full, slots)  # each object has triangles of its own, whoever shares the curve
     plain = original.type == "MESH" and original.data is not None and not original.modifiers
     if plain and not original.data.shape_keys and not is_generated(instance, depsgraph):
         return ("plain", original.data.name_full, slots)
@@ -161,7 +165,7 @@ def flatten(scene, view_layer, unsupported):
     show_as_rendered(scene, view_layer)
     depsgraph = view_layer.depsgraph
     depsgraph.update()
-    flat, meshes = FlatScene(), {}
+    flat, meshes = FlatScene(normals=export_normals.of_metaballs(depsgraph)), {}
     for instance, name in every_instance(depsgraph):
         place_object(flat, meshes, instance, name, depsgraph, unsupported)
     order_cameras(flat, scene, unsupported)
@@ -207,6 +211,7 @@ def place_mesh(flat, meshes, placed, instance, depsgraph):
     key = mesh_key(instance, depsgraph)
     if key not in meshes:
         mesh = new_mesh(instance, depsgraph)
+        export_normals.match_cycles(mesh, flat.normals.get(thing.original.name_full))
         meshes[key] = mesh if len(mesh.polygons) else None
         if meshes[key]:
             mesh.name = f"scumble.{len(meshes):06d}"

@@ -1,7 +1,7 @@
 // Loads OpenImageIO, in a module, when a file first needs it. Loading that library with its dependencies takes a fifth
 // of a second of symbol lookup. A PNG picture of a scene without EXR or JPEG needs none of it. Scumble's own guides and
-// written EXR pictures do not either: core/io/exr/scanline_exr.h serves them. All other code calls the functions of
-// picture_file.h, channel_file.h, guide_file.h and existing_output.h.
+// written EXR and TIFF pictures do not either: core/io/exr/scanline_exr.h and core/io/picture/tiff_writer.h serve them.
+// All other code calls the functions of picture_file.h, channel_file.h, guide_file.h and existing_output.h.
 #pragma once
 
 #include <cstddef>
@@ -41,8 +41,8 @@ Expected<Picture> DecodePicture(std::span<const std::byte> bytes, const std::str
 Expected<PictureHeader> InspectPicture(const std::filesystem::path& path);
 Expected<PictureHeader> InspectEncoded(std::span<const std::byte> bytes, const std::string& name);  // in memory
 Expected<StoredPicture> InspectStored(const std::filesystem::path& path);
-Expected<std::vector<std::byte>> EncodePicture(const std::filesystem::path& path, const Picture& picture,
-                                               const PictureWriteOptions& options);
+Expected<std::vector<std::byte>> EncodeJpeg(const std::filesystem::path& path, const Picture& picture,
+                                            const PictureWriteOptions& options);
 Expected<ChannelImage> ReadChannels(const std::filesystem::path& path);
 Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideReadOptions& options);
 Expected<GuideFileInfo> InspectGuides(const std::filesystem::path& path);
@@ -73,7 +73,7 @@ struct Formats {
   decltype(&formats::InspectPicture) inspect_picture;
   decltype(&formats::InspectEncoded) inspect_encoded;
   decltype(&formats::InspectStored) inspect_stored;
-  decltype(&formats::EncodePicture) encode_picture;
+  decltype(&formats::EncodeJpeg) encode_jpeg;
   decltype(&formats::ReadChannels) read_channels;
   decltype(&formats::ReadGuides) read_guides;
   decltype(&formats::InspectGuides) inspect_guides;

@@ -11,6 +11,7 @@
 #include "core/io/format_dispatch.h"
 #include "core/io/guide_file.h"
 #include "core/io/picture/open_raster.h"
+#include "core/io/picture/tiff_writer.h"
 #include "core/io/picture_rules.h"
 #include "core/io/png/png_integrity.h"
 #include "core/io/png/png_reader.h"
@@ -120,16 +121,21 @@ Expected<std::uint64_t> CountPixels(std::span<const std::byte> bytes, const std:
 
 Status WritePicture(const std::filesystem::path& path, const Picture& picture, const PictureWriteOptions& options) {
   SCUMBLE_RETURN_IF_ERROR(CheckPictureTarget(path, options));
-  // The picture library's error for an empty picture serves all formats.
-  if (internal::Upper(path.extension().string()) == ".PNG" && !picture.empty()) {
-    return WriteFileAtomically(path, Png(picture, options));
-  }
-  if (internal::Upper(path.extension().string()) == ".EXR") {
+  if (picture.empty()) return OutputError("cannot write " + path.string() + ": the picture is empty");
+  const std::string ending = internal::Upper(path.extension().string());
+  if (ending == ".PNG") return WriteFileAtomically(path, Png(picture, options));
+  if (ending == ".EXR") {
     SCUMBLE_ASSIGN(const auto encoded, Exr(path.string(), picture, options));
     return WriteFileAtomically(path, encoded);
   }
+  if (ending == ".TIF" || ending == ".TIFF") {
+    SCUMBLE_ASSIGN(
+        const auto encoded,
+        internal::EncodeTiff(path.string(), picture, {options.bits, options.grey, options.dpi, internal::IoThreads()}));
+    return WriteFileAtomically(path, encoded);
+  }
   SCUMBLE_ASSIGN(const Formats* const formats, LoadFormats(path.string()));
-  SCUMBLE_ASSIGN(const std::vector<std::byte> encoded, formats->encode_picture(path, picture, options));
+  SCUMBLE_ASSIGN(const std::vector<std::byte> encoded, formats->encode_jpeg(path, picture, options));
   return WriteFileAtomically(path, encoded);
 }
 

@@ -60,7 +60,8 @@ bool NeedsModule(const std::string& output) {
   const std::size_t dot = output.rfind('.');
   std::string ending = dot == std::string::npos ? "" : output.substr(dot);
   std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-  return !ending.empty() && ending != ".png" && ending != ".exr";  // a plan has no output
+  return !ending.empty() && ending != ".png" && ending != ".exr" && ending != ".tif" &&
+         ending != ".tiff";  // a plan has no output
 }
 
 // Of a pixel of the picture, to encode it; without the file's module.

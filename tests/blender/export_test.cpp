@@ -308,6 +308,7 @@ TEST(BlenderObjects, InstancesShareTheirMesh) {
   for (const char* name : {"Two", "Mirrored", "Stretched"}) EXPECT_EQ(meshes[name], meshes["One"]) << name;
   EXPECT_EQ(meshes["First/Member"], meshes["Second/Member"]);
   EXPECT_NE(meshes["Smooth"], meshes["One"]);
+  EXPECT_NE(meshes["Words"], meshes["MoreWords"]) << "one text in two objects, one of them with a modifier";
   EXPECT_EQ(meshes.count("Scatter/Leaf#8"), 1u) << "one for each corner of the instancer";
   EXPECT_THAT(scene.warnings, testing::ElementsAre(AllOf(HasSubstr("'Strands'"), HasSubstr("left out"))));
 }

@@ -244,6 +244,9 @@ def objects():
     shaped.data.shape_keys.key_blocks["Up"].value = 0.5
     text = link(bpy.data.objects.new("Words", bpy.data.curves.new("Words", "FONT")))
     text.data.body, text.location = "A", (6, 16, 0)
+    more = link(bpy.data.objects.new("MoreWords", text.data))  # the same text, other triangles
+    more.location = (12, 16, 0)
+    more.modifiers.new("Array", "ARRAY").count = 2
     scatter = cube("Scatter", (0, 20, 0), plain)
     cube("Leaf", (0, 0, 0), plain).parent = scatter
     scatter.instance_type = "VERTS"
@@ -295,7 +298,7 @@ def bounds():
         name = instance.object.original.name
         if name in {"Hidden", "InHidden", "Strands"} or (name == "Scatter" and not instance.is_instance):
             continue
-        if instance.object.type not in {"MESH", "FONT"} or (name == "Words" and instance.is_instance):
+        if instance.object.type not in {"MESH", "FONT"} or (name.endswith("Words") and instance.is_instance):
             continue  # the text's mesh is listed again behind the text
         mesh = instance.object.to_mesh()
         points = [instance.matrix_world @ vertex.co for vertex in mesh.vertices]

@@ -19,6 +19,10 @@ import bpy
 import numpy as np
 from mathutils import Euler, Vector
 
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+import matrix_shapes  # noqa: E402  (Blender does not put a script's own folder on the path)
+
 LANDSCAPE, PORTRAIT = "160x90", "90x160"
 
 
@@ -371,6 +375,10 @@ def camera_scene(**settings):
     return build
 
 
+def shapes():
+    matrix_shapes.build(material("diffuse", (0.5, 0.5, 0.5)))
+
+
 DIFFUSE_LAYERS = ["full", "LDE", "LDDE", "LD12E"]
 SCENES = {  # builder, layers, size, samples
     "emissive": (emissive, DIFFUSE_LAYERS, LANDSCAPE, 256),
@@ -383,6 +391,7 @@ SCENES = {  # builder, layers, size, samples
     "principled": (principled, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 128),
     "orthographic": (camera_scene(type="ORTHO", ortho_scale=6.0), DIFFUSE_LAYERS, LANDSCAPE, 64),
     "shifted": (camera_scene(shift_x=0.12, shift_y=-0.08), DIFFUSE_LAYERS, LANDSCAPE, 64),
+    "shapes": (shapes, [], "240x135", 0),
 }
 for fit in ("AUTO", "HORIZONTAL", "VERTICAL"):
     for way, pixels in (("landscape", LANDSCAPE), ("portrait", PORTRAIT)):

@@ -11,7 +11,7 @@ extern "C" {
 __attribute__((visibility("default"))) extern const Formats SCUMBLE_JOINED(scumble_formats_, SCUMBLE_MODULE_SYMBOL);
 const Formats SCUMBLE_JOINED(scumble_formats_, SCUMBLE_MODULE_SYMBOL) = {
     kFormatsLayout,          formats::ReadPicture,   formats::DecodePicture, formats::InspectPicture,
-    formats::InspectEncoded, formats::InspectStored, formats::EncodePicture, formats::ReadChannels,
+    formats::InspectEncoded, formats::InspectStored, formats::EncodeJpeg,    formats::ReadChannels,
     formats::ReadGuides,     formats::InspectGuides, formats::SetThreads,
 };
 }

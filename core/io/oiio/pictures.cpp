@@ -17,8 +17,6 @@ namespace scumble::formats {
 using internal::Upper;
 namespace {
 
-using Bytes = Expected<std::vector<std::byte>>;
-
 // The channel of each colour; -1 where there is none.
 struct ColorChannels {
   int r = -1, g = -1, b = -1, a = -1;
@@ -185,58 +183,6 @@ Expected<Picture> ReadFrom(OIIO::ImageInput& input, const std::string& name) {
       [&](const std::uint16_t* pixel, std::uint16_t* out) { decoder.Encoded(pixel, out); });
 }
 
-OIIO::ImageSpec EncodedSpec(const Picture& picture, int channels, const PictureWriteOptions& options) {
-  const auto type = options.bits == 8 ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::UINT16;
-  OIIO::ImageSpec spec(picture.width, picture.height, channels, type);
-  spec.attribute("oiio:ColorSpace", "sRGB");
-  if (channels == 4) spec.attribute("oiio:UnassociatedAlpha", 1);
-  spec.attribute("CompressionQuality", options.jpeg_quality);
-  if (options.dpi > 0) {
-    spec.attribute("XResolution", static_cast<float>(options.dpi));
-    spec.attribute("YResolution", static_cast<float>(options.dpi));
-    spec.attribute("ResolutionUnit", "in");
-  }
-  return spec;
-}
-
-Bytes EncodeTiff(const std::filesystem::path& path, const Picture& picture, const PictureWriteOptions& options) {
-  OIIO::ImageSpec spec = EncodedSpec(picture, options.grey ? 1 : 4, options);
-  // OpenImageIO 2.4 corrupts the second directory that would mark a TIFF as sRGB; integers are sRGB without it.
-  spec.erase_attribute("oiio:ColorSpace");
-  if (options.grey) {
-    std::vector<std::uint16_t> grey(picture.rgba.size() / 4);
-    for (std::size_t i = 0; i < grey.size(); ++i) grey[i] = picture.rgba[4 * i];
-    return internal::Encode(
-        path, spec, [&](OIIO::ImageOutput& output) { return output.write_image(OIIO::TypeDesc::UINT16, grey.data()); });
-  }
-  if (options.bits == 8) {
-    const std::vector<std::uint8_t> bytes = In8Bits(picture);
-    return internal::Encode(
-        path, spec, [&](OIIO::ImageOutput& output) { return output.write_image(OIIO::TypeDesc::UINT8, bytes.data()); });
-  }
-  return internal::Encode(path, spec, [&](OIIO::ImageOutput& output) {
-    return output.write_image(OIIO::TypeDesc::UINT16, picture.rgba.data());
-  });
-}
-
-// JPEG has no alpha: transparent pixels become white paper, blended in linear light.
-Bytes EncodeOnWhite(const std::filesystem::path& path, const Picture& picture, PictureWriteOptions options) {
-  options.bits = 8;
-  std::vector<std::uint8_t> bytes(std::size_t(3) * picture.width * picture.height);
-  for (std::size_t i = 0; i < bytes.size() / 3; ++i) {
-    const std::uint16_t* pixel = picture.rgba.data() + 4 * i;
-    const float alpha = static_cast<float>(pixel[3]) / 65535.0f;
-    for (int c = 0; c < 3; ++c) {
-      const std::uint16_t value =
-          pixel[3] == 65535 ? pixel[c] : Srgb16FromLinear(Srgb16ToLinear(pixel[c]) * alpha + (1.0f - alpha));
-      bytes[3 * i + c] = static_cast<std::uint8_t>((value + 128u) / 257u);
-    }
-  }
-  return internal::Encode(path, EncodedSpec(picture, 3, options), [&](OIIO::ImageOutput& output) {
-    return output.write_image(OIIO::TypeDesc::UINT8, bytes.data());
-  });
-}
-
 // The JPEG reader fills missing data with grey and reports no error. So the markers are followed here, from segment to
 // segment and through the coded data, up to the end marker (ITU-T T.81, annex B).
 Status CheckJpegIntegrity(std::span<const std::byte> bytes, const std::string& name) {
@@ -312,10 +258,30 @@ Expected<StoredPicture> InspectStored(const std::filesystem::path& path) {
                        std::string(spec.get_string_attribute(kSettingsKey))};
 }
 
-Bytes EncodePicture(const std::filesystem::path& path, const Picture& picture, const PictureWriteOptions& options) {
-  const std::string ending = Upper(path.extension().string());
-  if (ending == ".JPG" || ending == ".JPEG") return EncodeOnWhite(path, picture, options);
-  return EncodeTiff(path, picture, options);
+// JPEG has no alpha: transparent pixels become white paper, blended in linear light.
+Expected<std::vector<std::byte>> EncodeJpeg(const std::filesystem::path& path, const Picture& picture,
+                                            const PictureWriteOptions& options) {
+  constexpr int kChannels = 3;
+  std::vector<std::uint8_t> bytes(std::size_t(kChannels) * picture.width * picture.height);
+  for (std::size_t i = 0; i < bytes.size() / kChannels; ++i) {
+    const std::uint16_t* pixel = picture.rgba.data() + 4 * i;
+    const float alpha = static_cast<float>(pixel[3]) / 65535.0f;
+    for (int c = 0; c < kChannels; ++c) {
+      const std::uint16_t value =
+          pixel[3] == 65535 ? pixel[c] : Srgb16FromLinear(Srgb16ToLinear(pixel[c]) * alpha + (1.0f - alpha));
+      bytes[kChannels * i + c] = static_cast<std::uint8_t>((value + 128u) / 257u);
+    }
+  }
+  OIIO::ImageSpec spec(picture.width, picture.height, kChannels, OIIO::TypeDesc::UINT8);
+  spec.attribute("oiio:ColorSpace", "sRGB");
+  spec.attribute("CompressionQuality", options.jpeg_quality);
+  if (options.dpi > 0) {
+    spec.attribute("XResolution", static_cast<float>(options.dpi));
+    spec.attribute("YResolution", static_cast<float>(options.dpi));
+    spec.attribute("ResolutionUnit", "in");
+  }
+  return internal::Encode(
+      path, spec, [&](OIIO::ImageOutput& output) { return output.write_image(OIIO::TypeDesc::UINT8, bytes.data()); });
 }
 
 }  // namespace scumble::formats

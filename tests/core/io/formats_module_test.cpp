@@ -48,12 +48,13 @@ TEST_F(CliModule, OneOfOtherTypesIsRefused) {
   ExpectError({"compare", "g.exr", "g.exr"}, 5, {"cannot be loaded"}, settings_);
 }
 
-TEST_F(CliModule, GuidesAndPicturesInExrNeedNone) {
+TEST_F(CliModule, GuidesAndPicturesThatAreWrittenNeedNone) {
   WriteStyle("style");
   const std::vector<Arguments> commands = {
       {"guidegen", Scene("ball.glb"), "--size", "32", "-o", "g.exr"},
       {"info", "g.exr"},
       {"transfer", "g.exr", "--style", "style", "-o", "p.exr"},
+      {"transfer", "g.exr", "--style", "style", "-o", "p.tif"},
       {"stylize", Scene("ball.glb"), "--style", "style", "--size", "32", "-o", "s.exr"}};
   for (const Arguments& command : commands) {
     const CommandResult without = RunHere(command);
