@@ -22,7 +22,7 @@ namespace {
 constexpr std::size_t kStripBytes = std::size_t(1) << 18;
 
 // The layout of rows in the file.
-struct Layout {
+struct StripLayout {
   const Picture& picture;
   const TiffOptions& options;
   std::size_t channels = options.grey ? 1 : 4;
@@ -44,7 +44,7 @@ void FillDifferences(const T* row, std::size_t samples, std::size_t channels, T*
 }
 
 // Row y as the file has it: differences, the lower byte first. `row` and `out` are room for a row.
-void FillRow(const Layout& layout, int y, std::uint16_t* row, std::uint16_t* differences, std::uint8_t* out) {
+void FillRow(const StripLayout& layout, int y, std::uint16_t* row, std::uint16_t* differences, std::uint8_t* out) {
   const std::uint16_t* const in = layout.picture.At(0, y);
   const std::size_t step = layout.options.grey ? 4 : 1;
   if (layout.options.bits == 16) {
@@ -64,7 +64,7 @@ void FillRow(const Layout& layout, int y, std::uint16_t* row, std::uint16_t* dif
   }
 }
 
-std::vector<std::byte> DeflatedStrip(const Layout& layout, int strip) {
+std::vector<std::byte> DeflatedStrip(const StripLayout& layout, int strip) {
   const int begin = layout.begin(strip), end = layout.end(strip);
   std::vector<std::uint8_t> rows(layout.row_bytes * static_cast<std::size_t>(end - begin));
   std::vector<std::uint16_t> row(layout.samples), differences(layout.samples);
@@ -141,7 +141,7 @@ Tiff OpenTiff(MemoryFile& file, const std::string& name) {
           TIFFClose};
 }
 
-bool SetFields(TIFF* tiff, const Layout& layout) {
+bool SetFields(TIFF* tiff, const StripLayout& layout) {
   const auto set = [&](std::uint32_t tag, auto value) { return TIFFSetField(tiff, tag, value) == 1; };
   constexpr std::uint16_t kStraight[] = {EXTRASAMPLE_UNASSALPHA};
   const bool grey = layout.options.grey;
@@ -172,7 +172,7 @@ bool WriteStrips(TIFF* tiff, std::vector<std::vector<std::byte>>& strips) {
 Expected<std::vector<std::byte>> EncodeTiff(const std::string& name, const Picture& picture,
                                             const TiffOptions& options) {
   SCUMBLE_CHECK(picture.width > 0 && picture.height > 0 && (options.bits == 8 || options.bits == 16));
-  const Layout layout{picture, options};
+  const StripLayout layout{picture, options};
   std::vector<std::vector<std::byte>> strips(static_cast<std::size_t>(layout.strips));
   ForEachIndex(layout.strips, options.threads,
                [&](int strip) { strips[static_cast<std::size_t>(strip)] = DeflatedStrip(layout, strip); });

@@ -79,10 +79,10 @@ TEST(TiffWriter, ChannelsAreReadByNameAsWell) {
   EXPECT_EQ(channels->planes[2][14], static_cast<float>(In8Bits(picture)[4 * 14 + 2]) / 255.0f);
 }
 
-struct Shape {
+struct TiffSize {
   int width, height;
 };
-class TiffShapes : public ::testing::TestWithParam<std::tuple<Shape, int>> {};
+class TiffShapes : public ::testing::TestWithParam<std::tuple<TiffSize, int>> {};
 
 TEST_P(TiffShapes, AnyThreadsSameBytesAndTheyHoldThePicture) {
   const auto [shape, bits] = GetParam();
@@ -102,11 +102,12 @@ TEST_P(TiffShapes, AnyThreadsSameBytesAndTheyHoldThePicture) {
 }
 // A hundred rows of 700 pixels are two strips of 8 bits, and a row of the widest is more than a strip of 16.
 INSTANTIATE_TEST_SUITE_P(All, TiffShapes,
-                         ::testing::Combine(::testing::Values(Shape{1, 1}, Shape{1, 300}, Shape{301, 1}, Shape{2, 2},
-                                                              Shape{37, 23}, Shape{700, 100}, Shape{33000, 2}),
+                         ::testing::Combine(::testing::Values(TiffSize{1, 1}, TiffSize{1, 300}, TiffSize{301, 1},
+                                                              TiffSize{2, 2}, TiffSize{37, 23}, TiffSize{700, 100},
+                                                              TiffSize{33000, 2}),
                                             ::testing::Values(8, 16)),
                          [](const auto& info) {
-                           const Shape shape = std::get<0>(info.param);
+                           const TiffSize shape = std::get<0>(info.param);
                            return std::to_string(shape.width) + "x" + std::to_string(shape.height) + "of" +
                                   std::to_string(std::get<1>(info.param));
                          });
