@@ -50,9 +50,10 @@ struct GuidegenOptions {
   // They share the pixel's first surface, so no layer is averaged across a silhouette.
   int samples = 64;
   // Luminance and shadow only. Above 0: each pixel samples each light with extent 4 times at least (8 at the border of
-  // a 16 × 16 tile), and more often, up to `samples`, until the estimated standard error of its light is not larger
-  // than this share of the light that the lamps it sees would bring without occluders. Neighbours of a shadow's edge
-  // count as on it. 0: `samples` each.
+  // a 16 × 16 tile; 16 where there are more than 8 such lights, and directions that look for a near one), and more
+  // often, up to `samples`, until the estimated standard error of its light is not larger than this share of the light
+  // that the lamps it sees would bring without occluders, together with what it has from lights without extent.
+  // Neighbours of a shadow's edge count as on it. 0: `samples` each.
   double light_error = 0.0;
   // Reflections after the first surface's, 0 … kMaxBounces; 0 is direct light alone, as in Cycles.
   int max_bounces = 8;

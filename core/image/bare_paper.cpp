@@ -31,6 +31,15 @@ bool InCorner(const Picture& picture, int x, int y) {
   return std::sqrt(dx * dx + dy * dy) >= kCornersFrom * picture.width;
 }
 
+template <class Visit>
+void ForEachInCorners(const Picture& picture, const Visit& visit) {
+  for (int y = 0; y < picture.height; ++y) {
+    int left = 0, right = picture.width;
+    for (; left < picture.width && InCorner(picture, left, y); ++left) visit(left, y);
+    for (; right > left && InCorner(picture, right - 1, y); --right) visit(right - 1, y);
+  }
+}
+
 glm::vec3 Median(std::vector<glm::vec3> colors) {
   glm::vec3 median(0.0f);
   const auto middle = colors.begin() + std::ptrdiff_t(colors.size() / 2);
@@ -53,11 +62,7 @@ float Opacity(glm::vec3 color, glm::vec3 paper) { return SmoothStep(kGrain, kFul
 struct Corners {
   double alpha = 0.0, count = 0.0;
   explicit Corners(const Picture& picture) {
-    for (int y = 0; y < picture.height; ++y) {
-      for (int x = 0; x < picture.width; ++x) {
-        if (InCorner(picture, x, y)) alpha += picture.At(x, y)[3] / 65535.0, count += 1.0;
-      }
-    }
+    ForEachInCorners(picture, [&](int x, int y) { alpha += picture.At(x, y)[3] / 65535.0, count += 1.0; });
   }
   bool AreClear() const { return count > 0.0 && alpha < kMostPaintInCorners * count; }
 };
@@ -72,14 +77,12 @@ BarePaper FindBarePaper(const Picture& picture) {
   if (corners.AreClear()) return {BarePaper::Kind::kTransparent, glm::vec3(0.0f)};
   const double count = corners.count;
   std::vector<glm::vec3> colors, by_corner[4];
-  for (int y = 0; y < picture.height; ++y) {
-    for (int x = 0; x < picture.width; ++x) {
-      const std::uint16_t* texel = picture.At(x, y);
-      if (!InCorner(picture, x, y) || texel[3] <= 32767) continue;
-      colors.push_back(Linear(texel));
-      by_corner[(2 * x < picture.width ? 0 : 1) + (2 * y < picture.height ? 0 : 2)].push_back(colors.back());
-    }
-  }
+  ForEachInCorners(picture, [&](int x, int y) {
+    const std::uint16_t* texel = picture.At(x, y);
+    if (texel[3] <= 32767) return;
+    colors.push_back(Linear(texel));
+    by_corner[(2 * x < picture.width ? 0 : 1) + (2 * y < picture.height ? 0 : 2)].push_back(colors.back());
+  });
   // A sheet that is half transparent is no paper.
   if (static_cast<double>(colors.size()) < (1.0 - kMostPaintInCorners) * count) return {};
   const glm::vec3 paper = Median(colors);

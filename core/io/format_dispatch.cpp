@@ -46,7 +46,7 @@ std::vector<fs::path> Folders() {
 }
 
 Error Unusable(const std::string& module, const std::string& what) {
-  return UnavailableError(module + ", which reads and writes EXR, JPEG and TIFF, " + what +
+  return UnavailableError(module + ", which reads EXR, JPEG and TIFF and writes JPEG, " + what +
                           ": build or install scumble again, with all of its files");
 }
 

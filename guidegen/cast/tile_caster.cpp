@@ -168,6 +168,7 @@ void TileCaster::Light(const Tile& tile, SoftLight& soft_light, TileScratch& scr
     });
     batch.Flush(report);
   }
+  static_assert(SoftLight::kTileSide == kTileSide);
   scratch.soft.clear();
   for (int pixel = 0; pixel < kTilePixels; ++pixel) {  // a square after the other: neighbours share packets
     if (TileColumn(pixel) >= tile.width || TileRow(pixel) >= tile.height || !hits.Met(pixel)) continue;

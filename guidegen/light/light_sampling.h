@@ -41,7 +41,8 @@ class LightSet {
   int count() const { return int(analytic_.size() + emitters_.size()); }
   int delta_count() const { return delta_count_; }
   // Whether the lights with extent are so few that the first surface can sample each of them.
-  bool FewHaveExtent() const { return count() - delta_count_ <= 8; }
+  static constexpr int kFewLights = 8;
+  bool FewHaveExtent() const { return count() - delta_count_ <= kFewLights; }
   bool has_emitters() const { return !emitters_.empty(); }
   bool has_extended_analytic() const { return delta_count_ < int(analytic_.size()); }
   bool has_world() const { return world_ != glm::dvec3(0.0); }

@@ -12,9 +12,9 @@ namespace {
 
 constexpr std::size_t kBlockPixels = 16;
 constexpr int kBlockSamples = 8;  // of a term of a pixel: a packet of rays from one point to one light
-constexpr std::size_t kMostTerms = 9;
-constexpr int kGridSide = 16;  // pixels of a tile
-constexpr int kWindow = 2;     // pixels on each side of one whose neighbours' samples count
+constexpr std::size_t kMostTerms = LightSet::kFewLights + 1;
+constexpr int kGridSide = SoftLight::kTileSide;
+constexpr int kWindow = 2;  // pixels on each side of one whose neighbours' samples count
 
 // Where all of fewer samples may miss: directions that look for a lamp, one lamp of many, a lamp that sets.
 constexpr int kLeastSparseSamples = 16;

@@ -42,6 +42,8 @@ struct SoftPixel {
 // Buffers for one thread's tiles. They never change the result. Borrows the scene and the lights.
 class SoftLight {
  public:
+  static constexpr int kTileSide = 16;  // pixels
+
   SoftLight(const EmbreeScene& scene, const LightSet& lights, const SoftLightSettings& settings);
 
   // Lights the pixels of a tile. False if the caller cancelled; the results are then incomplete.

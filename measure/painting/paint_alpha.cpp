@@ -61,6 +61,8 @@ AlphaReport MeasureAlpha(const PaintSheet& sheet) {
   AlphaReport report;
   report.clear_corners = sheet.is_sphere() && FindBarePaper(picture).kind == BarePaper::Kind::kTransparent;
   if (sheet.soft_edge() > sheet.style_rim()) report.soft_edge = sheet.soft_edge();
+  if (not_opaque == 0 && report.soft_edge == 0) return report;
+  report.premultiplied = IsPremultiplied(picture);
   if (not_opaque == 0) return report;
   const std::vector<std::uint8_t> beside = MostlySet(clear, picture.width, picture.height, kEdge, 1e-9);
   std::vector<std::uint8_t> holes = clear;
@@ -72,7 +74,6 @@ AlphaReport MeasureAlpha(const PaintSheet& sheet) {
   const double percent = 100.0 / static_cast<double>(sheet.usable_pixels());
   report.transparent_percent = percent * static_cast<double>(not_opaque);
   report.translucent_percent = percent * static_cast<double>(report.translucent.pixels);
-  report.premultiplied = IsPremultiplied(picture);
   return report;
 }
 

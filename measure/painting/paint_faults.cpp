@@ -237,8 +237,8 @@ void Faults::LookAtPattern() {
 }  // namespace
 
 std::string DescribeSoftEdge(int pixels) {
-  return fmt::format("the edge of the sphere is see-through up to {} pixel{} inside it, and is left out so far", pixels,
-                     pixels == 1 ? "" : "s");
+  return fmt::format("the edge of the sphere is see-through up to {} pixel{} inside it; these pixels are left out",
+                     pixels, pixels == 1 ? "" : "s");
 }
 
 std::vector<PaintFault> FindPaintFaults(const PaintTraits& traits, const PaintFaultContext& context) {

@@ -18,8 +18,8 @@ glm::vec3 LinearOf(const std::uint16_t* texel) {
 
 // The pixel that lies so far from the middle in a direction.
 struct Ray {
-  glm::dvec2 way;
-  glm::dvec2 At(double middle, double distance) const { return glm::dvec2(middle) + distance * way; }
+  glm::dvec2 direction;
+  glm::dvec2 At(double middle, double distance) const { return glm::dvec2(middle) + distance * direction; }
 };
 
 // Whether ground lies between the usable rim and paint of a clearly different colour.

@@ -66,7 +66,7 @@ Status MakeOurs(const CrosscheckRequest& request, const std::string& path, const
   double begin = 0.02;
   constexpr double kOursEnd = 0.3;
   for (const int count : counts) {
-    options.samples = count;
+    options.samples = count, options.samples_given = true;
     options.max_bounces = request.max_bounces;
     const double end = count == counts.back() ? kOursEnd : begin + 0.03;
     SCUMBLE_ASSIGN(SceneGuides light,

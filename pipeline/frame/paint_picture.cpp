@@ -126,13 +126,13 @@ Expected<PreparedStyle> PrepareAndWarn(const Style& style, int height, const Run
 }
 
 // Of exemplars that are used otherwise than as they stand in their files.
-void TellOfExemplars(const Style& style, const RunContext& context) {
+void NoteExemplarUse(const Style& style, const RunContext& context) {
   for (const Exemplar& exemplar : style.exemplars) {
     if (exemplar.cut) context.Note(exemplar.name + ": " + DescribeCut(*exemplar.cut));
     if (exemplar.unclear) context.Warn(exemplar.name + ": " + DescribeUnclear() + "; crop it to the sphere");
     const int soft_edge = exemplar.is_sphere ? SoftEdge(exemplar.picture) : 0;
     if (soft_edge > style.transfer.rim) {
-      context.Warn(fmt::format("{}: {}; --set transfer.rim={} says so, or flatten the picture on its paper",
+      context.Warn(fmt::format("{}: {}; accept this with --set transfer.rim={}, or flatten the picture on its paper",
                                exemplar.name, DescribeSoftEdge(soft_edge), soft_edge));
     }
   }
@@ -193,7 +193,7 @@ Status PrepareFrame(StyleSet& styles, const GuideSet& guides, const PictureReque
   for (std::size_t i = state.prepared.size(); i < styles.styles.size(); ++i) {
     SCUMBLE_RETURN_IF_ERROR(context.CheckNotCancelled());
     SCUMBLE_ASSIGN(PreparedStyle one, PrepareAndWarn(styles.styles[i], height, context));
-    TellOfExemplars(styles.styles[i], context);
+    NoteExemplarUse(styles.styles[i], context);
     for (const auto& [image, what, fix] : EqualLights(styles.styles[i], one)) {
       context.Warn(image + " " + what + ": " + fix);
     }

@@ -109,6 +109,21 @@ TEST(FindSphere, SignaturesDoNotMatter) {
   ExpectFound(sheet, {230, 230, 180}, 1.5);
 }
 
+// An eye, a ball with a ring: two outlines, one in the other, of one sphere.
+TEST(FindSphere, ARingAroundADiscIsOneSphere) {
+  for (const double ground : {kWhite, kNothing}) {
+    const Picture bare = Drawn(512, 512, ground, {});
+    Picture sheet = Drawn(512, 512, ground, {{250, 262, 190}});
+    for (int y = 0; y < 512; ++y) {
+      for (int x = 0; x < 512; ++x) {
+        const double off = std::hypot(x + 0.5 - 250, y + 0.5 - 262);
+        if (off > 110 && off < 150) std::copy_n(bare.At(x, y), 4, sheet.At(x, y));
+      }
+    }
+    ExpectFound(sheet, {250, 262, 190}, 1.5);
+  }
+}
+
 TEST(FindSphere, EllipsesSeveralAndCutOffSpheresAreNone) {
   Ball flat{256, 256, 200};
   flat.squash = 0.85;

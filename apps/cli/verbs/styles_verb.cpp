@@ -62,7 +62,8 @@ Expected<ExitCode> ListKeys(const Globals& globals) {
   }
   const StyleKeyLine of_exemplars[] = {
       {"exemplar.image", "", "picture of the painted sphere, required; in style.toml only"},
-      {"exemplar.guides", "\"\"", "guides of what is painted; empty: a sphere fills the square; in style.toml only"},
+      {"exemplar.guides", "\"\"",
+       "guides of what is painted; empty: a sphere that fills the square or lies in it; in style.toml only"},
       {"exemplar.luminance", "",
        "of its light; left out: measured; --set exemplar.1.luminance=0.8 sets the first one's"}};
   for (const auto& [key, default_value, help] : of_exemplars) {

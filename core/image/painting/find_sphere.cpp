@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <span>
 #include <vector>
@@ -100,9 +101,9 @@ std::vector<std::vector<std::size_t>> Regions(const PaintMask& mask) {
 }
 
 // The circle or ellipse of an outline of paint in a picture.
-class OutlineJudge {
+class OutlineFit {
  public:
-  OutlineJudge(const std::vector<std::uint8_t>& mask, int width, int height)
+  OutlineFit(const std::vector<std::uint8_t>& mask, int width, int height)
       : mask_(mask), width_(width), height_(height), size_(std::min(width, height)) {
     glm::dvec2 towards = MiddleOf(mask, width);
     // From the middle of the paint first, then from that of the circle.
@@ -139,8 +140,8 @@ class OutlineJudge {
  private:
   // Where the square's own circle is far away, an uneven outline cannot be mistaken for it.
   double ToleranceFor(const Circle& circle) const {
-    const double half = 0.5 * size_,
-                 off = std::sqrt(std::pow(circle.x - 0.5 * width_, 2.0) + std::pow(circle.y - 0.5 * height_, 2.0));
+    const double half = 0.5 * size_, dx = circle.x - 0.5 * width_, dy = circle.y - 0.5 * height_;
+    const double off = std::sqrt(dx * dx + dy * dy);
     const double least = std::max(1.0, kLeastTolerance * size_);
     const double apart = width_ == height_ ? std::max(0.0, half - circle.radius + off) : half;
     return std::max(least, std::min(0.25 * apart, kMostTolerance * circle.radius));
@@ -176,7 +177,7 @@ class OutlineJudge {
       const double dy = static_cast<double>(i / std::size_t(width_)) + 0.5 - circle_->y;
       count += dx * dx + dy * dy > beyond * beyond;
     }
-    return count <= kMostBeyond * 3.14159 * circle_->radius * circle_->radius;
+    return count <= kMostBeyond * std::numbers::pi * circle_->radius * circle_->radius;
   }
 
   const std::vector<std::uint8_t>& mask_;
@@ -203,10 +204,13 @@ std::optional<FoundSphere> TwoSpheres(const PaintMask& mask) {
   for (std::size_t k = 0; k < 2; ++k) {
     std::vector<std::uint8_t> alone(mask.values().size(), 0);
     for (const std::size_t i : regions[k]) alone[i] = 1;
-    const OutlineJudge judge(alone, mask.width(), mask.height());
-    if (!judge.IsSure() || judge.Ellipse()) return std::nullopt;
-    circles[k] = *judge.circle();
+    const OutlineFit outline(alone, mask.width(), mask.height());
+    if (!outline.IsSure() || outline.Ellipse()) return std::nullopt;
+    circles[k] = *outline.circle();
   }
+  // One inside the other is one sphere, with a ring or a core.
+  const glm::dvec2 apart(circles[0].x - circles[1].x, circles[0].y - circles[1].y);
+  if (glm::length(apart) < std::max(circles[0].radius, circles[1].radius)) return std::nullopt;
   FoundSphere found{FoundSphere::Kind::kSeveral};
   found.circle = circles[0], found.second = circles[1];
   return found;
@@ -238,16 +242,16 @@ FoundSphere FindSphere(const Picture& picture) {
   const bool clearly_inside = !is_square || gaps.ClearlyInside();
   const FoundSphere unclear{clearly_inside ? Kind::kUnclear : Kind::kFills};
   if (const auto two = TwoSpheres(mask)) return *two;
-  const OutlineJudge judge(values, width, height);
-  if (const auto ellipse = judge.Ellipse(); ellipse && (!is_square || gaps.OppositeBeyond(kFlattened))) {
+  const OutlineFit outline(values, width, height);
+  if (const auto ellipse = outline.Ellipse(); ellipse && (!is_square || gaps.OppositeBeyond(kFlattened))) {
     FoundSphere found{Kind::kEllipse};
     found.longer = ellipse->longer, found.shorter = ellipse->shorter;
     return found;
   }
-  if (!judge.IsSure()) return unclear;
-  const Circle outline{judge.circle()->x, judge.circle()->y, judge.outline_radius()};
-  FoundSphere found{is_square && FillsSquare(outline, width) ? Kind::kFills : Kind::kInside};
-  found.circle = *judge.circle();
+  if (!outline.IsSure()) return unclear;
+  const Circle line{outline.circle()->x, outline.circle()->y, outline.outline_radius()};
+  FoundSphere found{is_square && FillsSquare(line, width) ? Kind::kFills : Kind::kInside};
+  found.circle = *outline.circle();
   return found;
 }
 

@@ -65,16 +65,16 @@ glm::dvec2 OutlineDirection(int i) {
 
 std::vector<glm::dvec2> PaintOutline(const std::vector<std::uint8_t>& mask, int width, int height, glm::dvec2 towards) {
   std::vector<glm::dvec2> points;
-  const auto room = [](double at, double way, int size) {
-    if (way == 0.0) return std::numeric_limits<double>::infinity();
-    return (way > 0.0 ? size - at : at) / std::fabs(way);
+  const auto room = [](double at, double direction, int size) {
+    if (direction == 0.0) return std::numeric_limits<double>::infinity();
+    return (direction > 0.0 ? size - at : at) / std::fabs(direction);
   };
   for (int i = 0; i < kOutlineDirections; ++i) {
-    const glm::dvec2 way = OutlineDirection(i);
-    const double longest = std::min(room(towards.x, way.x, width), room(towards.y, way.y, height)) - 0.5;
+    const glm::dvec2 direction = OutlineDirection(i);
+    const double longest = std::min(room(towards.x, direction.x, width), room(towards.y, direction.y, height)) - 0.5;
     int run = 0, ground = 0;  // in half pixels
     for (double distance = longest; distance > 0.0; distance -= 0.5) {
-      const glm::dvec2 at = towards + distance * way;
+      const glm::dvec2 at = towards + distance * direction;
       const int x = std::clamp(static_cast<int>(at.x), 0, width - 1),
                 y = std::clamp(static_cast<int>(at.y), 0, height - 1);
       if (!mask[std::size_t(y) * width + x]) {
@@ -83,7 +83,7 @@ std::vector<glm::dvec2> PaintOutline(const std::vector<std::uint8_t>& mask, int 
       }
       if (++run < 6) continue;
       // The mask's mean over 3×3 texels moves the outline half a pixel to a pixel outward.
-      if (ground >= 6) points.push_back(towards + (distance + 2.5 - 0.5) * way);
+      if (ground >= 6) points.push_back(towards + (distance + 2.5 - 0.5) * direction);
       break;
     }
   }

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <new>
 
@@ -130,13 +131,14 @@ int KeepError(TIFF*, void* file, const char*, const char* format, va_list argume
 
 using Tiff = std::unique_ptr<TIFF, decltype(&TIFFClose)>;
 
-Tiff OpenTiff(MemoryFile& file, const std::string& name) {
+// Classic TIFF counts bytes with 32 bits; a larger file becomes a BigTIFF.
+Tiff OpenTiff(MemoryFile& file, const std::string& name, std::size_t size) {
   const std::unique_ptr<TIFFOpenOptions, decltype(&TIFFOpenOptionsFree)> options(TIFFOpenOptionsAlloc(),
                                                                                  TIFFOpenOptionsFree);
   if (!options) throw std::bad_alloc();
   TIFFOpenOptionsSetErrorHandlerExtR(options.get(), KeepError, &file);
-  constexpr const char* kWriteLittleEndian = "wl";
-  return {TIFFClientOpenExt(name.c_str(), kWriteLittleEndian, &file, ReadFrom, WriteTo, SeekIn, CloseNothing, SizeOf,
+  const char* const little_endian = size < std::numeric_limits<std::uint32_t>::max() ? "wl" : "wl8";
+  return {TIFFClientOpenExt(name.c_str(), little_endian, &file, ReadFrom, WriteTo, SeekIn, CloseNothing, SizeOf,
                             nullptr, nullptr, options.get()),
           TIFFClose};
 }
@@ -182,7 +184,7 @@ Expected<std::vector<std::byte>> EncodeTiff(const std::string& name, const Pictu
   for (const auto& strip : strips) size += strip.size();
   file.bytes.reserve(size);
   bool written = false;
-  if (const Tiff tiff = OpenTiff(file, name)) {
+  if (const Tiff tiff = OpenTiff(file, name, size)) {
     written = SetFields(tiff.get(), layout) && WriteStrips(tiff.get(), strips);
   }
   if (file.is_out_of_memory) throw std::bad_alloc();
