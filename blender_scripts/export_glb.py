@@ -5,6 +5,7 @@ import math
 import os
 import struct
 
+import export_bends
 from blend_common import GLTF_FROM_BLENDER
 
 LUMENS_PER_WATT = 683.0
@@ -121,5 +122,7 @@ def complete(document, flat, materials, lamps, cameras):
     for material in document.get("materials", []):
         entry = entries[material["name"]]
         material["name"] = entry["name"]
-        material["extras"] = {"scumble": {**entry["extras"], **style_of(entry["material"])}}
+        extras = export_bends.complete(material, entry["extras"])
+        material["extras"] = {"scumble": {**extras, **style_of(entry["material"])}}
         material["doubleSided"] = True
+    export_bends.drop_unused_coat(document)

@@ -7,6 +7,9 @@ becomes a Diffuse surface in the material's viewport colour.
 
 import bpy
 
+import export_bends
+from export_nodes import clear_links, constant, image_fault, previous
+
 PLAIN = {"BSDF_DIFFUSE": "DIFFUSE", "BSDF_GLOSSY": "GLOSSY", "EMISSION": "EMISSION", "BSDF_PRINCIPLED": "PRINCIPLED"}
 CYCLES_DEFAULT = (0.8, 0.8, 0.8)  # Cycles' material of faces without one
 GGX = {"GGX", "MULTI_GGX"}
@@ -14,56 +17,6 @@ GGX = {"GGX", "MULTI_GGX"}
 # Inputs of the Principled node that nothing here can express, and the value at which they do nothing.
 IGNORED = {"Subsurface": 0.0, "Specular": 0.5, "Specular Tint": 0.0, "Anisotropic": 0.0, "Sheen": 0.0, "Clearcoat": 0.0,
            "Transmission": 0.0}
-
-
-def previous(socket):
-    """The socket that feeds this one, past reroutes; None where nothing does."""
-    while socket is not None and socket.is_linked:
-        source = socket.links[0].from_socket
-        if source.node.type != "REROUTE":
-            return None if source.node.mute else source
-        socket = source.node.inputs[0]
-    return None
-
-
-def constant(socket):
-    """The value of an input that is a number or a colour; None where something else feeds it."""
-    source = previous(socket)
-    value = None
-    if source is None:
-        value = socket.default_value
-    elif source.node.type in {"RGB", "VALUE"}:
-        value = source.default_value
-    if value is None or isinstance(value, (int, float)):
-        return value
-    return tuple(value)[:3]
-
-
-def coordinates_fault(socket):
-    """The fault in a texture's coordinates; None where glTF has them."""
-    source = previous(socket)
-    if source is None or source.node.type == "UVMAP":
-        return None
-    if source.node.type == "TEX_COORD" and source.name == "UV":
-        return None
-    if source.node.type == "MAPPING" and source.node.vector_type == "POINT":
-        if all(previous(source.node.inputs[name]) is None for name in ("Location", "Rotation", "Scale")):
-            return coordinates_fault(source.node.inputs["Vector"])
-    return f"node '{source.node.name}' ({source.node.type}) as coordinates"
-
-
-def image_fault(node, data):
-    """The fault in an image texture; None where glTF has it. `data`: it holds numbers, not colours."""
-    if node.image is None:
-        return f"node '{node.name}' without an image"
-    if node.projection != "FLAT" or node.extension == "CLIP":
-        return f"node '{node.name}' with {node.projection} projection and extension {node.extension}"
-    if node.image.source not in {"FILE", "GENERATED"}:
-        return f"node '{node.name}' with an image of source {node.image.source}"
-    space = node.image.colorspace_settings.name
-    if (space == "sRGB") == data or node.image.is_float:
-        return f"node '{node.name}' with an image in {space}{', float' if node.image.is_float else ''}"
-    return coordinates_fault(node.inputs["Vector"])
 
 
 class Reader:
@@ -93,7 +46,7 @@ class Reader:
         source = previous(socket)
         node = source.node
         if node.type == "TEX_IMAGE" and source.name == "Color":
-            fault = image_fault(node, False)
+            fault = image_fault(node, "colour")
             if fault is None:
                 return (1.0, 1.0, 1.0), source
             self.complain(f"{fault} feeds {socket.name}, which keeps its own colour instead")
@@ -134,18 +87,7 @@ def read_plain(kind, node, reader):
         elif node.distribution not in GGX:
             reader.complain(f"distribution {node.distribution} is taken for GGX")
     bsdf["roughness"] = min(max(bsdf["roughness"], 0.0), 1.0)  # as Cycles clamps it
-    if previous(node.inputs["Normal"]) is not None and not is_normal_map(node.inputs["Normal"]):
-        reader.complain(f"node '{previous(node.inputs['Normal']).node.name}' feeds Normal, which is ignored")
     return bsdf, source
-
-
-def is_normal_map(socket):
-    """A tangent-space normal map from an image: glTF's own."""
-    source = previous(socket)
-    if source is None or source.node.type != "NORMAL_MAP" or source.node.space != "TANGENT":
-        return False
-    image = previous(source.node.inputs["Color"])
-    return image is not None and image.node.type == "TEX_IMAGE" and image_fault(image.node, True) is None
 
 
 def keep_or_cut(tree, reader, node, name):
@@ -153,7 +95,7 @@ def keep_or_cut(tree, reader, node, name):
     source = previous(node.inputs[name])
     if source is not None and source.node.type in {"SEPARATE_COLOR", "SEPRGB"}:
         source = previous(source.node.inputs[0])
-    if source is not None and source.node.type == "TEX_IMAGE" and image_fault(source.node, True) is None:
+    if source is not None and source.node.type == "TEX_IMAGE" and image_fault(source.node, "data") is None:
         return None
     value = reader.number(node.inputs[name])
     clear_links(tree, node.inputs[name])
@@ -181,8 +123,6 @@ def read_principled(tree, node, reader):
     for name, nothing in IGNORED.items():
         if previous(node.inputs[name]) is not None or node.inputs[name].default_value != nothing:
             reader.complain(f"Principled {name} is ignored")
-    if previous(node.inputs["Normal"]) is not None and not is_normal_map(node.inputs["Normal"]):
-        reader.complain(f"node '{previous(node.inputs['Normal']).node.name}' feeds Normal, which is ignored")
     alpha = previous(node.inputs["Alpha"])
     if alpha is not None and alpha.node.type != "TEX_IMAGE":
         reader.number(node.inputs["Alpha"])
@@ -190,7 +130,7 @@ def read_principled(tree, node, reader):
     return bsdf, source, alpha is not None or node.inputs["Alpha"].default_value < 1.0
 
 
-def rebuild(copy, bsdf, source, surface, output):
+def rebuild(copy, bsdf, source, bends, surface, output):
     """Puts a Principled node that carries the colour in the place of another surface node."""
     tree = copy.node_tree
     carrier = tree.nodes.new("ShaderNodeBsdfPrincipled")
@@ -204,31 +144,32 @@ def rebuild(copy, bsdf, source, surface, output):
         tree.links.new(source, carrier.inputs["Base Color"])
         if bsdf["type"] == "EMISSION":
             tree.links.new(source, carrier.inputs["Emission"])
-    normal = surface.node.inputs.get("Normal") if surface else None
-    if normal is not None and is_normal_map(normal):
-        tree.links.new(previous(normal), carrier.inputs["Normal"])
+    export_bends.attach(tree, carrier, bends)
     if surface:
         tree.nodes.remove(surface.node)
     tree.links.new(carrier.outputs[0], output.inputs["Surface"])
 
 
 def simplify_nodes(copy, reader):
-    """The extras of a material with nodes, whose copy is made exportable; also whether it has holes."""
+    """The extras of a material with nodes, whose copy is made exportable; what bends its normals; and whether it has
+    holes."""
     output, surface = surface_of(copy)
     if output is not None:
         for name in ("Volume", "Displacement"):
             if previous(output.inputs[name]) is not None:
                 reader.complain(f"its {name.lower()} is ignored")
     kind = PLAIN.get(surface.node.type) if surface else None
+    bends = export_bends.read(surface.node.inputs.get("Normal") if kind else None, reader)
     if kind == "PRINCIPLED":
         bsdf, source, holes = read_principled(copy.node_tree, surface.node, reader)
         if source is None:
             clear_links(copy.node_tree, surface.node.inputs["Base Color"])
             surface.node.inputs["Base Color"].default_value = (*bsdf["color"], 1.0)
+        export_bends.attach(copy.node_tree, surface.node, bends)
     elif kind is not None:
         bsdf, source = read_plain(kind, surface.node, reader)
         holes = False
-        rebuild(copy, bsdf, source, surface, output)
+        rebuild(copy, bsdf, source, bends, surface, output)
     else:
         what = f"node '{surface.node.name}' ({surface.node.type})" if surface else "a surface without a node"
         if surface is None:
@@ -240,22 +181,17 @@ def simplify_nodes(copy, reader):
         source, holes = None, False
         if output is None:
             output = copy.node_tree.nodes.new("ShaderNodeOutputMaterial")
-        rebuild(copy, bsdf, None, surface, output)
+        rebuild(copy, bsdf, None, bends, surface, output)
     if isinstance(source, tuple):
         copy["scumble_color_attribute"] = source[0]
         carrier = surface_of(copy)[1].node.inputs["Base Color"]
         clear_links(copy.node_tree, carrier)
         carrier.default_value = (1.0, 1.0, 1.0, 1.0)
-    return bsdf, holes
-
-
-def clear_links(tree, socket):
-    for link in list(socket.links):
-        tree.links.remove(link)
+    return bsdf, bends, holes
 
 
 def simplify(materials, unsupported):
-    """For each material by its key: {"material": the exporter's, "name": the original's, "extras": …}."""
+    """For each material by its key: {"material": the exporter's, "name": the original's, "extras": …, …}."""
     entries = {}
     for number, (key, material) in enumerate(materials.items()):
         if material is None:
@@ -265,12 +201,12 @@ def simplify(materials, unsupported):
         else:
             copy, name = material.copy(), material.name
         copy.name = f"scumble.{number:06d}"
-        holes, bsdf = False, diffuse(copy.diffuse_color[:3])
+        holes, bends, bsdf = False, export_bends.Bends(), diffuse(copy.diffuse_color[:3])
         if copy.use_nodes and copy.node_tree:
-            bsdf, holes = simplify_nodes(copy, Reader(name, unsupported))
+            bsdf, bends, holes = simplify_nodes(copy, Reader(name, unsupported))
         # These settings are the viewport's; Cycles shows both sides of every surface and always applies alpha.
         copy.use_backface_culling = False
         copy.blend_method = "BLEND" if holes else "OPAQUE"
-        extras = {"bsdf": bsdf, "pass_index": material.pass_index if material else 0}
-        entries[key] = {"material": copy, "name": name, "extras": extras, "exported": copy.name}
+        extras = {"bsdf": bsdf, **bends.extras, "pass_index": material.pass_index if material else 0}
+        entries[key] = {"material": copy, "name": name, "extras": extras, "exported": copy.name, "bends": bends}
     return entries

@@ -36,11 +36,12 @@ def relax(thing):
     return bring_back
 
 
-def drop_other_attributes(mesh):
-    """The exporter is to write ours, and would write every other one as well."""
+def drop_other_attributes(mesh, ours):
+    """The exporter is to write ours, and would write every other one as well. The materials of faces are one, too,
+    which it reads and does not write."""
     colors = {attribute.name for attribute in mesh.color_attributes}
     for name in [attribute.name for attribute in mesh.attributes]:
-        if name in colors or name == ATTRIBUTE:
+        if name in colors or name in ours or name == "material_index":
             continue
         try:
             mesh.attributes.remove(mesh.attributes[name])
@@ -74,6 +75,4 @@ def add_rest_positions(flat, view_layer):
     for undo in bring_back:
         undo()
     view_layer.update()
-    for mesh in {placed.mesh.name: placed.mesh for placed in flat.meshes}.values():
-        drop_other_attributes(mesh)
     return True

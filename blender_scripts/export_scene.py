@@ -29,6 +29,7 @@ import bpy
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import blend_check  # noqa: E402  (Blender does not put a script's own folder on the path)
+import export_bends  # noqa: E402
 import export_flat  # noqa: E402
 import export_glb  # noqa: E402
 import export_lamps  # noqa: E402
@@ -46,6 +47,10 @@ def export(scene, view_layer, output, unsupported):
         blend_check.check_emptiness(scene, view_layer, unsupported)
     has_rest = export_rest.add_rest_positions(flat, view_layer)
     materials = export_materials.simplify(flat.materials, unsupported)
+    has_heights = export_bends.add_exact_v(flat, materials)
+    if has_rest or has_heights:
+        for mesh in {placed.mesh.name: placed.mesh for placed in flat.meshes}.values():
+            export_rest.drop_other_attributes(mesh, {export_rest.ATTRIBUTE, export_bends.ATTRIBUTE})
     world = export_lamps.world_radiance(scene, view_layer, unsupported)
     lamps = [export_lamps.describe_lamp(lamp, unsupported) for lamp in flat.lamps]
     border = export_lamps.describe_border(scene, unsupported)
@@ -56,7 +61,7 @@ def export(scene, view_layer, output, unsupported):
         bpy.ops.export_scene.gltf(
             filepath=str(raw), export_format="GLB", use_active_scene=True, export_yup=True, export_apply=False,
             export_cameras=False, export_lights=False, export_animations=False, export_skins=False, export_morph=False,
-            export_colors=True, export_tangents=False, export_extras=False, export_attributes=has_rest,
+            export_colors=True, export_tangents=False, export_extras=False, export_attributes=has_rest or has_heights,
             export_image_format="AUTO")
         document, binary = export_glb.read(raw)
     export_glb.complete(document, flat, materials, lamps, cameras)

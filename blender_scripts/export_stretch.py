@@ -3,7 +3,8 @@
 Cycles carries the normals of a mesh that stands in one place only into the world, makes them unit there, and then
 interpolates; where a mesh has several users it interpolates first. Under a stretch that is up to half a degree of
 difference between the corners of a coarse mesh. glTF's readers always interpolate first, which is the same once the
-node's matrix is a mere rotation or reflection.
+node's matrix is a mere rotation or reflection. Normal maps lie in the mesh before its stretch, in Cycles, too: a mesh
+with one keeps the stretch in its extras, so that a reader can undo it.
 """
 
 import numpy as np
@@ -21,7 +22,8 @@ def split(matrix):
     left, sizes, right = np.linalg.svd(linear)
     if sizes[2] <= TINY * sizes[0] or sizes[0] - sizes[2] <= TINY * sizes[0]:
         return None
-    return left @ right, right.T @ np.diag(sizes) @ right
+    stretch = right.T @ np.diag(sizes) @ right
+    return left @ right, (stretch + stretch.T) / 2
 
 
 def values_of(document, buffer, accessor):
@@ -57,11 +59,19 @@ def bake(document, binary, nodes):
         if parts is None or any(accessor_users[index] != {number} for _, index in accessors):
             continue
         orthogonal, stretch = parts
+        if any(has_normal_map(document, primitive) for primitive in primitives):
+            document["meshes"][number].setdefault("extras", {})["scumble"] = {"stretch": stretch.ravel().tolist()}
         for name, index in sorted(accessors):
             stretch_accessor(document, buffer, document["accessors"][index], name, stretch)
         matrix[:3, :3] = orthogonal
         node["matrix"] = matrix.T.ravel().tolist()
     return bytes(buffer)
+
+
+def has_normal_map(document, primitive):
+    if "material" not in primitive:
+        return False
+    return "normal" in document["materials"][primitive["material"]].get("extras", {}).get("scumble", {})
 
 
 def stretch_accessor(document, buffer, accessor, name, stretch):

@@ -2,7 +2,7 @@
 
 import bpy
 
-from export_materials import constant
+from export_nodes import constant
 
 SPECULAR = {"BSDF_GLOSSY", "BSDF_ANISOTROPIC", "BSDF_GLASS", "BSDF_REFRACTION"}
 

@@ -30,8 +30,9 @@ void CheckMesh(const Mesh& mesh, const Scene& scene) {
 }
 
 void CheckMaterial(const Material& material, const Scene& scene) {
-  for (const TextureUse* use : {&material.base_color_texture, &material.normal_texture,
-                                &material.metallic_roughness_texture, &material.emission_texture}) {
+  for (const TextureUse* use :
+       {&material.base_color_texture, &material.normal_texture, &material.metallic_roughness_texture,
+        &material.emission_texture, &material.bump.height_texture}) {
     SCUMBLE_CHECK(use->texture < 0 || std::size_t(use->texture) < scene.textures.size());
     SCUMBLE_CHECK(use->uv_set == 0 || use->uv_set == 1);
   }
@@ -147,6 +148,7 @@ std::vector<PlacedObject> PlaceObjects(const Scene& scene, const CameraPose& cam
     const auto material = std::size_t(mesh.material);
     PlacedObject object =
         Place(&mesh, &scene.materials[material], scene.textures, camera.ViewFromObject(instance.world_from_object));
+    object.bump_axis = camera.DirectionToView(object.bump_axis);
     object.object_id = object_ids[i];
     object.material_id = material_ids[material];
     objects.push_back(object);

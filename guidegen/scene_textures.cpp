@@ -77,7 +77,10 @@ std::vector<bool> NeededTextures(const Scene& scene, const GuidegenOptions& opti
       if (asked && use.texture >= 0 && !mesh.uvs[std::size_t(use.uv_set)].empty())
         needed[std::size_t(use.texture)] = true;
     };
-    need(!mesh.tangents.empty(), material.normal_texture);
+    const bool in_object =
+        material.normal_rule == NormalMapRule::kObject || material.normal_rule == NormalMapRule::kBlenderObject;
+    need(in_object || !mesh.tangents.empty(), material.normal_texture);
+    need(true, material.bump.height_texture);
     need(colored || MayHaveHoles(material), material.base_color_texture);
     need(paths && material.bsdf != Bsdf::kDiffuse && material.bsdf != Bsdf::kEmission,
          material.metallic_roughness_texture);

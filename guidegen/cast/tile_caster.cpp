@@ -101,12 +101,12 @@ glm::dvec2 TileCaster::MotionOf(const TileHits& hits, int pixel, const glm::dvec
   return from && to ? *to - *from : glm::dvec2(0.0);
 }
 
-// Pixels that the vector code cannot do: spheres, normal maps, bent normals, degenerate triangles, rays that miss the
-// pixel's centre.
+// Pixels that the vector code cannot do: spheres, normal maps, bumps, bent normals, degenerate triangles, rays that
+// miss the pixel's centre.
 void TileCaster::WritePlain(int pixel, const glm::dvec2& at, TileScratch& scratch) const {
   const TileHits& hits = scratch.hits;
   const PlacedObject& object = scene_.objects()[hits.object[pixel]];
-  const ViewRay ray = view_.camera.Through(at.x, at.y);
+  const ViewRay ray = view_.camera.ThroughWithFootprint(at.x, at.y);
   SurfacePoint point = FindSurfacePoint(object, hits.primitive[pixel], ray);
   if (view_.bends_normals) BendShadingNormal(object, ray, point);
   scratch.guides.depth[pixel] = float(std::max(-point.position.z, 0.0));

@@ -50,11 +50,12 @@ LightPathTracer::Vertex LightPathTracer::MakeVertex(std::uint32_t object, std::u
   if (view_.bends_normals) BendShadingNormal(placed, ray, point);
   point.max_ray_offset = MaxRayOffset(ray, clear_from, point.position);
   const SurfaceBsdf bsdf(placed, primitive, point, glm::normalize(-ray.direction), least_alpha);
-  return {point, bsdf, ShadowRayOrigin(point), object, primitive};
+  const double width = ray.width + ray.spread * glm::length(point.position - ray.origin);
+  return {point, bsdf, ShadowRayOrigin(point), width, ray.spread, object, primitive};
 }
 
 LightPathTracer::First LightPathTracer::FirstVertex(const PathPixel& pixel) const {
-  const ViewRay ray = view_.camera.Through(pixel.at.x, pixel.at.y);
+  const ViewRay ray = view_.camera.ThroughWithFootprint(pixel.at.x, pixel.at.y);
   const Vertex vertex = MakeVertex(pixel.object, pixel.primitive, ray, double(pixel.clear_from), 0.0);
   return {vertex, LobesAt(vertex, follower_.AtEye(), max_bounces_ <= 0)};
 }
@@ -228,8 +229,9 @@ std::optional<LightPathTracer::Vertex> LightPathTracer::Fly(const Vertex& vertex
     if (lit) AddMet(vertex, state, flight, std::numeric_limits<double>::infinity(), sums);
     return std::nullopt;
   }
-  const Vertex next =
-      MakeVertex(hit.hit.geomID, hit.hit.primID, {vertex.origin, flight.direction}, 0.0, RoughenedAlpha(flight.widest));
+  // A reflection keeps the growth of the footprint, and so does Cycles.
+  const ViewRay ray{vertex.origin, flight.direction, vertex.width, vertex.spread};
+  const Vertex next = MakeVertex(hit.hit.geomID, hit.hit.primID, ray, 0.0, RoughenedAlpha(flight.widest));
   if (lit) {
     AddMet(vertex, state, flight, glm::length(next.point.position - vertex.origin), sums);
     AddEmission(vertex, next, state, flight, sums);

@@ -51,6 +51,8 @@ class LightPathTracer {
     SurfacePoint point;
     SurfaceBsdf bsdf;
     glm::dvec3 origin;  // origin of the rays that leave it
+    double width;       // of the pixel's footprint, m, and its growth for each further metre
+    double spread;
     std::uint32_t object;
     std::uint32_t primitive;
   };

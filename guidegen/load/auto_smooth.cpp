@@ -8,7 +8,6 @@
 #include <cmath>
 #include <numeric>
 #include <sstream>
-#include <unordered_map>
 
 #include "core/image/check.h"
 #include "core/image/exact_math.h"
@@ -338,44 +337,20 @@ CornerNormals AutoSmoothNormals(const SmoothingInput& input, double degrees) {
 }
 
 SplitVertices SetCornerNormals(const CornerNormals& normals, Mesh& mesh) {
-  SCUMBLE_CHECK_EQ(normals.of_corners.size(), mesh.triangles.size());
-  const auto vertices = static_cast<std::uint32_t>(mesh.positions.size());
-  constexpr std::uint32_t kNone = ~0u;
-  std::vector<std::uint32_t> first(vertices, kNone);  // the normal that keeps the vertex
-  std::unordered_map<std::uint64_t, std::uint32_t> others;
-  std::vector<std::uint32_t> normal_of(vertices, kNone);
+  mesh.normals.clear();
+  CornerSplit corners = SplitByCorners(normals.of_corners, mesh);
   SplitVertices split;
-  split.sources.resize(vertices);
-  std::iota(split.sources.begin(), split.sources.end(), 0u);
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    for (int i = 0; i < 3; ++i) {
-      const std::uint32_t vertex = mesh.triangles[t][i], normal = normals.of_corners[t][i];
-      if (first[vertex] == kNone) first[vertex] = normal_of[vertex] = normal;
-      if (first[vertex] == normal) continue;
-      const auto [known, is_new] =
-          others.try_emplace(std::uint64_t(vertex) << 32 | normal, static_cast<std::uint32_t>(split.sources.size()));
-      if (is_new) {
-        split.sources.push_back(vertex);
-        normal_of.push_back(normal);
-      }
-      mesh.triangles[t][i] = known->second;
-    }
-  }
-  Split(split.sources, mesh.positions);
-  Split(split.sources, mesh.uvs[0]);
-  Split(split.sources, mesh.uvs[1]);
-  Split(split.sources, mesh.tangents);
-  Split(split.sources, mesh.colors);
-  Split(split.sources, mesh.rest_positions);
+  split.sources = std::move(corners.sources);
   mesh.normals.assign(mesh.positions.size(), glm::vec3(0.0f, 0.0f, 1.0f));
   split.shared.resize(mesh.positions.size());
-  std::vector<std::uint32_t> owner(normals.normals.size(), kNone);
+  std::vector<std::uint32_t> owner(normals.normals.size(), kNoValue);
   for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
     split.shared[v] = v;
-    if (normal_of[v] == kNone) continue;
-    mesh.normals[v] = normals.normals[normal_of[v]];
-    if (owner[normal_of[v]] == kNone) owner[normal_of[v]] = v;
-    split.shared[v] = owner[normal_of[v]];
+    const std::uint32_t normal = corners.values[v];
+    if (normal == kNoValue) continue;
+    mesh.normals[v] = normals.normals[normal];
+    if (owner[normal] == kNoValue) owner[normal] = v;
+    split.shared[v] = owner[normal];
   }
   return split;
 }

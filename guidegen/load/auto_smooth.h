@@ -19,6 +19,7 @@
 #include <string>
 #include <vector>
 
+#include "guidegen/load/split_vertices.h"
 #include "guidegen/scene/scene.h"
 
 namespace scumble {
@@ -55,17 +56,6 @@ struct SplitVertices {
 // Gives a mesh these normals. A vertex whose corners have several is split: the first keeps its number, further ones
 // are appended. All lists of the mesh follow.
 SplitVertices SetCornerNormals(const CornerNormals& normals, Mesh& mesh);
-
-// Repeats the values of vertices that were split, `stride` each. Empty lists stay empty.
-template <class T>
-void Split(std::span<const std::uint32_t> sources, std::vector<T>& values, std::size_t stride = 1) {
-  if (values.empty()) return;
-  const std::size_t before = values.size() / stride;
-  values.reserve(sources.size() * stride);
-  for (std::size_t i = before; i < sources.size(); ++i) {
-    for (std::size_t k = 0; k < stride; ++k) values.push_back(T(values[sources[i] * stride + k]));
-  }
-}
 
 // The choice of a loader, and what it says of it.
 class MissingNormals {

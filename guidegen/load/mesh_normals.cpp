@@ -36,11 +36,6 @@ bool TriangleFrame(std::span<const glm::vec3> positions, const glm::uvec3& trian
   return true;
 }
 
-glm::dvec3 AnyPerpendicular(const glm::dvec3& n) {
-  const glm::dvec3 axis = std::abs(n.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
-  return glm::normalize(axis - n * glm::dot(n, axis));
-}
-
 glm::dvec3 UnitOrZero(const glm::dvec3& v) {
   const double length = glm::length(v);
   return length > 0.0 && std::isfinite(length) ? v / length : glm::dvec3(0.0);
@@ -122,43 +117,6 @@ std::size_t FillNormals(Mesh& mesh) {
     for (std::uint32_t i : bad) mesh.normals[i] = smooth[i];
   }
   return bad.size();
-}
-
-void FillTangents(Mesh& mesh, int uv_set, const glm::mat3& uv_transform) {
-  SCUMBLE_CHECK_EQ(mesh.normals.size(), mesh.positions.size());
-  const std::vector<glm::vec2>& uvs = mesh.uvs[uv_set];
-  SCUMBLE_CHECK_EQ(uvs.size(), mesh.positions.size());
-  std::vector<glm::dvec3> along_u(mesh.positions.size(), glm::dvec3(0.0));
-  std::vector<glm::dvec3> along_v(mesh.positions.size(), glm::dvec3(0.0));
-  const glm::dmat3 transform(uv_transform);
-  for (const glm::uvec3& triangle : mesh.triangles) {
-    glm::dvec3 normal;
-    std::array<double, 3> angles;
-    if (!TriangleFrame(mesh.positions, triangle, normal, angles)) continue;
-    const auto uv_at = [&](unsigned vertex) { return glm::dvec2(transform * glm::dvec3(uvs[vertex], 1.0)); };
-    const glm::dvec3 origin(mesh.positions[triangle.x]);
-    const glm::dvec3 p1 = glm::dvec3(mesh.positions[triangle.y]) - origin;
-    const glm::dvec3 p2 = glm::dvec3(mesh.positions[triangle.z]) - origin;
-    const glm::dvec2 uv1 = uv_at(triangle.y) - uv_at(triangle.x), uv2 = uv_at(triangle.z) - uv_at(triangle.x);
-    const double determinant = uv1.x * uv2.y - uv2.x * uv1.y;
-    if (determinant == 0.0 || !std::isfinite(determinant)) continue;
-    const double sign = determinant > 0.0 ? 1.0 : -1.0;
-    const glm::dvec3 u_axis = UnitOrZero(sign * (p1 * uv2.y - p2 * uv1.y));
-    const glm::dvec3 v_axis = UnitOrZero(sign * (p2 * uv1.x - p1 * uv2.x));
-    for (int i = 0; i < 3; ++i) {
-      along_u[triangle[i]] += angles[i] * u_axis;
-      along_v[triangle[i]] += angles[i] * v_axis;
-    }
-  }
-  mesh.tangents.resize(mesh.positions.size());
-  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-    const glm::dvec3 n(mesh.normals[i]);
-    glm::dvec3 t = UnitOrZero(along_u[i]);
-    t = UnitOrZero(t - n * glm::dot(n, t));
-    if (t == glm::dvec3(0.0)) t = AnyPerpendicular(n);
-    const double w = glm::dot(glm::cross(n, t), along_v[i]) > 0.0 ? -1.0 : 1.0;
-    mesh.tangents[i] = glm::vec4(glm::vec3(t), static_cast<float>(w));
-  }
 }
 
 }  // namespace scumble

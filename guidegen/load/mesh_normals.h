@@ -1,10 +1,9 @@
-// Normals and tangents for meshes whose files give none.
+// Normals for meshes whose files give none.
 //
 // Normals here are smooth; guidegen/load/auto_smooth.h limits that by an angle. They are the sum of the adjoining
 // triangles' normals, each weighted by its angle at the vertex (Thürmer & Wüthrich, "Computing vertex normals from
 // polygonal facets", 1998), so they do not depend on the triangulation.
-// Tangents follow Lengyel, "Computing tangent space basis vectors for an arbitrary mesh", 2001, with the
-// triangles weighted likewise. Sums are in double and in the order of the triangles: the same bits every time.
+// Sums are in double and in the order of the triangles: the same bits every time.
 #pragma once
 
 #include <cstddef>
@@ -32,9 +31,5 @@ bool HasDirection(const glm::vec3& normal);
 // Makes mesh.normals one unit normal per vertex: those given are normalised, missing ones and ones that have no
 // direction become smooth, welded by position. Returns how many given normals were replaced.
 std::size_t FillNormals(Mesh& mesh);
-
-// Computes mesh.tangents from the normals and one of the UV sets, as transformed by `uv_transform`, in glTF's sense:
-// the bitangent cross(normal, tangent) · w points up in the picture, against v. Needs normals and that UV set.
-void FillTangents(Mesh& mesh, int uv_set, const glm::mat3& uv_transform);
 
 }  // namespace scumble

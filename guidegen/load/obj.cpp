@@ -20,6 +20,7 @@
 #include "guidegen/load/mesh_normals.h"
 #include "guidegen/load/mtl_materials.h"
 #include "guidegen/load/obj_parse.h"
+#include "guidegen/load/tangents.h"
 
 namespace scumble {
 namespace {

@@ -118,6 +118,19 @@ ViewRay CameraRays::Through(double x, double y) const {
   return ray;
 }
 
+ViewRay CameraRays::ThroughWithFootprint(double x, double y) const {
+  ViewRay ray = Through(x, y);
+  const glm::dvec2 pixel = 2.0 * step_;
+  if (orthographic_) {
+    ray.width = 0.5 * (pixel.x + pixel.y);
+    return ray;
+  }
+  const glm::dvec3 centre = glm::normalize(ray.direction);
+  const auto side = [&](const glm::dvec3& step) { return glm::length(glm::normalize(ray.direction + step) - centre); };
+  ray.spread = 0.5 * (side({pixel.x, 0.0, 0.0}) + side({0.0, pixel.y, 0.0}));
+  return ray;
+}
+
 std::optional<glm::dvec2> CameraRays::PixelOf(const glm::dvec3& point) const {
   if (!orthographic_ && !(point.z < 0.0)) return std::nullopt;
   const glm::dvec2 plane = orthographic_ ? glm::dvec2(point) : glm::dvec2(point) / -point.z;

@@ -36,6 +36,18 @@ enum class AlphaMode { kOpaque, kMask, kBlend };
 // Fresnel, whose colour is the base colour, and a black surface that only emits.
 enum class Bsdf { kMetallicRoughness, kDiffuse, kGlossy, kEmission };
 
+// How a normal map's value becomes a normal (surface/normal_map.h): by glTF's rule, or as Cycles' Normal Map node has
+// it in tangent space, in object space, and in the object space of Blender's old renderer.
+enum class NormalMapRule { kGltf, kTangent, kObject, kBlenderObject };
+
+// A height over the surface that bends the normal, as Cycles' Bump node. The height is the texel's luminance.
+struct Bump {
+  TextureUse height_texture;
+  bool srgb = false;      // the texels are colours, and their luminance is that of the decoded ones
+  float distance = 1.0f;  // m, that the surface rises from height 0 to 1; negative: it sinks
+  float strength = 1.0f;  // 0 or more; 1: the normal of the risen surface, 0: no bump
+};
+
 // Textures are kept as their pictures are stored; colours are decoded from sRGB when sampled, normals are not.
 // UV (0, 0) is the picture's top left corner, as in glTF; loaders of other formats flip v.
 struct Material {
@@ -43,7 +55,9 @@ struct Material {
   glm::vec4 base_color{1.0f};  // linear
   TextureUse base_color_texture;
   TextureUse normal_texture;
-  float normal_scale = 1.0f;
+  float normal_scale = 1.0f;  // Cycles' rules: the Normal Map node's strength
+  NormalMapRule normal_rule = NormalMapRule::kGltf;
+  Bump bump;  // on the mapped normal
   AlphaMode alpha_mode = AlphaMode::kOpaque;
   float alpha_cutoff = 0.5f;
   bool double_sided = true;
@@ -69,6 +83,9 @@ struct Mesh {
   std::vector<glm::uvec3> triangles;
   // The undeformed shape, in the file's own space: the layer `pref`. Empty: equal to `positions`.
   std::vector<glm::vec3> rest_positions;
+  // Symmetric. Positions and normals are the object's after this stretch. Normal maps and tangents belong to the object
+  // before it, as in Cycles where a mesh has one user.
+  glm::dmat3 stretch{1.0};
   int material = 0;  // index into Scene::materials, always valid
 };
 

@@ -13,6 +13,10 @@ inline constexpr double kLargestInRay = 0x1.9p60;
 struct ViewRay {
   glm::dvec3 origin{0.0};
   glm::dvec3 direction{0.0, 0.0, -1.0};
+  // The width of the pixel's footprint at the origin, m, and its growth for each metre: the distance over which bumps
+  // are measured. 0: unknown, and bumps are flat.
+  double width = 0.0;
+  double spread = 0.0;
 };
 
 }  // namespace scumble

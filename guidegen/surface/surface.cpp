@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "guidegen/surface/interpolate.h"
+#include "guidegen/surface/normal_map.h"
 #include "guidegen/surface/texture.h"
 #include "guidegen/surface/work_counters.h"
 
@@ -11,16 +13,6 @@ namespace scumble {
 namespace {
 
 glm::dvec3 DirectionToEye(const ViewRay& ray) { return glm::normalize(-ray.direction); }
-
-template <class T>
-auto Interpolate(const std::vector<T>& values, const glm::uvec3& triangle, const glm::dvec2& barycentric) {
-  const T a = values[triangle.x];
-  const T b = values[triangle.y];
-  const T c = values[triangle.z];
-  const float v = float(barycentric.x);
-  const float w = float(barycentric.y);
-  return a * (1.0f - v - w) + b * v + c * w;
-}
 
 // The point of a triangle's edge with the least distance from the ray's line.
 struct EdgePlace {
@@ -92,12 +84,6 @@ glm::dvec3 Mix(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, co
   return a + (b - a) * barycentric.x + (c - a) * barycentric.y;
 }
 
-const Picture* FindTexture(const PlacedObject& object, const TextureUse& use) {
-  if (use.texture < 0 || std::size_t(use.texture) >= object.textures.size() || !object.mesh) return nullptr;
-  if (object.mesh->uvs[use.uv_set].empty()) return nullptr;
-  return &object.textures[use.texture];
-}
-
 // Object space, not normalised.
 glm::dvec3 ObjectNormal(const PlacedObject& object, const glm::uvec3& triangle, const glm::dvec2& barycentric) {
   if (object.mesh->normals.empty()) return glm::dvec3(0.0);
@@ -106,24 +92,6 @@ glm::dvec3 ObjectNormal(const PlacedObject& object, const glm::uvec3& triangle, 
 
 // False for NaN.
 bool IsLongEnough(const glm::dvec3& normal) { return glm::dot(normal, normal) > kShortestNormal * kShortestNormal; }
-
-// In object space, before any scale bends it, as Cycles does. `normal` is the object's, long enough, and the result if
-// there is no tangent.
-glm::dvec3 MappedNormal(const PlacedObject& object, const glm::uvec3& triangle, const glm::dvec2& barycentric,
-                        const glm::dvec3& normal) {
-  const Mesh& mesh = *object.mesh;
-  const TextureUse& use = object.material->normal_texture;
-  const glm::vec4 texel =
-      SampleRaw(*FindTexture(object, use), use, Interpolate(mesh.uvs[use.uv_set], triangle, barycentric));
-  const glm::dvec3 bend = glm::dvec3(texel) * 2.0 - 1.0;
-  const glm::dvec4 tangent4 = Interpolate(mesh.tangents, triangle, barycentric);
-  const glm::dvec3 unit = glm::normalize(normal);
-  glm::dvec3 tangent = glm::dvec3(tangent4) - unit * glm::dot(unit, glm::dvec3(tangent4));
-  if (!MakeUnit(tangent)) return normal;
-  const glm::dvec3 bitangent = glm::cross(unit, tangent) * (tangent4.w < 0.0 ? -1.0 : 1.0);
-  const double strength = object.material->normal_scale;
-  return tangent * (bend.x * strength) + bitangent * (bend.y * strength) + unit * bend.z;
-}
 
 SurfacePoint FindTrianglePoint(const PlacedObject& object, std::uint32_t primitive, const ViewRay& ray) {
   const glm::uvec3& corners = object.mesh->triangles[primitive];
@@ -148,8 +116,15 @@ SurfacePoint FindTrianglePoint(const PlacedObject& object, std::uint32_t primiti
   };
   const glm::dvec3 normal = ObjectNormal(object, corners, point.barycentric);
   point.normal = shading(normal);
-  if (!HasNormalMap(object) || !IsLongEnough(normal)) return point;
-  const glm::dvec3 mapped = shading(MappedNormal(object, corners, point.barycentric, normal));
+  if (!ChangesNormals(object) || !IsLongEnough(normal)) return point;
+  glm::dvec3 mapped = point.normal;
+  if (HasNormalMap(object)) {
+    mapped = MixedNormal(object, shading(MappedNormal(object, corners, point.barycentric)), point.normal);
+  }
+  if (HasBump(object)) {
+    const double width = ray.width + ray.spread * glm::length(point.position - ray.origin);
+    mapped = BumpedNormal(object, corners, triangle, {point.barycentric, point.facing, side, width}, mapped);
+  }
   if (mapped == point.normal) return point;
   point.smooth_normal = point.normal;
   point.normal = mapped;
@@ -193,10 +168,6 @@ bool MakeUnit(glm::dvec3& v) {
   if (!std::isfinite(v.x + v.y + v.z) || !(largest > 0.0)) return false;
   v = glm::normalize(v / largest);
   return true;
-}
-
-bool HasNormalMap(const PlacedObject& object) {
-  return FindTexture(object, object.material->normal_texture) && !object.mesh->tangents.empty();
 }
 
 glm::dvec3 RestPosition(const PlacedObject& object, std::uint32_t primitive, const glm::dvec2& barycentric) {

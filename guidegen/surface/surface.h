@@ -25,6 +25,10 @@ struct PlacedObject {
   glm::dmat3 view_from_normal{1.0};  // the inverse transpose up to a positive factor, defined for flat objects too
   double winding = 1.0;              // −1 where the matrix mirrors and triangles turn their back
 
+  // View space, of any length: the axis (1, 1, 1) of Blender's world. Cycles takes it to the plane of a triangle for
+  // the first of the two directions in which it measures a bump.
+  glm::dvec3 bump_axis{1.0, 1.0, -1.0};
+
   bool reaches_far = false;  // set by EmbreeScene, if rays of light will be cast
 };
 
@@ -73,9 +77,6 @@ SurfacePoint FindSurfacePoint(const PlacedObject& object, std::uint32_t primitiv
 
 // The place of a point of a mesh's triangle before any deformation, object space.
 glm::dvec3 RestPosition(const PlacedObject& object, std::uint32_t primitive, const glm::dvec2& barycentric);
-
-// Whether the shading normal is more than the corners' normals, interpolated.
-bool HasNormalMap(const PlacedObject& object);
 
 // Interpolated unit normals shorter than this have cancelled out: only rounding is left.
 inline constexpr double kShortestNormal = 1e-6;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "guidegen/surface/normal_map.h"
+
 namespace scumble {
 namespace {
 
@@ -23,7 +25,7 @@ std::vector<ObjectRecord> MakeObjectRecords(std::span<const PlacedObject> object
     record.winding = object.winding;
     record.object_id = float(object.object_id);
     record.material_id = float(object.material_id);
-    record.interpolates = object.mesh && !object.mesh->normals.empty() && !HasNormalMap(object);
+    record.interpolates = object.mesh && !object.mesh->normals.empty() && !ChangesNormals(object);
     records.push_back(record);
   }
   return records;

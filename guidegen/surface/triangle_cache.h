@@ -15,7 +15,7 @@ struct ObjectRecord {
   double winding;
   float object_id;
   float material_id;
-  // Only a triangle's corners determine its surface: no sphere, no normal map, no missing normals.
+  // Only a triangle's corners determine its surface: no sphere, no normal map or bump, no missing normals.
   bool interpolates;
 };
 std::vector<ObjectRecord> MakeObjectRecords(std::span<const PlacedObject> objects);

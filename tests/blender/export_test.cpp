@@ -239,13 +239,58 @@ TEST(BlenderMaterials, TexturesAndPaintStay) {
   }
 }
 
+TEST(BlenderMaterials, NormalMapsAndBumpsComeOver) {
+  const Scene scene = Loaded("materials");
+  const Material& both = Named(scene.materials, "BumpOnMap");
+  EXPECT_GE(both.normal_texture.texture, 0);
+  EXPECT_EQ(both.normal_rule, NormalMapRule::kTangent);
+  EXPECT_EQ(both.normal_scale, 0.5f);
+  EXPECT_EQ(both.bump.height_texture.texture, both.normal_texture.texture);
+  EXPECT_EQ(both.bump.strength, 0.75f);
+  EXPECT_EQ(both.bump.distance, -0.5f) << "inverted";
+  EXPECT_FALSE(both.bump.srgb);
+  const Material& painted = Named(scene.materials, "PaintedBump");
+  EXPECT_LT(painted.normal_texture.texture, 0);
+  EXPECT_GE(painted.bump.height_texture.texture, 0);
+  EXPECT_EQ(painted.bump.distance, -0.5f);
+  EXPECT_TRUE(painted.bump.srgb);
+  const Material& of_object = Named(scene.materials, "ObjectMap");
+  EXPECT_EQ(of_object.normal_rule, NormalMapRule::kObject);
+  EXPECT_GE(of_object.normal_texture.texture, 0);
+  const Material& principled = Named(scene.materials, "PrincipledBump");
+  EXPECT_GE(principled.bump.height_texture.texture, 0);
+  EXPECT_EQ(principled.bump.height_texture.texture, principled.base_color_texture.texture);
+  for (const char* name : {"NoBend", "WorldMap", "PaintedMap", "Bevelled"}) {
+    EXPECT_LT(Named(scene.materials, name).normal_texture.texture, 0) << name;
+    EXPECT_LT(Named(scene.materials, name).bump.height_texture.texture, 0) << name;
+  }
+  EXPECT_GE(Named(scene.materials, "NoiseOnMap").normal_texture.texture, 0) << "the map below stays";
+  EXPECT_LT(Named(scene.materials, "NoiseOnMap").bump.height_texture.texture, 0);
+  EXPECT_EQ(Named(scene.materials, "TwoBumps").bump.srgb, false) << "the upper one";
+  std::set<std::string> on_cube;
+  for (const Instance& instance : scene.instances) {
+    const Mesh& mesh = scene.meshes[std::size_t(instance.mesh)];
+    const Material& material = scene.materials[std::size_t(mesh.material)];
+    if (instance.object == "OnBumpOnMap") on_cube.insert(material.name);
+    EXPECT_EQ(mesh.tangents.empty(),
+              material.normal_texture.texture < 0 || material.normal_rule != NormalMapRule::kTangent)
+        << material.name;
+  }
+  EXPECT_EQ(on_cube, (std::set<std::string>{"BumpOnMap", "Glossy"}));
+}
+
 TEST(BlenderMaterials, WhatCannotBeExpressedIsNamed) {
   const Scene scene = Loaded("materials");
   EXPECT_THAT(scene.warnings,
               UnorderedElementsAre(AllOf(HasSubstr("'Mixed'"), HasSubstr("MIX_SHADER"), HasSubstr("viewport colour")),
                                    AllOf(HasSubstr("'Noisy'"), HasSubstr("TEX_NOISE")),
                                    AllOf(HasSubstr("'Unlinked'"), HasSubstr("black")),
-                                   AllOf(HasSubstr("'Waxy'"), HasSubstr("Subsurface"))));
+                                   AllOf(HasSubstr("'Waxy'"), HasSubstr("Subsurface")),
+                                   AllOf(HasSubstr("'NoiseOnMap'"), HasSubstr("bump 'Bump'"), HasSubstr("TEX_NOISE")),
+                                   AllOf(HasSubstr("'TwoBumps'"), HasSubstr("'Bump.001'"), HasSubstr("another bump")),
+                                   AllOf(HasSubstr("'WorldMap'"), HasSubstr("'Normal Map'"), HasSubstr("world space")),
+                                   AllOf(HasSubstr("'PaintedMap'"), HasSubstr("'Image Texture'"), HasSubstr("sRGB")),
+                                   AllOf(HasSubstr("'Bevelled'"), HasSubstr("'Bevel'"), HasSubstr("own normal"))));
   ExpectColor(Named(scene.materials, "Mixed").base_color, {0.1f, 0.2f, 0.3f}, "viewport colour");
   ExpectColor(Named(scene.materials, "Noisy").base_color, {0.5f, 0.25f, 0.75f}, "the node's own");
   ExpectColor(Named(scene.materials, "Unlinked").base_color, glm::vec3(0.0f), "as Cycles shows it");

@@ -147,6 +147,65 @@ def mixed(name):
     return material
 
 
+def bent(name, *nodes):
+    """A Diffuse surface whose Normal is fed by a chain of nodes, the last one first: (type, what feeds it, settings). What
+    feeds it is an image or the type of a node."""
+    surface, shader = new_material(name, "ShaderNodeBsdfDiffuse")
+    tree, socket = surface.node_tree, shader.inputs["Normal"]
+    for kind, feed, settings in nodes:
+        node = tree.nodes.new("ShaderNode" + kind)
+        for key, value in settings.items():
+            if key[0].isupper():
+                node.inputs[key].default_value = value
+            else:
+                setattr(node, key, value)
+        tree.links.new(node.outputs["Normal" if "Normal" in node.outputs else 0], socket)
+        if isinstance(feed, str):
+            source = tree.nodes.new("ShaderNode" + feed)
+        elif feed is not None:
+            source = tree.nodes.new("ShaderNodeTexImage")
+            source.image = feed
+        if feed is not None:
+            tree.links.new(source.outputs["Color"], node.inputs["Height" if kind == "Bump" else "Color"])
+        socket = node.inputs.get("Normal")
+    return surface
+
+
+def bent_materials(colors):
+    numbers = bpy.data.images.new("Numbers", 4, 4, is_data=True)
+    numbers.pixels.foreach_set([0.5, 0.25, 1.0, 1.0] * 16)
+    numbers.pack()
+    by_map = ("NormalMap", numbers, {"Strength": 0.5})
+    every = [
+        bent("BumpOnMap", ("Bump", numbers, {"Strength": 0.75, "Distance": 0.5, "invert": True}), by_map),
+        bent("PaintedBump", ("Bump", colors, {}), ("NewGeometry", None, {})),
+        bent("ObjectMap", ("NormalMap", numbers, {"space": "OBJECT"})),
+        bent("NoBend", ("Bump", None, {}), ("NormalMap", None, {})),
+        bent("NoiseOnMap", ("Bump", "TexNoise", {}), by_map),
+        bent("TwoBumps", ("Bump", numbers, {}), ("Bump", colors, {})),
+        bent("WorldMap", ("NormalMap", numbers, {"space": "WORLD"})),
+        bent("PaintedMap", ("NormalMap", colors, {})),
+        bent("Bevelled", ("Bevel", None, {})),
+    ]
+    tree = every[1].node_tree  # half the height, upside down: a factor of −½ and two constants
+    for operation, inputs in (("MULTIPLY", (None, 0.5)), ("SUBTRACT", (1.0, None))):
+        math = tree.nodes.new("ShaderNodeMath")
+        math.operation = operation
+        height = tree.nodes["Bump"].inputs["Height"]
+        for socket, value in zip(math.inputs, inputs):
+            if value is None:
+                tree.links.new(height.links[0].from_socket, socket)
+            else:
+                socket.default_value = value
+        tree.links.new(math.outputs[0], height)
+    principled = textured("PrincipledBump", "ShaderNodeBsdfPrincipled", colors, "Base Color")
+    tree = principled.node_tree
+    bump = tree.nodes.new("ShaderNodeBump")
+    tree.links.new(tree.nodes["Image Texture"].outputs["Color"], bump.inputs["Height"])
+    tree.links.new(bump.outputs["Normal"], tree.nodes["Principled BSDF"].inputs["Normal"])
+    return every + [principled]
+
+
 def materials():
     image = checker()
     every = [
@@ -167,6 +226,7 @@ def materials():
         bpy.data.materials.new("Plain"),
         new_material("Unlinked", "ShaderNodeBsdfDiffuse")[0],
         new_material("Rough", "ShaderNodeBsdfDiffuse", Roughness=0.6)[0],
+        *bent_materials(image),
     ]
     by_name = {material.name: material for material in every}
     by_name["Sharp"].node_tree.nodes["Glossy BSDF"].distribution = "SHARP"
@@ -182,6 +242,9 @@ def materials():
     noisy.links.new(noisy.nodes.new("ShaderNodeTexNoise").outputs["Color"], noisy.nodes["Diffuse BSDF"].inputs["Color"])
     for number, material in enumerate(every):
         cube("On" + material.name, (2.0 * number, 0, 0), material)
+    two = bpy.data.objects["OnBumpOnMap"].data  # the exporter writes an attribute for it, and must keep both materials
+    two.materials.append(by_name["Glossy"])
+    two.polygons[0].material_index = 1
     for name in ("OnSeen", "OnDiffuse"):  # the same colours; only one material reads them
         data = bpy.data.objects[name].data
         for layer in ("Other", "Paint"):

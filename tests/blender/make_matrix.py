@@ -21,7 +21,8 @@ from mathutils import Euler, Vector
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(Path(__file__).resolve().parent))
-import matrix_shapes  # noqa: E402  (Blender does not put a script's own folder on the path)
+import matrix_bends  # noqa: E402  (Blender does not put a script's own folder on the path)
+import matrix_shapes  # noqa: E402
 
 LANDSCAPE, PORTRAIT = "160x90", "90x160"
 
@@ -304,6 +305,12 @@ def coarse():
     world((0.6, 0.75, 1.0), 0.2)
 
 
+def bent():
+    matrix_bends.build(sys.modules[__name__])
+    lamp("AREA", 400, HIGH, shape="SQUARE", size=1.2)
+    world((0.6, 0.75, 1.0), 0.2)
+
+
 def world_only():
     room(diffuse_set())
     world((0.6, 0.75, 1.0), 1.5)
@@ -384,6 +391,7 @@ SCENES = {  # builder, layers, size, samples
     "emissive": (emissive, DIFFUSE_LAYERS, LANDSCAPE, 256),
     "rough": (rough, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 128),
     "coarse": (coarse, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 256),
+    "bent": (bent, [], LANDSCAPE, 0),
     "world": (world_only, DIFFUSE_LAYERS, LANDSCAPE, 128),
     "mixed": (mixed, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 128),
     "stretched": (stretched, DIFFUSE_LAYERS, LANDSCAPE, 64),

@@ -134,6 +134,30 @@ Status ReadBsdf(const tinygltf::Value& value, const std::string& where, Material
   return fields.Verdict();
 }
 
+Status ReadNormalMap(const tinygltf::Value& value, const std::string& where, Material& material) {
+  Fields fields(value, where);
+  const std::string space = fields.Text("space");
+  material.normal_scale = static_cast<float>(fields.Number("strength", 0.0, kLargest));
+  if (space == "TANGENT") {
+    material.normal_rule = NormalMapRule::kTangent;
+  } else if (space == "OBJECT") {
+    material.normal_rule = NormalMapRule::kObject;
+  } else if (space == "BLENDER_OBJECT") {
+    material.normal_rule = NormalMapRule::kBlenderObject;
+  } else {
+    fields.Complain("space", "is unknown");
+  }
+  return fields.Verdict();
+}
+
+Status ReadBump(const tinygltf::Value& value, const std::string& where, Bump& bump) {
+  Fields fields(value, where);
+  bump.strength = static_cast<float>(fields.Number("strength", 0.0, kLargest));
+  bump.distance = static_cast<float>(fields.Number("distance", -kLargest, kLargest));
+  bump.srgb = fields.IsTrue("srgb");
+  return fields.Verdict();
+}
+
 constexpr const char* kStyleProperty = "scumble_style";
 
 // A style from our exporter, or the custom property itself, which Blender's own exporter and others keep.
@@ -152,14 +176,39 @@ Expected<std::string> ReadStyle(const tinygltf::Value& extras, const std::string
 
 }  // namespace
 
+const tinygltf::Value* FindExtrasTexture(const tinygltf::Value& material_extras, const std::string& key) {
+  const tinygltf::Value* owner = Find(material_extras, key);
+  return owner && owner->IsObject() && owner->Has("texture") ? &owner->Get("texture") : nullptr;
+}
+
+Expected<glm::dmat3> ReadMeshStretch(const tinygltf::Mesh& mesh, const std::string& where) {
+  const tinygltf::Value* list = Find(mesh.extras, "stretch");
+  glm::dmat3 stretch(1.0);
+  if (!list) return stretch;
+  bool sound = list->IsArray() && list->ArrayLen() == 9;
+  for (int i = 0; sound && i < 9; ++i) {
+    sound = list->Get(i).IsNumber();
+    if (sound) stretch[i / 3][i % 3] = list->Get(i).GetNumberAsDouble();
+  }
+  const double volume = glm::determinant(stretch);
+  if (sound && std::isfinite(volume) && volume > 0.0 && stretch == glm::transpose(stretch)) return stretch;
+  return InputError(where + ": in the extras of scumble, 'stretch' is no symmetric matrix of 9 numbers: export it " +
+                    "again with this version's export_scene.py");
+}
+
 Status ReadMaterialExtras(const tinygltf::Model& model, const std::string& file, Scene& scene) {
   for (std::size_t i = 0; i < model.materials.size() && i < scene.materials.size(); ++i) {
     const tinygltf::Value* bsdf = Find(model.materials[i].extras, "bsdf");
     const std::string where =
         file + ": material " + std::to_string(i) + " '" + Excerpt(model.materials[i].name, 80) + "'";
     SCUMBLE_ASSIGN(scene.materials[i].style, ReadStyle(model.materials[i].extras, where));
-    if (!bsdf) continue;
-    SCUMBLE_RETURN_IF_ERROR(ReadBsdf(*bsdf, where, scene.materials[i]));
+    if (bsdf) SCUMBLE_RETURN_IF_ERROR(ReadBsdf(*bsdf, where, scene.materials[i]));
+    if (const tinygltf::Value* normal = Find(model.materials[i].extras, "normal")) {
+      SCUMBLE_RETURN_IF_ERROR(ReadNormalMap(*normal, where, scene.materials[i]));
+    }
+    if (const tinygltf::Value* bump = Find(model.materials[i].extras, "bump")) {
+      SCUMBLE_RETURN_IF_ERROR(ReadBump(*bump, where, scene.materials[i].bump));
+    }
   }
   return Ok();
 }

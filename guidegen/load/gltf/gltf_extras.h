@@ -14,6 +14,8 @@
 namespace tinygltf {
 class Model;
 class Node;
+class Value;
+struct Mesh;
 }  // namespace tinygltf
 
 namespace scumble {
@@ -22,8 +24,15 @@ inline constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
 
 // Styles are also read from the custom property `scumble_style` itself, as other exporters write it.
 
+// The texture of a material's "bump", or of its "normal" map where that is none of glTF's, as glTF describes textures;
+// null where there is none.
+const tinygltf::Value* FindExtrasTexture(const tinygltf::Value& material_extras, const std::string& key);
+
 // Completes scene.materials, which holds the model's materials in their order.
 Status ReadMaterialExtras(const tinygltf::Model& model, const std::string& file, Scene& scene);
+
+// The stretch that our exporter has put into a mesh (Mesh::stretch); 1 where it names none.
+Expected<glm::dmat3> ReadMeshStretch(const tinygltf::Mesh& mesh, const std::string& where);
 
 // The world's radiance of the model's scene of that index, and warnings for losses in its export. An index that does
 // not exist is no error.

@@ -13,6 +13,7 @@
 
 #include "core/io/picture_file.h"
 #include "guidegen/load/gltf/accessor.h"
+#include "guidegen/load/gltf/gltf_extras.h"
 #include "guidegen/load/gltf/parse.h"
 
 namespace scumble {
@@ -331,6 +332,12 @@ Status LoadGltfMaterials(const tinygltf::Model& model, const std::string& file, 
     SCUMBLE_ASSIGN(material.normal_texture, textures.Use(from.normalTexture, owner));
     material.normal_scale =
         std::isfinite(from.normalTexture.scale) ? static_cast<float>(from.normalTexture.scale) : 1.0f;
+    if (const tinygltf::Value* normal = FindExtrasTexture(from.extras, "normal")) {
+      SCUMBLE_ASSIGN(material.normal_texture, textures.Use(TextureInExtension(*normal), owner));
+    }
+    if (const tinygltf::Value* bump = FindExtrasTexture(from.extras, "bump")) {
+      SCUMBLE_ASSIGN(material.bump.height_texture, textures.Use(TextureInExtension(*bump), owner));
+    }
     SCUMBLE_RETURN_IF_ERROR(LoadLighting(from, file, owner, textures, material));
     if (from.alphaMode == "MASK") material.alpha_mode = AlphaMode::kMask;
     if (from.alphaMode == "BLEND") material.alpha_mode = AlphaMode::kBlend;

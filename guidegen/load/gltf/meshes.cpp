@@ -9,6 +9,8 @@
 
 #include "guidegen/load/auto_smooth.h"
 #include "guidegen/load/gltf/accessor.h"
+#include "guidegen/load/gltf/gltf_extras.h"
+#include "guidegen/load/gltf/mesh_tangents.h"
 #include "guidegen/load/mesh_normals.h"
 
 namespace scumble {
@@ -41,6 +43,12 @@ class PrimitiveLoader {
         request_(request),
         shared_choice_(load.choice),
         missing_(load.missing) {}
+
+  // After Load: whether the mesh is to get tangents, which are common to the primitives of a mesh.
+  bool wants_tangents() const { return wants_tangents_; }
+  std::vector<float> TakeExactV() { return std::move(exact_v_); }
+
+  void SetStretch(const glm::dmat3& stretch) { mesh_.stretch = stretch; }
 
   // After Load, where one was requested.
   MeshDeformation TakeDeformation() { return std::move(deformation_); }
@@ -214,6 +222,9 @@ class PrimitiveLoader {
         warnings_.Add("texture coordinates that are NaN or infinite count as 0", name_);
       }));
     }
+    if (Accessor("_SCUMBLE_V") >= 0) exact_v_.resize(n);
+    SCUMBLE_RETURN_IF_ERROR(ReadAttribute(
+        "_SCUMBLE_V", 1, 1, [&](std::size_t i, const float* v, const FloatTable&) { exact_v_[i] = v[0]; }));
     if (Accessor("COLOR_0") >= 0) mesh_.colors.resize(n);
     return ReadAttribute("COLOR_0", 3, 4, [&](std::size_t i, const float* v, const FloatTable& table) {
       mesh_.colors[i] = glm::vec4(v[0], v[1], v[2], table.components == 4 ? v[3] : 1.0f);
@@ -341,19 +352,13 @@ class PrimitiveLoader {
     const std::uint64_t more = mesh_.positions.size() - before;
     SCUMBLE_RETURN_IF_ERROR(budget_.Take(file_, more * (1 + deformation_.targets.size()), 0));
     if (!request_) return Ok();
-    SplitDeformation(split.sources);
-    deformation_.shared_normals = degrees == 180.0 ? weld : std::move(split.shared);
-    return Ok();
-  }
-
-  void SplitDeformation(std::span<const std::uint32_t> sources) {
     for (MorphTarget& target : deformation_.targets) {
-      Split(sources, target.positions);
       target.normals.clear();
       target.tangents.clear();
     }
-    Split(sources, deformation_.joints, std::size_t(deformation_.influences));
-    Split(sources, deformation_.weights, std::size_t(deformation_.influences));
+    SplitDeformation(split.sources, deformation_);
+    deformation_.shared_normals = degrees == 180.0 ? weld : std::move(split.shared);
+    return Ok();
   }
 
   Status ChooseMaterial() {
@@ -381,14 +386,16 @@ class PrimitiveLoader {
   // Keeps tangents only where a normal map needs them; computes them where the file gives none that are usable.
   void PrepareTangents(const Material& material) {
     const TextureUse& use = material.normal_texture;
-    if (use.texture < 0) {
+    const bool of_object =
+        material.normal_rule == NormalMapRule::kObject || material.normal_rule == NormalMapRule::kBlenderObject;
+    if (use.texture < 0 || of_object) {
       mesh_.tangents.clear();
     } else if (TangentsAreUsable()) {
       for (glm::vec4& tangent : mesh_.tangents) {
         tangent = glm::vec4(glm::normalize(glm::vec3(tangent)), tangent.w);
       }
     } else if (!mesh_.uvs[std::size_t(use.uv_set)].empty()) {
-      FillTangents(mesh_, use.uv_set, use.uv_transform);
+      wants_tangents_ = true;
     } else {
       mesh_.tangents.clear();
       warnings_.Add("normal maps on meshes without texture coordinates are left out", name_);
@@ -413,6 +420,8 @@ class PrimitiveLoader {
   std::size_t vertices_ = 0;               // in the file
   Mesh mesh_;
   MeshDeformation deformation_;
+  std::vector<float> exact_v_;  // TangentPart's
+  bool wants_tangents_ = false;
 };
 
 // `request` may be null.
@@ -420,16 +429,21 @@ Expected<std::vector<DeformableMesh>> LoadPrimitives(const GltfLoad& load, int m
                                                      const DeformationRequest* request) {
   const tinygltf::Mesh& mesh = load.model.meshes[std::size_t(mesh_index)];
   std::vector<DeformableMesh> loaded;
+  TangentMaker maker(load);
+  SCUMBLE_ASSIGN(const glm::dmat3 stretch, ReadMeshStretch(mesh, load.file + ": mesh " + std::to_string(mesh_index)));
   for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
     std::string name = "mesh " + std::to_string(mesh_index);
     if (!mesh.name.empty()) name += " '" + Excerpt(mesh.name, 80) + "'";
     if (mesh.primitives.size() > 1) name += ", primitive " + std::to_string(i);
     PrimitiveLoader loader(load, mesh.primitives[i], name, request);
+    loader.SetStretch(stretch);
     SCUMBLE_ASSIGN(std::optional<Mesh> primitive, loader.Load());
     if (!primitive) continue;
     load.scene.meshes.push_back(std::move(*primitive));
     loaded.push_back({static_cast<int>(load.scene.meshes.size()) - 1, loader.TakeDeformation()});
+    maker.Add(loader.wants_tangents(), loader.TakeExactV());
   }
+  SCUMBLE_RETURN_IF_ERROR(maker.Make(loaded));
   return loaded;
 }
 

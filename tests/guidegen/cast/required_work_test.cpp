@@ -224,7 +224,14 @@ TEST(RequiredWork, ColourCostsOneLookAtTheMaterialOfEachPixel) {
              {.materials = kPixels, .texture_lookups = kPixels, .texels = kPixels});
 }
 
-// A normal map belongs to the normals, and costs nothing else.
+// Normal maps and bumps belong to the normals, and cost nothing else.
+TEST(RequiredWork, ABumpCostsThreeLookupsAPixel) {
+  Scene scene = WholeFloor();
+  scene.materials[0].bump.height_texture.texture = AddTexture(scene);
+  EXPECT_EQ(NeededTextures(scene, Asking({})).back(), true);
+  ExpectWork(scene, AboveFloor(), Asking({}), {.texture_lookups = 3 * kPixels, .texels = 12 * kPixels});
+}
+
 TEST(RequiredWork, ANormalMapCostsOneLookupAPixel) {
   Scene scene = WholeFloor();
   scene.meshes[0].tangents.assign(4, glm::vec4(1, 0, 0, 1));

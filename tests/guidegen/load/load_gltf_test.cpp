@@ -572,6 +572,55 @@ TEST_F(LoadGltf, StylesAndPassIndicesOfObjects) {
   }
 }
 
+TEST_F(LoadGltf, NormalMapsAndBumpsOfBlender) {
+  GltfBuilder b = TexturedSquare();
+  json& material = b.json["materials"][0];
+  const json texture = {{"index", 0}, {"extensions", {{"KHR_texture_transform", {{"scale", {-2, 1}}}}}}};
+  material["normalTexture"] = texture;
+  json& ours = material["extras"]["scumble"];
+  ours["normal"] = {{"space", "TANGENT"}, {"strength", 1.5}};
+  ours["bump"] = {{"strength", 0.25}, {"distance", -2.0}, {"srgb", true}, {"texture", texture}};
+  b.json["meshes"][0]["extras"]["scumble"]["stretch"] = {2, 0, 0, 0, 1, 0, 0, 0, 1};
+  Scene scene = Load(b);
+  const Material& read = scene.materials[0];
+  EXPECT_EQ(read.normal_rule, NormalMapRule::kTangent);
+  EXPECT_EQ(read.normal_scale, 1.5f);
+  EXPECT_EQ(read.bump.height_texture.texture, read.normal_texture.texture);
+  EXPECT_EQ(read.bump.height_texture.uv_transform[0][0], -2.0f);
+  EXPECT_EQ(read.bump.strength, 0.25f);
+  EXPECT_EQ(read.bump.distance, -2.0f);
+  EXPECT_TRUE(read.bump.srgb);
+  EXPECT_EQ(scene.meshes[0].stretch[0][0], 2.0);
+  ExpectClose(glm::vec3(scene.meshes[0].tangents[0]), {1, 0, 0});  // of the UV map, not of the texture's place in it
+  ours["normal"] = {{"space", "BLENDER_OBJECT"}, {"strength", 1}, {"texture", texture}};
+  material.erase("normalTexture");
+  scene = Load(b);
+  EXPECT_EQ(scene.materials[0].normal_rule, NormalMapRule::kBlenderObject);
+  EXPECT_GE(scene.materials[0].normal_texture.texture, 0);
+  EXPECT_TRUE(scene.meshes[0].tangents.empty());
+
+  const json good = b.json;
+  const auto expect_refused = [&](const std::string& place, const json& bad) {
+    b.json = good;
+    b.json[json::json_pointer(place)] = bad;
+    const auto refused = LoadScene(Write("bad.glb", b.Glb()));
+    ASSERT_FALSE(refused) << place << " " << bad;
+    EXPECT_THAT(refused.error().message, HasSubstr("bad.glb"));
+    EXPECT_THAT(refused.error().message, HasSubstr(place.substr(place.rfind('/') + 1)));
+  };
+  const std::string extras = "/materials/0/extras/scumble/";
+  for (const json& bad : {json("UPRIGHT"), json(1), json()}) expect_refused(extras + "normal/space", bad);
+  for (const json& bad : {json(-1), json("1"), json()}) {
+    expect_refused(extras + "normal/strength", bad);
+    expect_refused(extras + "bump/strength", bad);
+  }
+  expect_refused(extras + "bump/distance", "1");
+  for (const json& bad : {json(1), json({1, 0, 0}), json({0, 0, 0, 0, 0, 0, 0, 0, 0}),
+                          json({1, 2, 0, 0, 1, 0, 0, 0, 1}), json({1, "0", 0, 0, 1, 0, 0, 0, 1})}) {
+    expect_refused("/meshes/0/extras/scumble/stretch", bad);
+  }
+}
+
 TEST_F(LoadGltf, TheDefaultSceneIsLoaded) {
   GltfBuilder b;
   b.Triangle("First");

@@ -1,0 +1,66 @@
+"""What feeds the input of a node, and which images glTF can keep: shared by export_materials.py and export_bends.py."""
+
+
+def previous(socket):
+    """The socket that feeds this one, past reroutes; None where nothing does."""
+    while socket is not None and socket.is_linked:
+        source = socket.links[0].from_socket
+        if source.node.type != "REROUTE":
+            return None if source.node.mute else source
+        socket = source.node.inputs[0]
+    return None
+
+
+def constant(socket):
+    """The value of an input that is a number or a colour; None where something else feeds it."""
+    source = previous(socket)
+    value = None
+    if source is None:
+        value = socket.default_value
+    elif source.node.type in {"RGB", "VALUE"}:
+        value = source.default_value
+    if value is None or isinstance(value, (int, float)):
+        return value
+    return tuple(value)[:3]
+
+
+def coordinates_of(socket):
+    """The name of the UV map that a texture's coordinates come from, "" for the active one; and the fault in them, None
+    where glTF has them."""
+    source = previous(socket)
+    if source is None or (source.node.type == "TEX_COORD" and source.name == "UV"):
+        return "", None
+    if source.node.type == "UVMAP":
+        return source.node.uv_map, None
+    if source.node.type == "MAPPING" and source.node.vector_type == "POINT":
+        if all(previous(source.node.inputs[name]) is None for name in ("Location", "Rotation", "Scale")):
+            return coordinates_of(source.node.inputs["Vector"])
+    return "", f"node '{source.node.name}' ({source.node.type}) as coordinates"
+
+
+def keeps_its_depth(image):
+    """Whether the exporter copies the file as it is, so that more than 8 bits stay."""
+    return not image.is_float or (image.source == "FILE" and image.file_format == "PNG" and not image.is_dirty)
+
+
+def image_fault(node, spaces):
+    """The fault in an image texture; None where glTF has it. `spaces`: "colour", "data", or "any" of the two."""
+    if node.image is None:
+        return f"node '{node.name}' without an image"
+    if node.projection != "FLAT" or node.extension == "CLIP":
+        return f"node '{node.name}' with {node.projection} projection and extension {node.extension}"
+    if node.image.source not in {"FILE", "GENERATED"}:
+        return f"node '{node.name}' with an image of source {node.image.source}"
+    space, is_float = node.image.colorspace_settings.name, node.image.is_float
+    is_colour = space == "sRGB"
+    known = {"colour": is_colour and not is_float, "data": not is_colour and keeps_its_depth(node.image),
+             "any": (is_colour and not is_float) or
+                    (space in {"Non-Color", "Raw", "Linear"} and keeps_its_depth(node.image))}
+    if not known[spaces]:
+        return f"node '{node.name}' with an image in {space}{', float' if is_float else ''}"
+    return coordinates_of(node.inputs["Vector"])[1]
+
+
+def clear_links(tree, socket):
+    for link in list(socket.links):
+        tree.links.remove(link)
