@@ -11,6 +11,7 @@
 #include "core/image/stopwatch.h"
 #include "transfer/frame/band_pipeline.h"
 #include "transfer/frame/compose.h"
+#include "transfer/frame/fragment_paint.h"
 #include "transfer/frame/frame_setup.h"
 #include "transfer/match/coarse_match.h"
 #include "transfer/match/match.h"
@@ -66,7 +67,8 @@ class Run {
         out_(out),
         region_(options.region ? options.region->GrownBy(0, guides.width(), guides.height())
                                : Region{0, 0, guides.width(), guides.height()}),
-        frame_{guides, map, styles, region_} {
+        frame_{guides, map, styles, region_},
+        fragments_(frame_) {
     scratch.times = {};
   }
 
@@ -87,6 +89,10 @@ class Run {
     Stopwatch watch;
     const bool shadows = styles.front()->shadow && map_;
     if (shadows) SCUMBLE_RETURN_IF_ERROR(PaintShadows(*styles.front()));
+    if (!fragments_.empty()) {
+      fragments_.Mix(out_);
+      start_.softly_covered = true;  // the mixed pixels may be, whatever paints their centres
+    }
     std::span<const float> coverage = guides_.Plane(Layer::kCoverage);
     std::vector<float> edged;
     if (std::any_of(styles.begin(), styles.end(), [](const PreparedStyle* style) { return !style->rims.empty(); })) {
@@ -134,7 +140,7 @@ class Run {
     std::vector<internal::BandStyle> parts;
     for (std::size_t s = 0; s < styles.size(); ++s) {
       const PreparedStyle& style = *styles[s];
-      const Region matched = region_.GrownBy(style.blend_radius, guides_.width(), guides_.height());
+      const Region matched = region_.GrownBy(ReachOf(style), guides_.width(), guides_.height());
       internal::BandStyle& part = parts.emplace_back(
           internal::BandStyle{InputOf(style, matched), style.blend_radius, std::nullopt, TintOf(style)});
       part.match.active = {};
@@ -144,7 +150,8 @@ class Run {
       if (IsEdgeAware(style)) part.edges.emplace(EdgesOf(style, {}));
     }
     internal::RowProgress progress(options_.progress, 0.0, 1.0 - kComposeShare, std::max(1, region_.y1 - region_.y0));
-    const internal::BandResult result = internal::PaintByBands(frame_, parts, scratch_.bands, out_, progress);
+    const internal::BandResult result =
+        internal::PaintByBands(frame_, parts, fragments_, scratch_.bands, out_, progress);
     if (!result.finished) return CancelledError();
     start_.softly_covered = result.softly_covered;
     const double ms = watch.Lap();
@@ -155,20 +162,43 @@ class Run {
   Status Paint(const PreparedStyle& style, int index, double from, double to) {
     const Region& extent = start_.extents[std::size_t(index)];
     Region painted = Intersection(region_, extent);
-    int reach = style.blend_radius;  // the pixels around whose sources affect a painted one
+    int reach = ReachOf(style);
     // A painted edge may lie in the region while its object does not.
     for (const RimPaint& rim : style.rims) reach = std::max(reach, internal::EdgeReach(rim.band()));
     const Region near = Intersection(extent, region_.GrownBy(reach, guides_.width(), guides_.height()));
-    if (painted.empty() && (style.rims.empty() || near.empty())) return Ok();
+    if (painted.empty() && ((style.rims.empty() && fragments_.empty()) || near.empty())) {
+      PaintFragments(style, index, InputOf(style, {}));
+      return Ok();
+    }
     if (painted.empty()) painted = {};
     // Chunks of the brute force depend on every pixel above them, so it always runs on all of them.
     const Region matched = style.settings.method == Method::kBruteForce ? extent : near;
-    if (!map_) return MatchAndVote(style, matched, painted, from, to);
+    if (!map_) return MatchAndVote(style, index, matched, painted, from, to);
     const std::vector<Region>& tiles = start_.tiles[std::size_t(index)];
     internal::Activate(frame_, index, tiles, scratch_.active);
-    const Status done = MatchAndVote(style, matched, painted, from, to);
+    const Status done = MatchAndVote(style, index, matched, painted, from, to);
     internal::Deactivate(frame_, tiles, scratch_.active);
     return done;
+  }
+
+  // The pixels around whose sources affect a painted one.
+  int ReachOf(const PreparedStyle& style) const {
+    return fragments_.empty() ? style.blend_radius : std::max(style.blend_radius, internal::FragmentPaint::kReach);
+  }
+
+  // The style's pixels around are matched, or there are none.
+  void PaintFragments(const PreparedStyle& style, int index, const internal::MatchInput& match) {
+    if (fragments_.empty()) return;
+    const internal::FragmentStyle settings{match,
+                                           style.settings.method == Method::kLitSphere,
+                                           IsEdgeAware(style),
+                                           internal::EdgeRules::CreaseCosine(style.settings.crease),
+                                           style.base_layers.get(),
+                                           TintOf(style)};
+    const internal::VoteInput votes{scratch_.field, scratch_.active, *style.exemplar, style.blend_radius, nullptr, {}};
+    constexpr int kRows = 16;
+    tbb::parallel_for(tbb::blocked_range<int>(region_.y0, std::max(region_.y0, region_.y1), kRows),
+                      [&](const auto& rows) { fragments_.Paint(settings, index, votes, rows.begin(), rows.end()); });
   }
 
   static Region Intersection(const Region& a, const Region& b) {
@@ -179,7 +209,11 @@ class Run {
     const Progress unheard;  // far faster than the other steps
     internal::RowProgress progress(unheard, 0.0, 1.0, std::max(1, region_.y1 - region_.y0));
     const internal::ShadowInput input{guides_, map_->style, *style.shadow, SeedsOf(style), region_};
-    return internal::PaintShadows(input, out_, progress) ? Ok() : CancelledError();
+    if (!internal::PaintShadows(input, out_, progress)) return CancelledError();
+    if (fragments_.empty()) return Ok();
+    const internal::ShadowPainter painter(input);
+    fragments_.PaintShadows([&](int x, int y, std::uint16_t* texel) { painter.Paint(x, y, texel); });
+    return Ok();
   }
 
   Status PaintEdges(std::span<const PreparedStyle* const> styles, std::vector<float>& coverage) {
@@ -240,7 +274,7 @@ class Run {
     return input;
   }
 
-  Status MatchAndVote(const PreparedStyle& style, const Region& matched, const Region& painted, double from,
+  Status MatchAndVote(const PreparedStyle& style, int index, const Region& matched, const Region& painted, double from,
                       double to) {
     const TransferSettings& settings = style.settings;
     const internal::MatchInput input = InputOf(style, matched);
@@ -268,6 +302,7 @@ class Run {
           votes, guides_, style.illumination, input.luminance, *style.base_layers, input.space, input.brightness};
       if (!internal::VoteHybrid(hybrid, out_, vote_progress)) return CancelledError();
     }
+    PaintFragments(style, index, input);
     scratch_.times.vote_ms += watch.Lap();
     return Ok();
   }
@@ -316,6 +351,7 @@ class Run {
   Picture& out_;
   Region region_;
   internal::FrameInput frame_;
+  internal::FragmentPaint fragments_;
   internal::FrameSetup start_;
   std::vector<float> luminance_;
   std::vector<std::uint8_t> wanted_;

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/image/check.h"
+#include "core/image/fragments.h"
 #include "core/image/hash.h"
 
 namespace scumble {
@@ -75,6 +76,11 @@ Status GuideSet::Validate(const std::string& name) const {
     return InputError(name + " is " + std::to_string(width_) + "×" + std::to_string(height_) +
                       " pixels: guides need at least 1×1 and at most " + std::to_string(kMaxImageSide) + " a side");
   }
+  SCUMBLE_RETURN_IF_ERROR(ValidateValues(name));
+  return fragments ? fragments->Validate(*this, name) : Ok();
+}
+
+Status GuideSet::ValidateValues(const std::string& name) const {
   if (!Has(Layer::kCoverage) || !Has(Layer::kNormal)) {
     return InputError(name + " holds " + layers_.ToString() + ": guides need at least A and normal");
   }

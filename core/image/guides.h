@@ -8,6 +8,7 @@
 //   - Radiance is linear Rec.709, scene-referred.
 //   - Data layers are point-sampled at pixel centres. A pixel whose centre misses but whose coverage is above 0 takes
 //     every data layer from its covered subsample nearest the centre.
+//   - With several subsamples a pixel, those that see other surfaces than the centre are kept apart (`fragments`).
 //   - Background: A = 0, normal = position = 0, depth = +infinity, ids = 0.
 //   - Ids are 24-bit hashes of the object's full name (ObjectId), exact in a float; 0 is the background.
 #pragma once
@@ -16,6 +17,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -36,6 +38,8 @@ struct GuideCamera {
   // Whether the view is orthographic: depth then gives no sizes.
   bool IsOrthographic() const { return clip_from_view[2][3] == 0.0 && clip_from_view[3][3] != 0.0; }
 };
+
+struct Fragments;
 
 // Owns its pixels: every layer is `ChannelCount` planes of width × height floats, rows from the top.
 // Copyable and movable; concurrent reads are safe, writes to different pixels too.
@@ -70,6 +74,8 @@ class GuideSet {
   // non-finite colours. The message counts the bad pixels and names the first. O(pixels). `name` stands for the set in
   // the message.
   Status Validate(const std::string& name) const;
+  // Validate without its limits of size.
+  Status ValidateValues(const std::string& name) const;
 
   // Free text that travels in the file's header: generator, isa, ….
   std::map<std::string, std::string> attributes;
@@ -80,6 +86,8 @@ class GuideSet {
   std::map<std::uint32_t, std::string> object_styles;
   std::map<std::uint32_t, std::string> material_styles;
   std::optional<GuideCamera> camera;
+  // The other surfaces of pixels that show several (core/image/fragments.h); null: none are known. Copies share them.
+  std::shared_ptr<const Fragments> fragments;
 
  private:
   int width_ = 0;

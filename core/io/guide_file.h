@@ -19,9 +19,9 @@ struct GuideWriteOptions {
 // Lossless, and the fastest to write and read: background is packed, surfaces hardly.
 inline constexpr const char* kFastCompression = "rle";
 
-// Writes all layers of the set, object and material names and their styles, camera matrices (worldToCamera and
-// worldToNDC in OpenEXR's own conventions) and attributes. Refuses a lossy compression. The file appears whole or not
-// at all.
+// Writes all layers of the set, its fragments, object and material names and their styles, camera matrices
+// (worldToCamera and worldToNDC in OpenEXR's own conventions) and attributes. Refuses a lossy compression. The file
+// appears whole or not at all.
 Status WriteGuides(const std::filesystem::path& path, const GuideSet& guides, const GuideWriteOptions& options = {});
 
 // Whether WriteGuides supports the ending and the compression. Call it before the work.
@@ -36,7 +36,8 @@ struct GuideReadOptions {
   std::filesystem::path blender_camera;  // the .camera file of a Blender render; empty: the camera is solved
 };
 
-// Reads only the channels that are asked for; matches them by name (ParseChannelName). Of guides that WriteGuides made,
+// Reads only the channels that are asked for; matches them by name (ParseChannelName). Fragments are read from files
+// that WriteGuides made; those that do not fit their file are passed over. Of guides that WriteGuides made,
 // ids are always those of the layers object and material; a Cryptomatte beside them is passed over. The result is
 // validated: normals whose length is off by more than a half float's rounding are normalised, and what
 // GuideSet::Validate refuses is an error. What Blender wrote is converted as core/io/blender/blender_passes.h says: its
@@ -51,6 +52,7 @@ struct GuideFileInfo {
   bool has_half = false;      // some channel is stored in half floats
   bool from_blender = false;  // rendered by Blender itself: its passes are to be converted
   bool has_cryptomatte = false;
+  std::size_t fragments = 0;               // core/image/fragments.h
   std::map<std::string, LayerSet> layers;  // complete layers by view layer; "" where names have nothing before them;
                                            // Cryptomatte and passes of light count
   std::string channels;                    // all names as they stand in the file

@@ -50,7 +50,7 @@ std::vector<std::byte> Png(const Picture& picture, const PictureWriteOptions& op
 // Linear, with associated alpha.
 Expected<std::vector<std::byte>> Exr(const std::string& name, const Picture& picture,
                                      const PictureWriteOptions& options) {
-  internal::ExrImage image{picture.width, picture.height, {}, options.fast ? kFastCompression : "zip", {}, {}};
+  internal::ExrImage image{picture.width, picture.height, {}, options.fast ? kFastCompression : "zip", {}, {}, {}};
   if (!options.settings.empty()) image.texts[kSettingsKey] = options.settings;
   const std::size_t size = picture.rgba.size() / 4;
   std::array<std::vector<float>, 4> planes;

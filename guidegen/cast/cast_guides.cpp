@@ -34,7 +34,8 @@ constexpr double kCastShare = 0.05;
 // Casts the tiles that the window meets. False if the caller cancelled. Lists covered pixels by tile where `pixels` is
 // given.
 bool CastTiles(const TileCaster& caster, const GuidegenOptions& options, const PixelWindow& window, double end,
-               GuidegenResult& result, std::vector<std::vector<PathPixel>>* pixels) {
+               GuidegenResult& result, std::vector<std::vector<PathPixel>>* pixels,
+               tbb::enumerable_thread_specific<TileCaster::Scratch>& scratch) {
   const int left = window.x0 / kTileSide, top = window.y0 / kTileSide;
   const std::size_t columns = std::size_t((window.x1 + kTileSide - 1) / kTileSide - left);
   const std::size_t rows = std::size_t((window.y1 + kTileSide - 1) / kTileSide - top);
@@ -42,7 +43,6 @@ bool CastTiles(const TileCaster& caster, const GuidegenOptions& options, const P
   ProgressGate gate(options.progress, strips * rows, 0.0, end);
   if (pixels) pixels->resize(columns * rows);
   std::mutex summing;
-  tbb::enumerable_thread_specific<TileCaster::Scratch> scratch([&] { return TileCaster::Scratch(caster); });
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, strips * rows), [&](const auto& range) {
     TileCaster::Scratch& own = scratch.local();
     TileCaster::Share share{gate, {}};
@@ -134,7 +134,8 @@ Expected<GuidegenResult> CastInArena(LazyScene& objects, const View& view, const
   std::vector<std::vector<PathPixel>> pixels;
   const bool paths = !follower.empty();
   const PixelWindow& window = view.camera.window();
-  if (!CastTiles(caster, options, window, paths ? kCastShare : 1.0, result, paths ? &pixels : nullptr)) {
+  tbb::enumerable_thread_specific<TileCaster::Scratch> scratch([&] { return TileCaster::Scratch(caster); });
+  if (!CastTiles(caster, options, window, paths ? kCastShare : 1.0, result, paths ? &pixels : nullptr, scratch)) {
     return CancelledError();
   }
   ClearOutside(window, result.guides);
@@ -153,6 +154,9 @@ Expected<GuidegenResult> CastInArena(LazyScene& objects, const View& view, const
     result.samples = traced.samples;
     result.noise = traced.noise;
   }
+  std::vector<const FoundFragments*> found;
+  for (const TileCaster::Scratch& of_thread : scratch) found.push_back(&of_thread.fragments);
+  result.guides.fragments = GatherFragments(found, window, result.guides);
   result.render_ms = watch.Lap();
   if (!Continue(options.progress, 1.0)) return CancelledError();
 

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
+#include "core/image/fragments.h"
 #include "guidegen/cast/ray_packets.h"
 
 namespace scumble {
@@ -33,6 +36,14 @@ PrimaryRays::PrimaryRays(const EmbreeScene& scene, const CameraRays& camera, int
   }
   std::sort(ranked.begin(), ranked.end());
   for (const auto& [distance, row, column] : ranked) offsets_.push_back({(column + 0.5) / n, (row + 0.5) / n});
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> surfaces;
+  for (const PlacedObject& object : scene.objects()) surfaces[{object.object_id, object.material_id}] = 0;
+  std::uint32_t number = 0;
+  for (auto& [ids, surface] : surfaces) surface = number++;
+  for (const PlacedObject& object : scene.objects()) {
+    surfaces_.push_back(surfaces.at({object.object_id, object.material_id}));
+  }
+  one_surface_ = surfaces.size() < 2;
   // Pixels differ in the ray's origin or in its direction, depending on the camera's kind.
   const auto moved = [&](double x, double y) {
     const ViewRay ray = camera.Through(x, y);
@@ -174,6 +185,91 @@ std::array<PrimaryRays::Samples, kTilePixels> PrimaryRays::CastSubsamples(const 
   return covered;
 }
 
+// CastSubsamples by the same packets of rays, for which any hit would not do: they find the nearest surface.
+std::array<PrimaryRays::Samples, kTilePixels> PrimaryRays::FindSubsamples(const Tile& tile, const Mask& whole,
+                                                                          SubsampleHits& seen) const {
+  std::array<Samples, kTilePixels> covered;
+  const std::size_t per_pixel = offsets_.size();
+  seen.object.resize(kTilePixels * per_pixel), seen.primitive.resize(kTilePixels * per_pixel);
+  CastContext context(true);
+  RTCRayHit8 packet = {};
+  std::array<std::pair<int, int>, kPacket> tags = {};  // pixel and rank
+  int count = 0;
+  const auto flush = [&] {
+    alignas(32) int valid[kPacket];
+    for (int lane = 0; lane < kPacket; ++lane) {
+      valid[lane] = lane < count ? -1 : 0;
+      packet.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
+    }
+    CastPacket(valid, scene_.handle(), &context.embree, packet);
+    for (int lane = 0; lane < count; ++lane) {
+      const auto [pixel, rank] = tags[std::size_t(lane)];
+      const std::size_t place = std::size_t(pixel) * per_pixel + std::size_t(rank);
+      seen.object[place] = packet.hit.geomID[lane], seen.primitive[place] = packet.hit.primID[lane];
+      if (packet.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID) covered[std::size_t(pixel)].set(std::size_t(rank));
+    }
+    count = 0;
+  };
+  ForEachPixel(tile, [&](int pixel) {
+    if (whole[pixel]) return;
+    for (int rank = 0; rank < int(per_pixel); ++rank) {
+      const ViewRay ray =
+          camera_.Through(tile.x0 + TileColumn(pixel) + offsets_[rank].x, tile.y0 + TileRow(pixel) + offsets_[rank].y);
+      SetLane(packet.ray, count, SeenBy(camera_, ray));
+      tags[std::size_t(count)] = {pixel, rank};
+      if (++count == kPacket) flush();
+    }
+  });
+  if (count > 0) flush();
+  return covered;
+}
+
+// The surfaces of a pixel besides that of its hit. That one counts as at least one subsample, as for coverage.
+void PrimaryRays::FindBeside(const Tile& tile, int pixel, const TileHits& hits, const Samples& covered,
+                             const SubsampleHits& seen, float coverage, std::vector<Beside>& beside) const {
+  struct Share {
+    std::uint32_t surface;
+    int count;
+    int rank;  // of the nearest subsample
+  };
+  const std::size_t per_pixel = offsets_.size();
+  const std::uint32_t* const object = seen.object.data() + std::size_t(pixel) * per_pixel;
+  const std::uint32_t centre = surfaces_[hits.object[std::size_t(pixel)]];
+  int own = 0;
+  std::array<Share, kMaxAa * kMaxAa> shares;
+  std::size_t count = 0;
+  for (std::size_t rank = 0; rank < per_pixel; ++rank) {
+    if (!covered.test(rank)) continue;
+    const std::uint32_t surface = surfaces_[object[rank]];
+    if (surface == centre) {
+      ++own;
+      continue;
+    }
+    const auto end = shares.begin() + std::ptrdiff_t(count);
+    const auto known = std::find_if(shares.begin(), end, [&](const Share& one) { return one.surface == surface; });
+    if (known == end) {
+      shares[count++] = {surface, 1, int(rank)};
+    } else {
+      ++known->count;
+    }
+  }
+  if (count == 0) return;
+  std::sort(shares.begin(), shares.begin() + std::ptrdiff_t(count), [](const Share& a, const Share& b) {
+    return a.count != b.count ? a.count > b.count : a.surface < b.surface;
+  });
+  count = std::min<std::size_t>(count, Fragments::kMostInPixel);
+  int kept = std::max(own, 1);
+  for (std::size_t i = 0; i < count; ++i) kept += shares[i].count;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto rank = std::size_t(shares[i].rank);
+    beside.push_back({pixel,
+                      {tile.x0 + TileColumn(pixel) + offsets_[rank].x, tile.y0 + TileRow(pixel) + offsets_[rank].y},
+                      object[rank],
+                      seen.primitive[std::size_t(pixel) * per_pixel + rank],
+                      float(double(coverage) * shares[i].count / kept)});
+  }
+}
+
 // Looks for a surface at the covered subsamples, nearest first, and returns the number of rays cast. The nearest one
 // nearly always has it. A ray that grazes an edge may be blocked in one packet and pass alone.
 std::size_t PrimaryRays::CastMissed(const Tile& tile, Samples samples, int pixel, TileHits& hits,
@@ -205,7 +301,7 @@ std::size_t PrimaryRays::CastMissed(const Tile& tile, Samples samples, int pixel
 }
 
 std::size_t PrimaryRays::Cover(const Tile& tile, TileHits& hits, std::array<float, kTilePixels>& coverage,
-                               std::vector<Moved>& moved) const {
+                               std::vector<Moved>& moved, SubsampleHits& seen, std::vector<Beside>& beside) const {
   const std::size_t per_pixel = offsets_.size();
   if (per_pixel == 1) {
     for (std::size_t pixel = 0; pixel < kTilePixels; ++pixel) {
@@ -214,7 +310,8 @@ std::size_t PrimaryRays::Cover(const Tile& tile, TileHits& hits, std::array<floa
     return 0;
   }
   const Mask whole = FindWhole(tile, hits);
-  const std::array<Samples, kTilePixels> covered = CastSubsamples(tile, whole);
+  const std::array<Samples, kTilePixels> covered =
+      one_surface_ ? CastSubsamples(tile, whole) : FindSubsamples(tile, whole, seen);
   std::size_t cast = per_pixel * (std::size_t(tile.width) * tile.height - whole.count());
   ForEachPixel(tile, [&](int pixel) {
     std::size_t count = whole[pixel] ? per_pixel : covered[pixel].count();
@@ -225,6 +322,8 @@ std::size_t PrimaryRays::Cover(const Tile& tile, TileHits& hits, std::array<floa
       if (!hits.Met(pixel)) count = 0;
     }
     coverage[pixel] = float(double(count) / double(per_pixel));
+    if (one_surface_ || whole[pixel] || count == 0) return;
+    FindBeside(tile, pixel, hits, covered[pixel], seen, coverage[pixel], beside);
   });
   return cast;
 }

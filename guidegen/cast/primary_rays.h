@@ -4,6 +4,7 @@
 #include <array>
 #include <bitset>
 #include <cstddef>
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <vector>
 
@@ -31,11 +32,24 @@ class PrimaryRays {
     int pixel;
     glm::dvec2 at;
   };
+  // Another surface than that of a pixel's centre, as Fragments has them.
+  struct Beside {
+    int pixel;
+    glm::dvec2 at;  // the place in the picture of its subsample that is nearest to the centre
+    std::uint32_t object;
+    std::uint32_t primitive;
+    float coverage;
+  };
+  // What the rays through subsamples met, by pixel and rank. Memory for Cover, of one thread.
+  struct SubsampleHits {
+    std::vector<std::uint32_t> object, primitive;
+  };
   // Fills the coverage of a tile whose centres are cast. If a pixel's centre misses but a subsample hits, the pixel
   // takes the hit of its nearest covered subsample and is added to `moved`. A pixel whose centre hits has at least one
-  // covered subsample, so that no thin object is lost. Returns the number of rays.
+  // covered subsample, so that no thin object is lost. Adds the other surfaces of pixels to `beside`, those with the
+  // largest coverage, pixel by pixel. Returns the number of rays.
   std::size_t Cover(const Tile& tile, TileHits& hits, std::array<float, kTilePixels>& coverage,
-                    std::vector<Moved>& moved) const;
+                    std::vector<Moved>& moved, SubsampleHits& seen, std::vector<Beside>& beside) const;
 
  private:
   using Samples = std::bitset<kMaxAa * kMaxAa>;  // by rank: nearest the pixel's centre first
@@ -52,14 +66,20 @@ class PrimaryRays {
   void FindClear(const Packet& packet, const int* valid, CastContext& context, float* clear_from) const;
   Mask FindWhole(const Tile& tile, const TileHits& hits) const;
   std::array<Samples, kTilePixels> CastSubsamples(const Tile& tile, const Mask& whole) const;
+  std::array<Samples, kTilePixels> FindSubsamples(const Tile& tile, const Mask& whole, SubsampleHits& seen) const;
+  void FindBeside(const Tile& tile, int pixel, const TileHits& hits, const Samples& covered, const SubsampleHits& seen,
+                  float coverage, std::vector<Beside>& beside) const;
   std::size_t CastMissed(const Tile& tile, Samples samples, int pixel, TileHits& hits, std::vector<Moved>& moved) const;
 
   const EmbreeScene& scene_;
   const CameraRays& camera_;
   const bool backs_;             // whether camera rays may pass surfaces that block rays of light
   std::vector<Offset> offsets_;  // of subsamples, by rank
-  std::vector<double> across_;   // of the rays through centres, as in TileRays, by the picture's column
-  std::vector<double> up_;       // and by its row; both are padded to whole tiles
+  // By Embree's id of an object, its surface: objects with one name and material are one. In the order of ids.
+  std::vector<std::uint32_t> surfaces_;
+  bool one_surface_ = true;
+  std::vector<double> across_;  // of the rays through centres, as in TileRays, by the picture's column
+  std::vector<double> up_;      // and by its row; both are padded to whole tiles
 };
 
 }  // namespace scumble

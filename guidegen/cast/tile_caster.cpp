@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <utility>
 
 #include "core/image/check.h"
@@ -14,14 +13,6 @@
 
 namespace scumble {
 namespace {
-
-// The smallest rotation that takes the direction to the eye to +Z.
-glm::dvec3 RotateToEye(const glm::dvec3& normal, const ViewRay& ray) {
-  const glm::dvec3 to_eye = glm::normalize(-ray.direction);
-  const glm::dvec3 axis = glm::cross(to_eye, glm::dvec3(0.0, 0.0, 1.0));
-  const glm::dvec3 turn = glm::cross(axis, normal);
-  return normal + turn + glm::cross(axis, turn) / (1.0 + to_eye.z);
-}
 
 void Store(const std::array<float*, 3>& planes, std::size_t index, const glm::dvec3& value) {
   if (!planes[0]) return;
@@ -54,6 +45,8 @@ TileCaster::TileCaster(const EmbreeScene& scene, const View& view, const Guidege
       width_(guides.width()),
       past_caches_(guides.pixel_count() > kCachedPixels),
       primary_(scene, view.camera, guides.width(), guides.height(), options.aa),
+      point_values_(scene, view, options.normal_frame),
+      fragment_caster_(scene, view, options.normal_frame, guides.layers(), guides.width()),
       lights_(view.lights, LitObjects(scene, guides), view.world_radiance),
       object_records_(MakeObjectRecords(scene.objects())) {
   planes_.coverage = PlaneOrNull(guides, Layer::kCoverage);
@@ -87,20 +80,6 @@ TileCaster::Scratch::Scratch(const TileCaster& caster)
   for (OfTile& tile : tiles) tile.lit.resize(caster.lit_ ? kTilePixels : 0);
 }
 
-glm::dvec2 TileCaster::MotionOf(const TileHits& hits, int pixel, const glm::dvec2& barycentric) const {
-  const PlacedObject& next = view_.next_objects[hits.object[pixel]];
-  if (!next.mesh) return glm::dvec2(0.0);
-  // Both frames use equal arithmetic, so that still points move by exactly 0.
-  const auto seen_at = [&](const PlacedObject& object, const CameraRays& camera) {
-    const Triangle triangle = ViewTriangle(object, hits.primitive[pixel]);
-    return camera.PixelOf(triangle.corner[0] + (triangle.corner[1] - triangle.corner[0]) * barycentric.x +
-                          (triangle.corner[2] - triangle.corner[0]) * barycentric.y);
-  };
-  const std::optional<glm::dvec2> from = seen_at(scene_.objects()[hits.object[pixel]], view_.camera);
-  const std::optional<glm::dvec2> to = seen_at(next, view_.next_camera);
-  return from && to ? *to - *from : glm::dvec2(0.0);
-}
-
 // Pixels that the vector code cannot do: spheres, normal maps, bumps, bent normals, degenerate triangles, rays that
 // miss the pixel's centre.
 void TileCaster::WritePlain(int pixel, const glm::dvec2& at, TileScratch& scratch) const {
@@ -122,20 +101,20 @@ void TileCaster::WriteOthers(const Tile& tile, int pixel, const glm::dvec2& at, 
   const std::size_t index = Index(tile, pixel);
   const SurfacePoint point = scratch.points.At(pixel);
   if (options_.normal_frame == NormalFrame::kEye) {
-    const glm::dvec3 normal = RotateToEye(point.normal, view_.camera.Through(at.x, at.y));
+    const glm::dvec3 normal = point_values_.Normal(point, view_.camera.Through(at.x, at.y));
     for (int i = 0; i < 3; ++i) scratch.guides.normal[i][pixel] = float(normal[i]);
   }
   if (planes_.position[0]) Store(planes_.position, index, view_.camera.WorldFromView(point.position));
   if (planes_.pref[0]) {
-    const glm::dvec3 rest = object.mesh ? RestPosition(object, hits.primitive[pixel], point.barycentric)
-                                        : FindSurfacePoint(object, 0, view_.camera.Through(at.x, at.y)).rest_position;
+    const glm::dvec3 rest =
+        point_values_.Rest(hits.object[pixel], hits.primitive[pixel], point, view_.camera.Through(at.x, at.y));
     Store(planes_.pref, index, rest);
   }
   if (planes_.albedo[0]) {
     Store(planes_.albedo, index, glm::dvec3(SurfaceColor(object, hits.primitive[pixel], point.barycentric)));
   }
   if (planes_.motion[0]) {
-    const glm::dvec2 motion = MotionOf(hits, pixel, point.barycentric);
+    const glm::dvec2 motion = point_values_.Motion(hits.object[pixel], hits.primitive[pixel], point.barycentric);
     for (int i = 0; i < 2; ++i) planes_.motion[i][index] = float(motion[i]);
   }
   if (!lit_) return;
@@ -214,8 +193,10 @@ void TileCaster::WriteWhole(std::span<const Tile> tiles, const Scratch& scratch)
 void TileCaster::Fill(const Tile& tile, Scratch& buffers, TileScratch& scratch, Share& share,
                       std::vector<PathPixel>* pixels) const {
   const TileHits& hits = scratch.hits;
-  scratch.moved.clear();
-  share.rays.coverage += primary_.Cover(tile, scratch.hits, scratch.coverage, scratch.moved);
+  scratch.moved.clear(), buffers.beside.clear();
+  share.rays.coverage +=
+      primary_.Cover(tile, scratch.hits, scratch.coverage, scratch.moved, buffers.seen, buffers.beside);
+  for (const PrimaryRays::Beside& beside : buffers.beside) fragment_caster_.Add(beside, buffers.fragments);
   FindTileSurface(hits, scratch.rays, buffers.triangles, view_.bends_normals, scratch.guides,
                   points_ ? &scratch.points : nullptr);
   for (int i = 0; i < scratch.guides.left_over_count; ++i) {

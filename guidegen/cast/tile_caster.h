@@ -6,7 +6,9 @@
 #include <span>
 #include <vector>
 
+#include "guidegen/cast/cast_fragments.h"
 #include "guidegen/cast/cast_guides.h"
+#include "guidegen/cast/point_values.h"
 #include "guidegen/cast/primary_rays.h"
 #include "guidegen/cast/tile_hits.h"
 #include "guidegen/cast/tile_surface.h"
@@ -26,10 +28,12 @@ class TileCaster {
   // All four outlive the caster. It writes every pixel of the set's layers, background included.
   TileCaster(const EmbreeScene& scene, const View& view, const GuidegenOptions& options, GuideSet& guides);
 
-  // Buffers that a thread keeps from tile to tile. They never change the result.
+  // What a thread keeps from tile to tile. Buffers never change the result.
   class Scratch {
    public:
     explicit Scratch(const TileCaster& caster);
+
+    FoundFragments fragments;  // of all tiles that the thread has cast
 
    private:
     friend class TileCaster;
@@ -45,6 +49,8 @@ class TileCaster {
     };
     TriangleCache triangles;
     SoftLight soft_light;
+    PrimaryRays::SubsampleHits seen;
+    std::vector<PrimaryRays::Beside> beside;
     std::vector<OfTile> tiles;
   };
 
@@ -83,8 +89,6 @@ class TileCaster {
     std::vector<Plane> others;  // layers that are not written as whole tiles
   };
 
-  // The movement of a hit point in the picture until the next frame, in pixels; 0 if it is not in view then.
-  glm::dvec2 MotionOf(const TileHits& hits, int pixel, const glm::dvec2& barycentric) const;
   void WritePlain(int pixel, const glm::dvec2& at, TileScratch& scratch) const;
   void WriteOthers(const Tile& tile, int pixel, const glm::dvec2& at, TileScratch& scratch) const;
   void WriteWhole(std::span<const Tile> tiles, const Scratch& scratch) const;
@@ -104,6 +108,8 @@ class TileCaster {
   std::size_t width_;
   bool past_caches_;
   const PrimaryRays primary_;
+  const PointValues point_values_;
+  const FragmentCaster fragment_caster_;
   const LightSet lights_;
   const std::vector<ObjectRecord> object_records_;
   Planes planes_;

@@ -28,16 +28,17 @@ constexpr Bytes kPlacedTriangle = 220;  // Embree's, of each further instance: c
 constexpr Bytes kInstance = 2300;       // its node in the file, ours, and Embree's geometry
 
 // Of transfer/: what one pixel takes.
-constexpr Bytes kSource = 7;          // SourceField and who is painted
-constexpr Bytes kGuideOffset = 13;    // SourceField::guide_offset and who is matched, where not every pixel is
-constexpr Bytes kMatched = 32;        // of one that is matched then
-constexpr Bytes kSlopes = 8;          // DepthSlopes
-constexpr Bytes kSurfaceSeeds = 48;   // MatchCoherent
-constexpr Bytes kBandTile = 110'000;  // seeds of 512 columns, for one thread
-constexpr int kBandRadius = 3;        // up to it sources are kept for a few rows only
-constexpr Bytes kExplained = 24;      // planes that --show is drawn from, and a second picture
-constexpr Bytes kTones = 8 * kMega;   // SourceVariation, of an exemplar of any size
-constexpr Bytes kCoherence = 9;       // MeasureCoherence, for --json
+constexpr Bytes kSource = 7;            // SourceField and who is painted
+constexpr Bytes kGuideOffset = 13;      // SourceField::guide_offset and who is matched, where not every pixel is
+constexpr Bytes kMatched = 32;          // of one that is matched then
+constexpr Bytes kSlopes = 8;            // DepthSlopes
+constexpr Bytes kSurfaceSeeds = 48;     // MatchCoherent
+constexpr Bytes kBandTile = 110'000;    // seeds of 512 columns, for one thread
+constexpr int kBandRadius = 3;          // up to it sources are kept for a few rows only
+constexpr Bytes kExplained = 24;        // planes that --show is drawn from, and a second picture
+constexpr Bytes kTones = 8 * kMega;     // SourceVariation, of an exemplar of any size
+constexpr Bytes kPixelsOfFragment = 8;  // with --aa: objects' borders are rarely denser
+constexpr Bytes kCoherence = 9;         // MeasureCoherence, for --json
 
 Bytes PixelsOf(const Size& size) { return Bytes(size.width) * Bytes(size.height); }
 
@@ -177,6 +178,11 @@ void AddScene(const Scene& scene, const TexturePixels& more, MemoryNeed& need) {
 void AddGuides(const Size& size, const LayerSet& layers, const SceneRequest& options, MemoryNeed& need) {
   const Bytes pixels = PixelsOf(size);
   need.Take("guides", PlanesOf(size, Made(layers)));
+  if (options.aa > 1) {
+    // As found by the threads and as gathered, both in vectors that may have grown to twice their content, and colours.
+    const Bytes of_fragment = 2 * kFloat * (ChannelsOf(Made(layers)) + 4) + kPaint;
+    need.Take("fragments", of_fragment * pixels / kPixelsOfFragment);
+  }
   Bytes path_layers = 0;
   for (const LayerInfo& info : AllLayers()) path_layers += layers.Has(info.layer) && PathLayerExpression(info.layer);
   if (path_layers == 0) return;

@@ -70,14 +70,17 @@ struct SharedStyle {
 // One thread's part of the frame.
 class Band {
  public:
-  Band(const FrameInput& frame, std::span<const SharedStyle> styles, BandMemory& memory, Picture& out)
+  Band(const FrameInput& frame, std::span<const SharedStyle> styles, FragmentPaint& fragments, BandMemory& memory,
+       Picture& out)
       : frame_(frame),
         styles_(styles),
+        fragments_(fragments),
         out_(out),
         columns_((frame.guides.width() + kTileWidth - 1) / kTileWidth),
         memory_(memory),
         field_(memory.field) {
     for (const SharedStyle& shared : styles_) radius_ = std::max(radius_, shared.style.radius);
+    if (!fragments.empty()) radius_ = std::max(radius_, FragmentPaint::kReach);
     const int width = frame.guides.width(), height = frame.guides.height();
     const int rows = std::min(height, kStep + 2 * radius_);
     field_.ResizeRows(width, height, rows);
@@ -119,7 +122,12 @@ class Band {
     end_ = std::min(field_.height, y1 + radius_);
     Start(begin);
     for (std::size_t s = 0; s < styles_.size(); ++s) {
-      if (!memory_.regions[s].empty()) PaintStyle(static_cast<int>(s), begin, {own_.x0, y0, own_.x1, y1});
+      const Region painted{own_.x0, y0, own_.x1, y1};
+      if (!memory_.regions[s].empty()) {
+        PaintStyle(static_cast<int>(s), begin, painted);
+      } else if (!fragments_.empty()) {
+        PaintFragments(static_cast<int>(s), painted, frame_.map ? memory_.active : memory_.covered);
+      }
     }
   }
 
@@ -161,6 +169,7 @@ class Band {
     Match(s, begin, active);
     shares_.match += watch_.Lap();
     Vote(s, painted, active);
+    if (!fragments_.empty()) PaintFragments(s, painted, active);
     if (frame_.map) {
       for (const Region& region : RegionsOf(s)) DeactivateTile(region, Active());
     }
@@ -217,8 +226,17 @@ class Band {
     std::ranges::fill(words, 0);
   }
 
+  void PaintFragments(int s, const Region& painted, std::span<const std::uint8_t> active) {
+    const BandStyle& style = styles_[static_cast<std::size_t>(s)].style;
+    FragmentStyle settings{style.match, false, style.edges.has_value(), -2.0f, nullptr, style.tint};
+    if (style.edges) settings.crease_cosine = style.edges->CreaseCosine();
+    const VoteInput votes{field_, active, style.match.exemplar, style.radius, nullptr, painted};
+    fragments_.Paint(settings, s, votes, painted.y0, painted.y1);
+  }
+
   const FrameInput& frame_;
   std::span<const SharedStyle> styles_;
+  FragmentPaint& fragments_;
   Picture& out_;
   const int columns_;  // of tiles
   int radius_ = 0;     // the largest
@@ -233,8 +251,8 @@ class Band {
 
 }  // namespace
 
-BandResult PaintByBands(const FrameInput& frame, std::span<const BandStyle> styles, std::vector<BandMemory>& memory,
-                        Picture& out, RowProgress& progress) {
+BandResult PaintByBands(const FrameInput& frame, std::span<const BandStyle> styles, FragmentPaint& fragments,
+                        std::vector<BandMemory>& memory, Picture& out, RowProgress& progress) {
   const int width = frame.guides.width(), height = frame.guides.height();
   if (out.width != width || out.height != height) out = Picture(width, height);
   std::vector<SharedStyle> shared;
@@ -249,7 +267,7 @@ BandResult PaintByBands(const FrameInput& frame, std::span<const BandStyle> styl
   if (memory.size() < bands.size()) memory.resize(bands.size());
   const auto paint = [&](int worker) {
     std::optional<Band>& band = bands[static_cast<std::size_t>(worker)];
-    band.emplace(frame, shared, memory[static_cast<std::size_t>(worker)], out);
+    band.emplace(frame, shared, fragments, memory[static_cast<std::size_t>(worker)], out);
     band->Paint(row_ranges, worker, progress);
   };
   tbb::parallel_for(0, workers, paint, tbb::simple_partitioner());

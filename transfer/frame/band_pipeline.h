@@ -16,6 +16,7 @@
 #include "core/filter/edge_test.h"
 #include "core/filter/parallel.h"
 #include "scumble/picture.h"
+#include "transfer/frame/fragment_paint.h"
 #include "transfer/frame/frame_setup.h"
 #include "transfer/match/match.h"
 #include "transfer/match/styleblit_simd.h"
@@ -34,9 +35,9 @@ inline constexpr int kMostBandRadius = 3;
 
 // A style's settings for StyleBlit and the votes.
 struct BandStyle {
-  MatchInput
-      match;  // with `covered` instead of `active`, and the frame's region grown by the radius; without a GuideSpace
-  int radius = 0;                  // at most kMostBandRadius
+  MatchInput match;  // with `covered` instead of `active`, and the frame's region grown by the pixels around that
+                     // count; without a GuideSpace
+  int radius = 0;    // at most kMostBandRadius
   std::optional<EdgeRules> edges;  // without `covered`; none: plain voting
   Tint tint;
 };
@@ -64,10 +65,11 @@ struct BandMemory {
   WideScratch votes;
 };
 
-// StartFrame, MatchStyleBlit, Vote and ColorizeRow for all styles, with the same bytes in the frame's region of `out`.
+// StartFrame, MatchStyleBlit, Vote and ColorizeRow for all styles, with the same bytes in the frame's region of `out`;
+// and FragmentPaint::Paint for all fragments.
 // The styles are those that the frame's map names, by index; `memory` is by thread, resized as needed. Runs in the
 // caller's arena.
-BandResult PaintByBands(const FrameInput& frame, std::span<const BandStyle> styles, std::vector<BandMemory>& memory,
-                        Picture& out, RowProgress& progress);
+BandResult PaintByBands(const FrameInput& frame, std::span<const BandStyle> styles, FragmentPaint& fragments,
+                        std::vector<BandMemory>& memory, Picture& out, RowProgress& progress);
 
 }  // namespace scumble::internal

@@ -6,6 +6,8 @@
 #include <memory>
 #include <mutex>
 
+#include "core/image/fragments.h"
+
 namespace scumble {
 namespace {
 
@@ -56,20 +58,20 @@ void ForEachPixel(const GuideSet& guides, const Assignment& assignment, const Be
 
 }  // namespace
 
-StyleMap MapStyles(const GuideSet& guides, const StyleAssignment& assignment) {
-  StyleMap map{std::vector<std::uint16_t>(guides.pixel_count(), assignment.otherwise)};
+namespace {
+
+std::vector<std::uint16_t> StylesOf(const GuideSet& guides, const StyleAssignment& assignment) {
+  std::vector<std::uint16_t> style(guides.pixel_count(), assignment.otherwise);
   ForEachPixel(guides, assignment, [&] {
     return [&](std::size_t i, const std::uint16_t* object, const std::uint16_t* material) {
       if (object)
-        map.style[i] = *object;
+        style[i] = *object;
       else if (material)
-        map.style[i] = *material;
+        style[i] = *material;
     };
   });
-  return map;
+  return style;
 }
-
-namespace {
 
 // Adds the counts of one range of pixels when the range is done.
 class Counts {
@@ -90,8 +92,16 @@ class Counts {
 
 }  // namespace
 
-void AssignStyles(const GuideSet& guides, const RankedAssignment& assignment, StyleMap& map,
-                  std::span<std::size_t> pixels) {
+StyleMap MapStyles(const GuideSet& guides, const StyleAssignment& assignment) {
+  StyleMap map{StylesOf(guides, assignment), {}};
+  if (guides.fragments) map.fragment_style = StylesOf(guides.fragments->values, assignment);
+  return map;
+}
+
+namespace {
+
+void Assign(const GuideSet& guides, const RankedAssignment& assignment, std::vector<std::uint16_t>& style,
+            std::span<std::size_t> pixels) {
   std::mutex mutex;
   ForEachPixel(guides, assignment, [&] {
     return [&, counts = std::make_unique<Counts>(pixels, mutex)](std::size_t i, const RankedStyle* object,
@@ -99,10 +109,23 @@ void AssignStyles(const GuideSet& guides, const RankedAssignment& assignment, St
       const RankedStyle* best = object;
       if (material && (!best || material->rank > best->rank)) best = material;
       if (!best) return;
-      map.style[i] = best->style;
+      style[i] = best->style;
       ++(*counts)[best->rank];
     };
   });
+}
+
+}  // namespace
+
+void AssignStyles(const GuideSet& guides, const RankedAssignment& assignment, StyleMap& map,
+                  std::span<std::size_t> pixels) {
+  Assign(guides, assignment, map.style, pixels);
+  if (!guides.fragments) return;
+  if (map.fragment_style.empty()) {
+    for (const std::uint32_t pixel : guides.fragments->pixel) map.fragment_style.push_back(map.style[pixel]);
+  }
+  std::vector<std::size_t> uncounted(pixels.size());
+  Assign(guides.fragments->values, assignment, map.fragment_style, uncounted);
 }
 
 }  // namespace scumble

@@ -40,25 +40,27 @@ Strength StrengthAt(const ShadowInput& input, int x, int y) {
 
 }  // namespace
 
+void ShadowPainter::Paint(int x, int y, std::uint16_t* texel) const {
+  const Strength strength = StrengthAt(input_, x, y);
+  if (!(strength.strongest > 0.0f)) return;
+  const int level = input_.paint.level();
+  const PixelPosition q = seeds_.Position(seeds_.Nearest(x, y));
+  // The cell and not the position: a preview of half the size has equal cells.
+  const std::uint64_t hash = Hash(input_.seeds.seed, input_.seeds.time_step, level + input_.seeds.level_offset,
+                                  q.x >> level, q.y >> level, 0x5d);
+  const int step =
+      std::min(ShadowPaint::kSteps, static_cast<int>(strength.strongest * ShadowPaint::kSteps + UnitFloat(hash)));
+  if (step == 0) return;
+  input_.paint.Sample(input_.paint.PlaceFor(step, Mix64(hash)), x - q.x, y - q.y, step, texel);
+  const float share = std::min(1.0f, strength.mean / strength.strongest);
+  texel[3] = static_cast<std::uint16_t>(static_cast<float>(texel[3]) * share + 0.5f);
+}
+
 bool PaintShadows(const ShadowInput& input, Picture& out, RowProgress& progress) {
-  const int level = input.paint.level();
-  const SeedGrid seeds(input.seeds, level, input.region);
+  const ShadowPainter painter(input);
   return ForEachRow(input.region, progress, [&](int y) {
     for (int x = input.region.x0; x < input.region.x1; ++x) {
-      if (!Catches(input, input.guides.Index(x, y))) continue;
-      const Strength strength = StrengthAt(input, x, y);
-      if (!(strength.strongest > 0.0f)) continue;
-      const PixelPosition q = seeds.Position(seeds.Nearest(x, y));
-      // The cell and not the position: a preview of half the size has equal cells.
-      const std::uint64_t hash = Hash(input.seeds.seed, input.seeds.time_step, level + input.seeds.level_offset,
-                                      q.x >> level, q.y >> level, 0x5d);
-      const int step =
-          std::min(ShadowPaint::kSteps, static_cast<int>(strength.strongest * ShadowPaint::kSteps + UnitFloat(hash)));
-      if (step == 0) continue;
-      std::uint16_t* pixel = out.At(x, y);
-      input.paint.Sample(input.paint.PlaceFor(step, Mix64(hash)), x - q.x, y - q.y, step, pixel);
-      const float share = std::min(1.0f, strength.mean / strength.strongest);
-      pixel[3] = static_cast<std::uint16_t>(static_cast<float>(pixel[3]) * share + 0.5f);
+      if (Catches(input, input.guides.Index(x, y))) painter.Paint(x, y, out.At(x, y));
     }
   });
 }

@@ -21,6 +21,21 @@ struct ShadowInput {
   Region region;
 };
 
+// Paints single pixels: the input outlives it. Free to use from any thread.
+class ShadowPainter {
+ public:
+  explicit ShadowPainter(const ShadowInput& input)
+      : input_(input), seeds_(input.seeds, input.paint.level(), input.region) {}
+
+  // Writes the shadow paint of a pixel of the region, which itself need not catch shadows; where none of the catching
+  // pixels around is in shadow, the texel is left alone.
+  void Paint(int x, int y, std::uint16_t* texel) const;
+
+ private:
+  const ShadowInput& input_;
+  SeedGrid seeds_;
+};
+
 // Writes shadow paint into the catching pixels of the region. It is copied in chunks around seeds. Each comes from a
 // place whose tone suits the strength, in steps (ShadowPaint::kSteps); every chunk rounds to them by its own hash, so
 // that no contour shows.

@@ -32,10 +32,11 @@ namespace {
 
 using Color = std::array<std::int64_t, 4>;  // premultiplied, of 65535
 
-Color TexelAt(const Picture& picture, Source at) {
-  const std::uint16_t* texel = picture.At(at.x, at.y);
+Color ColorOf(const std::uint16_t* texel) {
   return {Premultiplied(texel, 0), Premultiplied(texel, 1), Premultiplied(texel, 2), texel[3]};
 }
+
+Color TexelAt(const Picture& picture, Source at) { return ColorOf(picture.At(at.x, at.y)); }
 
 // The base layer for a normal, interpolated. Otherwise neighbours across a texel's border would differ by a whole step,
 // which a small exemplar on a large round form shows as bands.
@@ -62,16 +63,6 @@ Color ToneFor(const PreparedExemplar& exemplar, const Picture& tone, glm::vec3 n
   return sum;
 }
 
-// The base layer at a pixel's own nearest neighbour in exemplar k.
-Color ToneAt(const HybridInput& input, std::size_t pixel, int k) {
-  const glm::vec3 normal = input.guides.Vec3(Layer::kNormal, pixel);
-  const Picture& tone = input.base.picture(k);
-  if (!input.space) return ToneFor(input.votes.exemplar, tone, normal);
-  float extra_values[GuideSpace::kMaxExtra];
-  input.space->Read(input.guides, pixel, input.brightness, extra_values);
-  return TexelAt(tone, input.space->Nearest(k, normal, extra_values));
-}
-
 void Store(const Color& color, std::uint16_t* out) {
   const std::int64_t alpha = std::clamp<std::int64_t>(color[3], 0, 65535);
   for (int c = 0; c < 3; ++c) {
@@ -83,22 +74,34 @@ void Store(const Color& color, std::uint16_t* out) {
 
 }  // namespace
 
+void AddBaseLayer(const HybridLayers& layers, const HybridGuide& guide, const std::uint16_t* base_vote,
+                  std::uint16_t* texel) {
+  const int own = layers.illumination.Choose(guide.light);
+  const Picture& tone = layers.base.picture(own);
+  Color color = layers.space ? TexelAt(tone, layers.space->Nearest(own, guide.normal, guide.extra_values))
+                             : ToneFor(layers.paint, tone, guide.normal);
+  const Color paint_color = ColorOf(texel), base_color = ColorOf(base_vote);
+  for (std::size_t c = 0; c < 4; ++c) color[c] += paint_color[c] - base_color[c];
+  Store(color, texel);
+}
+
 bool VoteHybrid(const HybridInput& input, Picture& out, RowProgress& progress) {
   const VoteInput& paint = input.votes;
   const Region& region = paint.region;
   Picture base_votes(out.width, out.height);
   const VoteInput base{paint.field, paint.active, input.base, paint.radius, paint.edges, region};
   if (!Vote(base, base_votes, progress)) return false;
+  const HybridLayers layers{paint.exemplar, input.base, input.illumination, input.space};
   VoteInput both = paint;
   both.finished = [&](int y, int x0, int x1) {
     for (int x = x0; x < x1; ++x) {
       const std::size_t p = paint.field.Index(x, y);
       if (!paint.active[p]) continue;
-      const int own = input.illumination.Choose(input.luminance.empty() ? 0.0f : input.luminance[p]);
-      Color color = ToneAt(input, p, own);
-      const Color paint_vote = TexelAt(out, {x, y}), base_vote = TexelAt(base_votes, {x, y});
-      for (int c = 0; c < 4; ++c) color[c] += paint_vote[c] - base_vote[c];
-      Store(color, out.At(x, y));
+      float extra_values[GuideSpace::kMaxExtra];
+      if (input.space) input.space->Read(input.guides, p, input.brightness, extra_values);
+      const float light = input.luminance.empty() ? 0.0f : input.luminance[p];
+      AddBaseLayer(layers, {input.guides.Vec3(Layer::kNormal, p), light, extra_values}, base_votes.At(x, y),
+                   out.At(x, y));
     }
     if (paint.finished) paint.finished(y, x0, x1);
   };

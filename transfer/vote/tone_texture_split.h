@@ -42,4 +42,23 @@ struct HybridInput {
 // Writes straight alpha into `out`; other pixels stay. Reports each row of the region twice. False: cancelled.
 bool VoteHybrid(const HybridInput& input, Picture& out, RowProgress& progress);
 
+// One colour of the hybrid.
+struct HybridLayers {
+  const PreparedExemplar& paint;
+  const PreparedExemplar& base;  // by MakeBaseLayers
+  const Illumination& illumination;
+  const GuideSpace* space = nullptr;  // as in HybridInput
+};
+
+// The guides of a place, as the search reads them.
+struct HybridGuide {
+  glm::vec3 normal;
+  float light = 0.0f;                   // exposed luminance
+  const float* extra_values = nullptr;  // only with a space
+};
+
+// VoteHybrid's colour there, from the votes on the base layers and, in `texel`, on the paint.
+void AddBaseLayer(const HybridLayers& layers, const HybridGuide& guide, const std::uint16_t* base_vote,
+                  std::uint16_t* texel);
+
 }  // namespace scumble::internal

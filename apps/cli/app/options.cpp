@@ -115,7 +115,8 @@ void AddViewOptions(CLI::App& verb, SceneOptions& options) {
 }
 
 void AddCastOptions(CLI::App& verb, SceneOptions& options) {
-  verb.add_option("--aa", options.request.aa, "N x N subsamples of the silhouette's coverage, 1 to 16")
+  verb.add_option("--aa", options.request.aa,
+                  "N x N subsamples, 1 to 16, for smooth outlines and borders between objects")
       ->type_name("N")
       ->check(CLI::Range(1, 16))
       ->capture_default_str();

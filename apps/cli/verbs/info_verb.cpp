@@ -41,6 +41,7 @@ Expected<Json> DescribeGuides(const std::string& path) {
   for (const auto& [view_layer, layers] : info.layers) {
     json[view_layer.empty() ? "layers" : "layers of " + view_layer] = layers.ToString();
   }
+  if (info.fragments > 0) json["fragments"] = info.fragments;
   if (info.from_blender) json["note"] = BlenderNote(info);
   for (const auto& [id, name] : info.header.object_names) json["objects"].push_back(name);
   for (const auto& [id, name] : info.header.material_names) json["materials"].push_back(name);

@@ -8,6 +8,7 @@
 #include <OpenEXR/ImfInputPart.h>
 #include <OpenEXR/ImfMatrixAttribute.h>
 #include <OpenEXR/ImfMultiPartInputFile.h>
+#include <OpenEXR/ImfOpaqueAttribute.h>
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStringAttribute.h>
@@ -53,6 +54,24 @@ class MemoryOutput : public Imf::OStream {
   std::size_t at_ = 0;
 };
 
+// The bytes of an attribute, for the library to copy.
+class BlobInput : public Imf::IStream {
+ public:
+  explicit BlobInput(const ExrBlob& blob) : Imf::IStream("attribute"), bytes_(blob.bytes) {}
+
+  bool read(char to[], int count) override {
+    std::memcpy(to, bytes_.data() + at_, static_cast<std::size_t>(count));
+    at_ += static_cast<std::size_t>(count);
+    return at_ < bytes_.size();
+  }
+  std::uint64_t tellg() override { return at_; }
+  void seekg(std::uint64_t at) override { at_ = static_cast<std::size_t>(at); }
+
+ private:
+  const std::vector<std::byte>& bytes_;
+  std::size_t at_ = 0;
+};
+
 // Sets OpenEXR's threads, which OpenImageIO shares and sets in the same manner. With one thread there is none beside
 // the caller's.
 void SetThreads() {
@@ -84,6 +103,7 @@ std::size_t RoomFor(const ExrImage& image) {
   constexpr std::size_t kHeader = 1 << 16, kOfRow = 32;  // their offsets and sizes
   std::size_t room = kHeader + kOfRow * static_cast<std::size_t>(image.height);
   for (const ExrChannel& channel : image.channels) room += channel.values.size() * (channel.half ? 2 : 4);
+  for (const auto& [name, blob] : image.blobs) room += blob.bytes.size();
   return room;
 }
 
@@ -96,6 +116,12 @@ Imf::Header HeaderOf(const ExrImage& image) {
     Imath::M44f rounded;
     for (int i = 0; i < 16; ++i) rounded[i / 4][i % 4] = static_cast<float>(matrix[i / 4][i % 4]);
     header.insert(name, Imf::M44fAttribute(rounded));
+  }
+  for (const auto& [name, blob] : image.blobs) {
+    Imf::OpaqueAttribute attribute(blob.type.c_str());
+    BlobInput input(blob);
+    attribute.readValueFrom(input, static_cast<int>(blob.bytes.size()), 0);
+    header.insert(name, attribute);
   }
   for (const ExrChannel& channel : image.channels) {
     header.channels().insert(channel.name, Imf::Channel(channel.half ? Imf::HALF : Imf::FLOAT));
@@ -113,13 +139,18 @@ std::optional<ExrHeader> PlainHeader(const Imf::Header& header) {
   const std::int64_t height = std::int64_t(window.max.y) - window.min.y + 1;
   const bool fits = width >= 1 && height >= 1 && width <= kMaxImageSide && height <= kMaxImageSide;
   if (!fits || width * height > kMaxPicturePixels) return std::nullopt;
-  ExrHeader plain{static_cast<int>(width), static_cast<int>(height), {}, {}};
+  ExrHeader plain{static_cast<int>(width), static_cast<int>(height), {}, {}, {}};
   for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) {
     const Imf::Channel& found = channel.channel();
     if (found.type == Imf::UINT || found.xSampling != 1 || found.ySampling != 1) return std::nullopt;
     plain.channels[channel.name()] = found.type == Imf::HALF;
   }
   for (auto attribute = header.begin(); attribute != header.end(); ++attribute) {
+    if (const auto* const blob = dynamic_cast<const Imf::OpaqueAttribute*>(&attribute.attribute())) {
+      const std::byte* const bytes = reinterpret_cast<const std::byte*>(static_cast<const char*>(blob->data()));
+      plain.blobs[attribute.name()] = {blob->typeName(), {bytes, bytes + blob->dataSize()}};
+      continue;
+    }
     const auto* const text = dynamic_cast<const Imf::StringAttribute*>(&attribute.attribute());
     const std::string value =
         text ? text->value().c_str() : "";  // up to a NUL; empty texts are left out, as the module does

@@ -25,12 +25,19 @@ struct ExrChannel {
   std::span<const float> values;
 };
 
+// An attribute of a type that OpenEXR does not know; programs that do not know it either pass it over.
+struct ExrBlob {
+  std::string type;
+  std::vector<std::byte> bytes;
+};
+
 struct ExrImage {
   int width = 0, height = 0;
   std::vector<ExrChannel> channels;            // with different names, in any order
   std::string compression = "zip";             // a name that IsLossless accepts
   std::map<std::string, std::string> texts;    // attributes
   std::map<std::string, glm::dmat4> matrices;  // attributes, rounded to float; for row vectors, as OpenEXR has them
+  std::map<std::string, ExrBlob> blobs;        // attributes
 };
 
 // The bytes of the file, the same for any number of threads. The library's failures become errors that name the file.
@@ -41,6 +48,7 @@ struct ExrHeader {
   int width = 0, height = 0;
   std::map<std::string, bool> channels;      // by name, in the file's order: whether it is stored in half floats
   std::map<std::string, std::string> texts;  // attributes
+  std::map<std::string, ExrBlob> blobs;      // attributes of types that OpenEXR does not know
 };
 
 // Returns a plane of width · height floats for a channel; empty: the channel is not read.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/image/fragments.h"
 #include "core/io/exr/half_float.h"
 #include "core/io/guides/guide_storage.h"
 
@@ -20,6 +21,11 @@ float Rounded(float value, bool is_signed, GuidePrecision precision) {
 
 void RoundGuides(GuidePrecision precision, GuideSet& guides) {
   if (precision == GuidePrecision::kFloat) return;
+  if (guides.fragments) {
+    auto rounded = std::make_shared<Fragments>(*guides.fragments);
+    RoundGuides(precision, rounded->values);
+    guides.fragments = std::move(rounded);
+  }
   const auto coverage = guides.Plane(Layer::kCoverage);
   for (const LayerInfo& info : AllLayers()) {
     const bool normal = info.layer == Layer::kNormal;

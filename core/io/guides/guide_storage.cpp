@@ -5,6 +5,7 @@
 #include <iterator>
 #include <limits>
 
+#include "core/image/fragments.h"
 #include "core/io/exr/half_float.h"
 #include "core/io/guide_file.h"
 
@@ -69,6 +70,11 @@ Status CheckGuideTarget(const std::filesystem::path& path, const GuideWriteOptio
 }
 
 void RoundColorLayersToHalf(GuideSet& guides) {
+  if (guides.fragments) {
+    auto rounded = std::make_shared<Fragments>(*guides.fragments);
+    RoundColorLayersToHalf(rounded->values);
+    guides.fragments = std::move(rounded);
+  }
   for (const LayerInfo& info : AllLayers()) {
     if (!guides.Has(info.layer) || !info.is_color) continue;
     for (int c = 0; c < ChannelCount(info.layer); ++c) {

@@ -3,6 +3,7 @@
 #include "core/io/file/atomic_file.h"
 #include "core/io/guide_file.h"
 #include "core/io/guides/cryptomatte_writer.h"
+#include "core/io/guides/fragment_storage.h"
 #include "core/io/guides/guide_header.h"
 
 namespace scumble {
@@ -40,6 +41,10 @@ internal::ExrImage ImageOf(const GuideSet& guides, const GuideWriteOptions& opti
     // Our matrices are for column vectors, OpenEXR's for row vectors: the same 16 numbers in memory.
     image.matrices["worldToCamera"] = kExrFromView * guides.camera->view_from_world;
     image.matrices["worldToNDC"] = kNdcFromClip * guides.camera->clip_from_view * guides.camera->view_from_world;
+  }
+  if (guides.fragments) {
+    image.blobs[internal::kFragmentAttribute] = {internal::kFragmentType,
+                                                 internal::EncodeFragments(guides, options.half)};
   }
   if (options.cryptomatte) mattes.AddTo(guides, image);
   return image;

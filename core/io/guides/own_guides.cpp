@@ -8,6 +8,7 @@
 
 #include "core/io/exr/scanline_exr.h"
 #include "core/io/guides/cryptomatte.h"
+#include "core/io/guides/fragment_storage.h"
 #include "core/io/guides/guide_header.h"
 #include "core/io/guides/guide_storage.h"
 
@@ -91,6 +92,10 @@ std::optional<GuideSet> ReadPlainGuides(const std::filesystem::path& path, const
     NormalizeNormals(guides);
   }
   LimitDepths(guides);
+  const auto fragments = header->blobs.find(kFragmentAttribute);
+  if (fragments != header->blobs.end() && guides.Has(Layer::kCoverage)) {
+    guides.fragments = DecodeFragments(fragments->second.bytes, guides);
+  }
   if (!guides.Validate(path.string())) return std::nullopt;
   return guides;
 }
@@ -111,6 +116,8 @@ std::optional<GuideFileInfo> InspectPlainGuides(const std::filesystem::path& pat
   }
   info.layers[""] = CompleteLayers(*meanings);
   TakeHeader(header->texts, info.header);
+  const auto fragments = header->blobs.find(kFragmentAttribute);
+  if (fragments != header->blobs.end()) info.fragments = CountFragments(fragments->second.bytes);
   return info;
 }
 

@@ -434,10 +434,15 @@ Expected<GuideFileInfo> InspectGuides(const std::filesystem::path& path) {
   SCUMBLE_ASSIGN(const FileContents contents, Survey(*input, name));
   LayerSet all;
   for (const LayerInfo& info : AllLayers()) all.Add(info.layer);
-  GuideFileInfo info{contents.spec.full_width, contents.spec.full_height,
-                     contents.has_half,        contents.from_blender,
-                     !contents.mattes.empty(), {},
-                     contents.all_names,       {}};
+  GuideFileInfo info{contents.spec.full_width,
+                     contents.spec.full_height,
+                     contents.has_half,
+                     contents.from_blender,
+                     !contents.mattes.empty(),
+                     0,
+                     {},
+                     contents.all_names,
+                     {}};
   std::set<std::string> prefixes = ViewLayers(contents);
   if (prefixes.empty()) prefixes.insert("");
   for (const std::string& prefix : prefixes) {

@@ -137,7 +137,7 @@ TEST_F(Promises, ExrAttributesOfAnotherSize) {
 // Guides of a side with the attribute type, deepscanline, and these bits of the version, which stands at byte 4.
 std::vector<std::byte> CalledDeep(int side, std::uint32_t flags) {
   const GuideSet guides = Nothing(side, side);
-  internal::ExrImage image{side, side, {}, "zips", {{"tYPE", "deepscanline"}}, {}};
+  internal::ExrImage image{side, side, {}, "zips", {{"tYPE", "deepscanline"}}, {}, {}};
   for (const char* name : {"normal.X", "normal.Y", "normal.Z"})
     image.channels.push_back({name, false, guides.Plane(Layer::kNormal, 0)});
   image.channels.push_back({"A", false, guides.Plane(Layer::kCoverage, 0)});

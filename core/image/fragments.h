@@ -1,0 +1,40 @@
+// Fragments: the surfaces that share a pixel with the one at its centre, for smooth borders between objects.
+//
+// A surface is here an object with a material. Where the subsamples of a pixel's coverage see several surfaces, the
+// layers of the guides hold the one at the centre, as they do everywhere, and a fragment holds each of the others. So
+// whoever does not know fragments loses nothing but smooth borders. Pixels that show one surface have no fragment:
+// memory is in proportion to the borders in the picture.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/image/guides.h"
+#include "core/image/status.h"
+
+namespace scumble {
+
+struct Fragments {
+  // So a pixel shows four surfaces at most: that of its centre, and the three others with the largest coverage.
+  static constexpr int kMostInPixel = 3;
+
+  // By fragment, the index of its pixel (GuideSet::Index), never falling. A pixel's fragments follow each other.
+  std::vector<std::uint32_t> pixel;
+  // count() × 1 values: the layers of the guides, at the subsample of this surface that is nearest to the pixel's
+  // centre. Coverage is the share of the pixel that the surface fills. What is left of the pixel's own coverage belongs
+  // to the surface at its centre. Luminance, shadow and light paths are those of the nearest pixel, among the eight
+  // around and the fragment's own, whose centre shows the surface; without one, those of the fragment's own pixel.
+  GuideSet values;
+
+  std::size_t count() const { return pixel.size(); }
+  // The first fragment of this pixel or a later one.
+  std::size_t From(std::size_t pixel_index) const;
+
+  // Ok, or what makes the fragments unusable beside these guides: layers that are missing, pixels that are not in the
+  // picture or out of order, more than kMostInPixel in one, more coverage than the pixel's own, or values that
+  // GuideSet::Validate refuses. `name` stands for the guides in the message. O(fragments).
+  Status Validate(const GuideSet& guides, const std::string& name) const;
+};
+
+}  // namespace scumble

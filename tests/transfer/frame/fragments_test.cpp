@@ -1,0 +1,308 @@
+// Smooth borders between objects against pictures of all subsamples.
+#include "core/image/fragments.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/image/color.h"
+#include "measure/compare/flip.h"
+#include "tests/support/guidegen_checks.h"
+#include "tests/support/guidegen_scenes.h"
+#include "tests/support/transfer_fixtures.h"
+
+namespace scumble {
+namespace {
+
+using namespace testing;
+
+constexpr int kWidth = 120, kHeight = 90, kAa = 4;
+
+// Two balls that overlap before a wall; everything is covered, so every border is between objects.
+Scene TwoBalls() {
+  Scene scene = SceneOf(QuadMesh(), glm::scale(Moved(0, 0, -2), glm::dvec3(8.0)));
+  AddObject(scene, "near", BallMesh(40), Moved(-0.5, 0.1, 0.4));
+  AddObject(scene, "far", BallMesh(40), Moved(0.6, -0.2, -0.5));
+  return scene;
+}
+
+GuideSet GuidesAt(int width, int height, int aa, LayerSet layers = {}) {
+  GuidegenOptions options = Sized(width, height, layers);
+  options.aa = aa;
+  return Render(TwoBalls(), FlatCamera(6.0, 1.5), options).guides;
+}
+
+GuideSet WithoutFragments(GuideSet guides) {
+  guides.fragments = nullptr;
+  return guides;
+}
+
+// By the object's name.
+std::uint32_t IdOfObject(const GuideSet& guides, const std::string& name) {
+  for (const auto& [id, known] : guides.object_names) {
+    if (known == name) return id;
+  }
+  return 0;
+}
+
+Picture PlainColor(std::array<std::uint16_t, 3> color) {
+  Picture picture(64, 64);
+  for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
+    std::copy(color.begin(), color.end(), picture.rgba.begin() + std::ptrdiff_t(i)), picture.rgba[i + 3] = 65535;
+  }
+  return picture;
+}
+
+Picture MustPaint(const std::vector<const PreparedStyle*>& styles, const StyleMap& map, const GuideSet& guides,
+                  TransferOptions options = {}) {
+  TransferScratch scratch;
+  Picture out;
+  const Status done = Transfer(styles, map, guides, options, scratch, out);
+  EXPECT_TRUE(done.ok()) << (done.ok() ? "" : done.error().message);
+  return out;
+}
+
+PreparedStyle MustPrepare(const Style& style, int height = kHeight) {
+  auto prepared = Prepare(style, height);
+  EXPECT_TRUE(prepared.ok());
+  return *std::move(prepared);
+}
+
+// Three styles of one colour each, by object: the mean of the subsamples' colours in linear light is known.
+TEST(FragmentPaint, ColoursAreMixedByCoverage) {
+  const GuideSet guides = GuidesAt(kWidth, kHeight, kAa);
+  const GuideSet fine = GuidesAt(kWidth * kAa, kHeight * kAa, 1);
+  const std::array<std::uint16_t, 3> colors[] = {{60000, 2000, 30000}, {1000, 50000, 9000}, {20000, 20000, 65535}};
+  std::vector<PreparedStyle> prepared;
+  for (const auto& color : colors) prepared.push_back(MustPrepare(PlainStyle(PlainColor(color))));
+  const StyleAssignment assignment{{{IdOfObject(guides, "near"), 1}, {IdOfObject(guides, "far"), 2}}, {}, 0};
+  const StyleMap map = MapStyles(guides, assignment), of_fine = MapStyles(fine, assignment);
+  const Picture picture = MustPaint({&prepared[0], &prepared[1], &prepared[2]}, map, guides);
+  int mixed = 0;
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      float sum[3] = {};
+      bool differs = false;
+      for (int k = 0; k < kAa * kAa; ++k) {
+        const std::size_t at = fine.Index(x * kAa + k % kAa, y * kAa + k / kAa);
+        differs = differs || of_fine.style[at] != map.style[guides.Index(x, y)];
+        for (int c = 0; c < 3; ++c) sum[c] += Srgb16ToLinear(colors[of_fine.style[at]][c]) / (kAa * kAa);
+      }
+      mixed += differs;
+      const std::uint16_t* pixel = picture.At(x, y);
+      ASSERT_EQ(pixel[3], 65535);
+      for (int c = 0; c < 3; ++c) {
+        if (differs) {
+          EXPECT_NEAR(Srgb16ToLinear(pixel[c]), sum[c], 1e-4) << x << ", " << y;
+        } else {
+          EXPECT_EQ(pixel[c], colors[map.style[guides.Index(x, y)]][c]) << x << ", " << y;
+        }
+      }
+    }
+  }
+  EXPECT_GT(mixed, 100);
+}
+
+// The mean over all subsamples of color(x, y, k), in linear light.
+Picture Supersampled(int width, int height, const std::function<const std::uint16_t*(int x, int y, int k)>& color) {
+  Picture result(width, height);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      float sum[3] = {};
+      for (int k = 0; k < kAa * kAa; ++k) {
+        const std::uint16_t* texel = color(x, y, k);
+        for (int c = 0; c < 3; ++c) sum[c] += Srgb16ToLinear(texel[c]) / (kAa * kAa);
+      }
+      for (int c = 0; c < 3; ++c) result.At(x, y)[c] = Srgb16FromLinear(sum[c]);
+      result.At(x, y)[3] = 65535;
+    }
+  }
+  return result;
+}
+
+// The pixel that is nearest to a subsample and whose centre shows the subsample's object.
+std::pair<int, int> NearestOfObject(const GuideSet& guides, const GuideSet& fine, int x, int y, int k) {
+  const float id = fine.Plane(Layer::kObject)[fine.Index(x * kAa + k % kAa, y * kAa + k / kAa)];
+  const double at_x = x + (k % kAa + 0.5) / kAa, at_y = y + (k / kAa + 0.5) / kAa;
+  double least = 1e9;
+  std::pair<int, int> nearest(x, y);
+  for (int v = std::max(0, y - 2); v <= std::min(guides.height() - 1, y + 2); ++v) {
+    for (int u = std::max(0, x - 2); u <= std::min(guides.width() - 1, x + 2); ++u) {
+      const double off = std::hypot(u + 0.5 - at_x, v + 0.5 - at_y);
+      if (guides.Plane(Layer::kObject)[guides.Index(u, v)] == id && off < least) least = off, nearest = {u, v};
+    }
+  }
+  return nearest;
+}
+
+// Smooth paint, with strokes of some strength.
+Picture BrushedPicture(int size, double strength) {
+  Picture picture = PositionPicture(size);
+  for (int y = 0; y < size; ++y) {
+    for (int x = 0; x < size; ++x) {
+      std::uint16_t* texel = picture.At(x, y);
+      const double stroke = strength * std::sin(0.9 * x + 0.4 * y);
+      const auto level = [&](double value) {
+        return static_cast<std::uint16_t>(65535.0 * std::clamp(value, 0.0, 1.0));
+      };
+      texel[0] = level(0.2 + 0.6 * x / size + stroke), texel[1] = level(0.8 - 0.6 * y / size + stroke);
+      texel[2] = level(0.5 - stroke), texel[3] = 65535;
+    }
+  }
+  return picture;
+}
+
+double MeanFlipAtBorders(const Picture& a, const Picture& b, const GuideSet& guides) {
+  const auto report = MeasureFlip(a, b);
+  EXPECT_TRUE(report.ok());
+  double sum = 0.0;
+  int count = 0;
+  std::vector<std::uint8_t> in_band(guides.pixel_count());
+  for (const std::uint32_t pixel : guides.fragments->pixel) in_band[pixel] = 1;
+  for (std::size_t i = 0; i < in_band.size(); ++i) {
+    if (in_band[i]) sum += report->map[i], ++count;
+  }
+  return sum / std::max(1, count);
+}
+
+struct BorderError {
+  double smooth, jagged;
+};
+
+// Against a picture `expected` of the style.
+BorderError ErrorAtBorders(const Style& style, const GuideSet& guides, const Picture& expected) {
+  const Picture smooth = MustTransfer(style, guides).picture;
+  const Picture jagged = MustTransfer(style, WithoutFragments(guides)).picture;
+  return {MeanFlipAtBorders(expected, smooth, guides), MeanFlipAtBorders(expected, jagged, guides)};
+}
+
+// Lit Sphere paints a subsample by its normal alone, so the supersampled picture is four times as wide and high.
+TEST(FragmentPaint, LitSphereIsTheLargePictureMadeSmall) {
+  const GuideSet guides = GuidesAt(kWidth, kHeight, kAa);
+  const GuideSet fine = GuidesAt(kWidth * kAa, kHeight * kAa, 1);
+  Style style = PlainStyle(BrushedPicture(160, 0.0));
+  style.transfer.method = Method::kLitSphere;
+  style.transfer.blend_radius = 0;
+  const Picture large = MustTransfer(style, fine).picture;
+  const Picture expected = Supersampled(
+      kWidth, kHeight, [&](int x, int y, int k) { return large.At(x * kAa + k % kAa, y * kAa + k / kAa); });
+  const BorderError error = ErrorAtBorders(style, guides, expected);
+  EXPECT_LT(error.smooth, 0.01);
+  EXPECT_GT(error.jagged, 5 * error.smooth);
+}
+
+// Votes of every kind: the nearest pixel of a subsample's object has the paint that it would have, but for the strokes'
+// course over one pixel.
+TEST(FragmentPaint, BordersAreThoseOfTheSupersampledVotes) {
+  const GuideSet guides = GuidesAt(kWidth, kHeight, kAa);
+  const GuideSet fine = GuidesAt(kWidth * kAa, kHeight * kAa, 1);
+  for (const int kind : {0, 1, 2, 3, 4}) {
+    SCOPED_TRACE(kind);
+    Style style = PlainStyle(BrushedPicture(160, 0.02));
+    style.transfer.edge_aware = true;
+    style.transfer.blend_radius = 1;
+    if (kind == 1) style.transfer.blend_radius = 3;
+    if (kind == 2) style.transfer.blend_radius = 5;
+    if (kind == 3) style.transfer.hybrid = 4.0;
+    if (kind == 4) style.transfer.method = Method::kBruteForce;
+    const Picture jagged = MustTransfer(style, WithoutFragments(guides)).picture;
+    const Picture expected = Supersampled(kWidth, kHeight, [&](int x, int y, int k) {
+      const auto [u, v] = NearestOfObject(guides, fine, x, y, k);
+      return jagged.At(u, v);
+    });
+    const BorderError error = ErrorAtBorders(style, guides, expected);
+    EXPECT_LT(error.smooth, 0.01);
+    EXPECT_GT(error.jagged, 4 * error.smooth);
+  }
+}
+
+TEST(FragmentPaint, OtherPixelsAreTheSame) {
+  const GuideSet guides = GuidesAt(kWidth, kHeight, kAa);
+  const Style style = PlainStyle(NoisePicture(100));
+  const Picture smooth = MustTransfer(style, guides).picture;
+  const Picture jagged = MustTransfer(style, WithoutFragments(guides)).picture;
+  std::vector<std::uint8_t> mixed(guides.pixel_count());
+  for (const std::uint32_t pixel : guides.fragments->pixel) mixed[pixel] = 1;
+  int changed = 0;
+  for (std::size_t i = 0; i < mixed.size(); ++i) {
+    const bool same = std::equal(&smooth.rgba[4 * i], &smooth.rgba[4 * i] + 4, &jagged.rgba[4 * i]);
+    EXPECT_TRUE(same || mixed[i]);
+    changed += !same;
+  }
+  EXPECT_GT(changed, 100);
+}
+
+// Styles of all kinds side by side: threads, regions, bands and fields make one picture.
+TEST(FragmentPaint, ThreadsRegionsAndBandsMakeOnePicture) {
+  GuideSet guides = GuidesAt(kWidth, kHeight, kAa, {Layer::kAlbedo, Layer::kLuminance});
+  for (std::size_t i = 0; i < guides.pixel_count(); ++i) guides.Plane(Layer::kLuminance)[i] = UnitFloat(Hash(i));
+  Style plain = PlainStyle(NoisePicture(100)), lit = plain, tinted = plain;
+  plain.transfer.blend_radius = 0;
+  lit.exemplars.push_back({"lit.png", BrushedPicture(100, 0.15), std::nullopt});
+  lit.exemplars[0].luminance = 0.2, lit.exemplars[1].luminance = 0.8;
+  lit.transfer.blend_radius = 2, lit.transfer.edge_aware = true;
+  tinted.transfer.colorize = 0.7, tinted.transfer.blend_radius = 3;
+  const PreparedStyle prepared[] = {MustPrepare(plain), MustPrepare(lit), MustPrepare(tinted)};
+  const std::vector<const PreparedStyle*> styles = {&prepared[0], &prepared[1], &prepared[2]};
+  const StyleAssignment assignment{{{IdOfObject(guides, "near"), 1}, {IdOfObject(guides, "far"), 2}}, {}, 0};
+  const StyleMap map = MapStyles(guides, assignment);
+  TransferOptions options;
+  options.threads = 1, options.keep_field = true;
+  const Picture whole = MustPaint(styles, map, guides, options);
+  for (const bool keep_field : {false, true}) {
+    for (const int threads : {1, 3}) {
+      options.keep_field = keep_field, options.threads = threads, options.region = std::nullopt;
+      EXPECT_EQ(MustPaint(styles, map, guides, options).rgba, whole.rgba);
+      for (const Region& region : {Region{10, 7, 90, 61}, Region{0, 30, kWidth, 31}, Region{50, 0, 51, kHeight}}) {
+        options.region = region;
+        const Picture part = MustPaint(styles, map, guides, options);
+        for (int y = region.y0; y < region.y1; ++y) {
+          for (int x = region.x0; x < region.x1; ++x) {
+            ASSERT_TRUE(std::equal(part.At(x, y), part.At(x, y) + 4, whole.At(x, y))) << x << ", " << y;
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(FragmentPaint, ObjectsThatAreLeftShowThePictureUnderneath) {
+  const GuideSet guides = GuidesAt(kWidth, kHeight, kAa);
+  const PreparedStyle red = MustPrepare(PlainStyle(PlainColor({65535, 0, 0})));
+  const StyleAssignment assignment{{{IdOfObject(guides, "near"), 0}}, {}, StyleMap::kPassThrough};
+  const StyleMap map = MapStyles(guides, assignment);
+  std::vector<float> share(guides.pixel_count());  // of the near ball
+  for (std::size_t i = 0; i < share.size(); ++i) share[i] = map.style[i] == 0 ? 1.0f : 0.0f;
+  for (std::size_t f = 0; f < guides.fragments->count(); ++f) {
+    const float coverage = guides.fragments->values.Plane(Layer::kCoverage)[f];
+    const std::uint32_t pixel = guides.fragments->pixel[f];
+    if (map.fragment_style[f] == 0) share[pixel] += coverage;
+    if (map.style[pixel] == 0) share[pixel] -= coverage;
+  }
+  const Picture alone = MustPaint({&red}, map, guides);
+  for (std::size_t i = 0; i < share.size(); ++i) {
+    EXPECT_NEAR(alone.rgba[4 * i + 3] / 65535.0, share[i], 1e-4);
+    EXPECT_TRUE(share[i] <= 0.0f || alone.rgba[4 * i] == 65535);
+  }
+  const Picture under = PlainColor({0, 0, 65535});
+  Picture over(kWidth, kHeight);
+  for (std::size_t i = 0; i < over.rgba.size(); ++i) over.rgba[i] = under.rgba[i % 4];
+  TransferOptions options;
+  options.over = &over;
+  const Picture laid = MustPaint({&red}, map, guides, options);
+  for (std::size_t i = 0; i < share.size(); ++i) {
+    EXPECT_NEAR(Srgb16ToLinear(laid.rgba[4 * i]), share[i], 1e-4);
+    EXPECT_NEAR(Srgb16ToLinear(laid.rgba[4 * i + 2]), 1.0f - share[i], 1e-4);
+  }
+}
+
+}  // namespace
+}  // namespace scumble

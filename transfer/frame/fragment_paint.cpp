@@ -1,0 +1,183 @@
+#include "transfer/frame/fragment_paint.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+#include "core/image/check.h"
+#include "core/image/color.h"
+#include "transfer/vote/tone_texture_split.h"
+#include "transfer/vote/vote_sum.h"
+
+namespace scumble::internal {
+namespace {
+
+constexpr PixelPosition kAround[] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, -1}, {-1, 1}, {1, 1}};
+
+void ReadGuide(const MatchInput& match, const GuideSet& values, std::size_t fragment, PixelGuide& guide) {
+  guide.normal = values.Vec3(Layer::kNormal, fragment);
+  guide.light = match.luminance.empty() ? 0.0f : values.Plane(Layer::kLuminance)[fragment] * match.brightness;
+  if (match.space) match.space->Read(values, fragment, match.brightness, guide.extra_values);
+}
+
+}  // namespace
+
+FragmentPaint::FragmentPaint(const FrameInput& frame) : frame_(frame), fragments_(frame.guides.fragments.get()) {
+  if (fragments_ && fragments_->count() == 0) fragments_ = nullptr;
+  if (!fragments_) return;
+  if (frame.map && !frame.map->fragment_style.empty()) {
+    SCUMBLE_CHECK_EQ(frame.map->fragment_style.size(), fragments_->count());
+  }
+  colors_.resize(fragments_->count());
+}
+
+std::uint16_t FragmentPaint::StyleOf(std::size_t fragment) const {
+  if (!frame_.map) return 0;
+  const auto& styles = frame_.map->fragment_style;
+  return styles.empty() ? frame_.map->style[fragments_->pixel[fragment]] : styles[fragment];
+}
+
+// The pixel beside (x, y) that shows the fragment's surface in this style and has the most similar normal; -1: none.
+std::ptrdiff_t FragmentPaint::MostSimilar(std::size_t fragment, int x, int y, std::uint16_t style) const {
+  const GuideSet& guides = frame_.guides;
+  const GuideSet& own = fragments_->values;
+  const auto coverage = guides.Plane(Layer::kCoverage);
+  const glm::vec3 normal = own.Vec3(Layer::kNormal, fragment);
+  std::ptrdiff_t found = -1;
+  float least = 0.0f;
+  for (const PixelPosition& step : kAround) {
+    const int u = x + step.x, v = y + step.y;
+    if (u < 0 || v < 0 || u >= guides.width() || v >= guides.height()) continue;
+    const std::size_t q = guides.Index(u, v);
+    if (!(coverage[q] > 0.0f) || (frame_.map && frame_.map->style[q] != style)) continue;
+    const auto differs = [&](Layer layer) {
+      return guides.Has(layer) && guides.Plane(layer)[q] != own.Plane(layer)[fragment];
+    };
+    if (differs(Layer::kObject) || differs(Layer::kMaterial)) continue;
+    const glm::vec3 off = guides.Vec3(Layer::kNormal, q) - normal;
+    const float distance = off.x * off.x + off.y * off.y + off.z * off.z;
+    if (found < 0 || distance < least) found = std::ptrdiff_t(q), least = distance;
+  }
+  return found;
+}
+
+FragmentPaint::Texel FragmentPaint::Painted(const FragmentStyle& style, int number, const VoteInput& votes,
+                                            std::size_t fragment, int x, int y) const {
+  const GuideSet& guides = frame_.guides;
+  const GuideSet& own = fragments_->values;
+  const MatchInput& match = style.match;
+  const SourceField& field = votes.field;
+  PixelGuide guide;
+  ReadGuide(match, own, fragment, guide);
+
+  Candidate candidate;
+  bool continues = false;
+  const std::ptrdiff_t beside =
+      style.own_sources ? -1 : MostSimilar(fragment, x, y, static_cast<std::uint16_t>(number));
+  if (beside >= 0) {
+    const int u = int(beside % guides.width()), v = int(beside / guides.width());
+    const std::size_t q = field.Index(u, v);
+    candidate = {{field.x[q] + x - u, field.y[q] + y - v}, field.exemplar[q]};
+    continues = votes.active[q] != 0 && field.level[q] > 0 &&
+                match.exemplar.Usable(candidate.source.x, candidate.source.y) &&
+                match.test.Alike(guide.normal, guides.Vec3(Layer::kNormal, std::size_t(beside)));
+  }
+  if (!continues) candidate = OwnCandidate(match, guide);
+
+  VoteSum paint, base;
+  const auto vote = [&](int exemplar, Source source) {
+    paint.Add(match.exemplar.picture(exemplar).At(source.x, source.y));
+    if (style.base) base.Add(style.base->picture(exemplar).At(source.x, source.y));
+  };
+  vote(candidate.exemplar, candidate.source);
+  const int radius = votes.radius;
+  for (int v = std::max(0, y - radius); v <= std::min(guides.height() - 1, y + radius); ++v) {
+    for (int u = std::max(0, x - radius); u <= std::min(guides.width() - 1, x + radius); ++u) {
+      const std::size_t q = field.Index(u, v), there = guides.Index(u, v);
+      if ((u == x && v == y) || !votes.active[q]) continue;
+      if (style.edge_aware) {
+        if (guides.Plane(Layer::kObject)[there] != own.Plane(Layer::kObject)[fragment]) continue;
+        const glm::vec3 normal = guides.Vec3(Layer::kNormal, there);
+        const float cosine = normal.x * guide.normal.x + normal.y * guide.normal.y + normal.z * guide.normal.z;
+        if (!(cosine > style.crease_cosine)) continue;
+      }
+      const Source source{field.x[q] + x - u, field.y[q] + y - v};
+      if (match.exemplar.Usable(source.x, source.y)) vote(field.exemplar[q], source);
+    }
+  }
+  Texel texel;
+  paint.Count(texel.data());
+  if (style.base) {
+    Texel base_vote;
+    base.Count(base_vote.data());
+    AddBaseLayer({match.exemplar, *style.base, match.illumination, match.space},
+                 {guide.normal, guide.light, guide.extra_values}, base_vote.data(), texel.data());
+  }
+  if (style.tint.active()) style.tint.Apply(own.Vec3(Layer::kAlbedo, fragment), texel.data());
+  return texel;
+}
+
+void FragmentPaint::Paint(const FragmentStyle& style, int number, const VoteInput& votes, int y0, int y1) {
+  if (!fragments_) return;
+  const Region& region = frame_.region;
+  const auto width = static_cast<std::size_t>(frame_.guides.width());
+  const std::size_t from = fragments_->From(width * static_cast<std::size_t>(std::max(y0, region.y0)));
+  const std::size_t to = fragments_->From(width * static_cast<std::size_t>(std::max(0, std::min(y1, region.y1))));
+  for (std::size_t i = from; i < to; ++i) {
+    const int x = int(fragments_->pixel[i] % width), y = int(fragments_->pixel[i] / width);
+    if (x < region.x0 || x >= region.x1 || StyleOf(i) != number) continue;
+    colors_[i] = Painted(style, number, votes, i, x, y);
+  }
+}
+
+void FragmentPaint::MixPixel(std::size_t first, std::size_t end, std::uint16_t* pixel) const {
+  const float whole = frame_.guides.Plane(Layer::kCoverage)[fragments_->pixel[first]];
+  const auto coverage = fragments_->values.Plane(Layer::kCoverage);
+  float left = 1.0f, color[3] = {0.0f, 0.0f, 0.0f}, alpha = 0.0f;
+  const auto add = [&](const std::uint16_t* texel, float share) {
+    const float weight = share * (static_cast<float>(texel[3]) / 65535.0f);
+    for (int c = 0; c < 3; ++c) color[c] += weight * Srgb16ToLinear(texel[c]);
+    alpha += weight;
+  };
+  for (std::size_t i = first; i < end; ++i) {
+    const float share = whole > 0.0f ? std::min(left, coverage[i] / whole) : 0.0f;
+    left -= share;
+    add(colors_[i].data(), share);
+  }
+  add(pixel, left);
+  for (int c = 0; c < 3; ++c) pixel[c] = alpha > 0.0f ? Srgb16FromLinear(std::min(1.0f, color[c] / alpha)) : 0;
+  pixel[3] = static_cast<std::uint16_t>(std::min(65535.0f, alpha * 65535.0f + 0.5f));
+}
+
+// Calls visit(fragment, x, y) for the fragments of the region, in any order.
+template <class Visit>
+void FragmentPaint::ForAll(const Visit& visit) const {
+  if (!fragments_) return;
+  const Region& region = frame_.region;
+  const auto width = static_cast<std::size_t>(frame_.guides.width());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, fragments_->count(), 1024), [&](const auto& some) {
+    for (std::size_t i = some.begin(); i != some.end(); ++i) {
+      const int x = int(fragments_->pixel[i] % width), y = int(fragments_->pixel[i] / width);
+      if (x >= region.x0 && x < region.x1 && y >= region.y0 && y < region.y1) visit(i, x, y);
+    }
+  });
+}
+
+void FragmentPaint::PaintShadows(const std::function<void(int x, int y, std::uint16_t* texel)>& paint) {
+  ForAll([&](std::size_t i, int x, int y) {
+    if (StyleOf(i) == StyleMap::kShadowCatcher) paint(x, y, colors_[i].data());
+  });
+}
+
+void FragmentPaint::Mix(Picture& out) const {
+  ForAll([&](std::size_t i, int x, int y) {
+    const std::vector<std::uint32_t>& pixels = fragments_->pixel;
+    if (i > 0 && pixels[i - 1] == pixels[i]) return;
+    std::size_t end = i + 1;
+    while (end < pixels.size() && pixels[end] == pixels[i]) ++end;
+    MixPixel(i, end, out.At(x, y));
+  });
+}
+
+}  // namespace scumble::internal
