@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 import bpy
 
 import export_normals
+import export_rest
 from blend_common import camera_rank, cameras_of, can_be_looked_through, note_crooked_camera
 
 MESH_TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
@@ -32,6 +33,7 @@ class FlatScene:
     cameras: list = field(default_factory=list)  # the active one first
     materials: dict = field(default_factory=dict)  # by the key that MaterialKey gives
     normals: dict = field(default_factory=dict)  # of metaballs' vertices, by the object's full name
+    corners: dict = field(default_factory=dict)  # how many each mesh had before its faces were cut, by its name
 
 
 def material_key(material):
@@ -203,18 +205,35 @@ def place_object(flat, meshes, instance, name, depsgraph, unsupported):
                             "shadows and the light from it")
             return
         note_limits(thing.original, shown, depsgraph.view_layer, unsupported)
-        place_mesh(flat, meshes, placed, instance, depsgraph)
+        place_mesh(flat, meshes, placed, instance, depsgraph, unsupported)
 
 
-def place_mesh(flat, meshes, placed, instance, depsgraph):
+def changes_shape(thing):
+    """Whether another frame may have the same faces in another shape."""
+    nodes = any(modifier.type == "NODES" and modifier.show_viewport for modifier in thing.modifiers)
+    return nodes or export_rest.is_deformed(thing)
+
+
+def add_mesh(flat, number, instance, depsgraph, unsupported):
+    """The export's own copy of a mesh; None where it has no faces."""
+    original = instance.object.original
+    mesh = new_mesh(instance, depsgraph)
+    corners = len(mesh.loops)
+    if not export_normals.match_cycles(mesh, flat.normals.get(original.name_full), changes_shape(original)):
+        unsupported.add(f"object '{original.name}': its normals are made from its faces, because its mesh has other "
+                        "vertices than the one that renders show")
+    if not mesh.polygons:
+        return None
+    mesh.name = f"scumble.{number:06d}"
+    flat.corners[mesh.name] = corners
+    return mesh
+
+
+def place_mesh(flat, meshes, placed, instance, depsgraph, unsupported):
     thing = instance.object
     key = mesh_key(instance, depsgraph)
     if key not in meshes:
-        mesh = new_mesh(instance, depsgraph)
-        export_normals.match_cycles(mesh, flat.normals.get(thing.original.name_full))
-        meshes[key] = mesh if len(mesh.polygons) else None
-        if meshes[key]:
-            mesh.name = f"scumble.{len(meshes):06d}"
+        meshes[key] = add_mesh(flat, len(meshes) + 1, instance, depsgraph, unsupported)
     if meshes[key] is None:
         return
     placed.mesh = meshes[key]

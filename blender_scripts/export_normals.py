@@ -24,24 +24,43 @@ def numbers(things, name, kind=np.int32):
     return values
 
 
-def bent_polygons(mesh):
-    """The flat polygons whose triangles do not lie in one plane."""
-    flat = ~numbers(mesh.polygons, "use_smooth", bool)
-    if not flat.any() or numbers(mesh.polygons, "loop_total").max() < 4:
-        return np.empty(0, np.int32)
+def polygons_to_cut(mesh, every):
+    """The flat polygons whose triangles do not lie in one plane; with `every` all flat ones of more than three corners,
+    so that it does not depend on the mesh's shape which are cut."""
+    totals = numbers(mesh.polygons, "loop_total")
+    flat = ~numbers(mesh.polygons, "use_smooth", bool) & (totals > 3)
+    if every or not flat.any():
+        return np.flatnonzero(flat)
     mesh.calc_loop_triangles()
     polygon = numbers(mesh.loop_triangles, "polygon_index")
     away = np.linalg.norm(vectors(mesh.loop_triangles, "normal") - vectors(mesh.polygons, "normal")[polygon], axis=1)
     return np.unique(polygon[flat[polygon] & (away > CLOSE)])
 
 
+def cut_by_second(mesh):
+    """By polygon: whether it is a quad that renders cut from its second corner to its fourth: one that is concave or
+    folded so far that the other diagonal would turn a triangle over."""
+    mesh.calc_loop_triangles()
+    polygon = numbers(mesh.loop_triangles, "polygon_index")
+    corners = np.empty(3 * len(polygon), np.int32)
+    mesh.loop_triangles.foreach_get("loops", corners)
+    corners = corners.reshape(-1, 3) - numbers(mesh.polygons, "loop_start")[polygon][:, None]
+    has_first_and_third = (corners == 0).any(axis=1) & (corners == 2).any(axis=1)
+    both = np.ones(len(mesh.polygons), bool)
+    both[polygon[~has_first_and_third]] = False
+    return ~both & (numbers(mesh.polygons, "loop_total") == 4)
+
+
 def cut(mesh, polygons):
-    """Cuts polygons into triangles, along the diagonals that renders use."""
+    """Cuts polygons into triangles, along the diagonals that renders use. The vertices keep their order."""
+    second = cut_by_second(mesh)[polygons]
     shape = bmesh.new()
     shape.from_mesh(mesh)
     shape.faces.ensure_lookup_table()
-    bmesh.ops.triangulate(shape, faces=[shape.faces[number] for number in polygons], quad_method="FIXED",
-                          ngon_method="EAR_CLIP")
+    faces = np.array([shape.faces[number] for number in polygons], object)
+    for chosen, diagonal in ((~second, "FIXED"), (second, "ALTERNATE")):
+        if chosen.any():
+            bmesh.ops.triangulate(shape, faces=list(faces[chosen]), quad_method=diagonal, ngon_method="EAR_CLIP")
     shape.to_mesh(mesh)
     shape.free()
 
@@ -57,15 +76,22 @@ def of_metaballs(depsgraph):
     return found
 
 
-def match_cycles(mesh, at_vertices=None):
-    """Gives the export's own copy of a mesh the normals of the evaluated one: `at_vertices`, or those that it has."""
+def match_cycles(mesh, at_vertices=None, changes_shape=False):
+    """Gives the export's own copy of a mesh the normals of the evaluated one: `at_vertices`, or those that it has.
+    Returns false where `at_vertices` are not those of its vertices, and are not used."""
     if mesh.use_auto_smooth or not mesh.polygons:
-        return
-    if at_vertices is None or len(at_vertices) != len(mesh.vertices):
+        return True
+    fits = at_vertices is None or len(at_vertices) == len(mesh.vertices)
+    if at_vertices is None or not fits:
         at_vertices = vectors(mesh.vertices, "normal")
-    polygons = bent_polygons(mesh)
+    polygons = polygons_to_cut(mesh, changes_shape)
     if len(polygons) > 0:
         cut(mesh, polygons)
+    take_normals(mesh, at_vertices)
+    return fits
+
+
+def take_normals(mesh, at_vertices):
     smooth = numbers(mesh.polygons, "use_smooth", bool)
     away = np.linalg.norm(vectors(mesh.vertices, "normal") - at_vertices, axis=1)
     if not smooth.any() or away.max() <= CLOSE:

@@ -49,10 +49,11 @@ def drop_other_attributes(mesh, ours):
             pass  # one of Blender's own, which the exporter supports
 
 
-def write_rest(mesh, thing, depsgraph):
+def write_rest(mesh, corners, thing, depsgraph):
+    """`corners` is the number that the mesh had before export_normals.py cut polygons, which keeps the vertices."""
     relaxed = thing.evaluated_get(depsgraph)
     shape = relaxed.to_mesh()
-    if len(shape.vertices) == len(mesh.vertices) and len(shape.loops) == len(mesh.loops):
+    if len(shape.vertices) == len(mesh.vertices) and len(shape.loops) == corners:
         places = np.empty(3 * len(shape.vertices), np.float32)
         shape.vertices.foreach_get("co", places)
         places = places.reshape(-1, 3)
@@ -71,7 +72,7 @@ def add_rest_positions(flat, view_layer):
     bring_back = [relax(thing) for thing in {placed.source.name_full: placed.source for placed in wanted}.values()]
     view_layer.update()
     for placed in wanted:
-        write_rest(placed.mesh, placed.source, view_layer.depsgraph)
+        write_rest(placed.mesh, flat.corners[placed.mesh.name], placed.source, view_layer.depsgraph)
     for undo in bring_back:
         undo()
     view_layer.update()

@@ -99,6 +99,21 @@ def bent(shape):
         vertex.co *= 1.0 + 0.15 * ((number * 7) % 5 - 2) / 2
 
 
+def darts(shape):
+    """Two concave quads, one in a plane and one bent, that renders cut from the second corner to the fourth."""
+    for y, z in ((-0.35, 0.0), (0.35, 0.15)):
+        corners = ((0.6, y - 0.3, 0.0), (0.0, y, z), (0.6, y + 0.3, 0.0), (-0.6, y, 0.0))
+        shape.faces.new([shape.verts.new(corner) for corner in corners])
+
+
+def folded(shape):
+    """Quads folded by more than a right angle along one diagonal and along the other."""
+    for first in (0, 1):
+        corners = ((-0.5, 0.0, 0.0), (0.05, -0.4, 0.45), (0.5, 0.0, 0.0), (0.0, 0.25, 0.5))
+        turned = corners[first:] + corners[:first]
+        shape.faces.new([shape.verts.new((x, y + 0.8 * first - 0.4, z - 0.2)) for x, y, z in turned])
+
+
 def can(shape):
     bmesh.ops.create_cone(shape, cap_ends=True, segments=12, radius1=0.6, radius2=0.5, depth=0.9)
 
@@ -143,6 +158,8 @@ def build(material):
     # One curve in three objects, each of which Blender makes triangles of anew.
     add("Shared", curve, material).scale = (1.0, 0.6, 1.4)
     add("Twisted", curve, material).modifiers.new("Twist", "SIMPLE_DEFORM").angle = 1.5
+    add_mesh("Darts", darts, material, False)
+    add_mesh("Folded", folded, material, False)
     camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
     bpy.context.scene.collection.objects.link(camera)
     camera.data.type, camera.data.ortho_scale = "ORTHO", 8.4
