@@ -127,8 +127,8 @@ struct NextFrame {
 };
 
 // RenderGuides with the layer `motion`: the movement, until the next frame, of the point that a pixel shows, in pixels,
-// +X right and +Y down. It is 0 for background and for objects that the next frame lacks, and exactly 0 for points that
-// do not move. A point may be hidden in the next frame; `motion` does not show that.
+// +X right and +Y down. It is 0 for background and for objects that the next frame lacks or has with other triangles,
+// and exactly 0 for points that do not move. A point may be hidden in the next frame; `motion` does not show that.
 Expected<GuidegenResult> RenderGuides(const Scene& scene, const Camera& camera, const NextFrame& next,
                                       const GuidegenOptions& options);
 

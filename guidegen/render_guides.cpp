@@ -9,6 +9,7 @@
 #include "guidegen/cast/cast_guides.h"
 #include "guidegen/guidegen.h"
 #include "guidegen/light/path_layers.h"
+#include "guidegen/load/mesh_normals.h"
 #include "guidegen/scene_textures.h"
 
 namespace scumble {
@@ -101,6 +102,28 @@ std::map<std::uint32_t, std::string> NamesById(const std::vector<std::uint32_t>&
   return result;
 }
 
+// Whether each triangle of a mesh is the same piece of surface in the next frame. Exporters merge the vertices at one
+// place whose normals are equal, and sort the others by normal, so that a mesh that bends may have other vertices in
+// each frame. Then equal triangles are those whose corners meet in the same way: at places at rest where both have
+// them.
+bool SameTriangles(const Mesh& now, const Mesh& next) {
+  if (now.triangles.size() != next.triangles.size()) return false;
+  if (now.triangles == next.triangles) return true;
+  const bool rest = !now.rest_positions.empty() && !next.rest_positions.empty();
+  const std::vector<std::uint32_t> place = WeldByPosition(rest ? now.rest_positions : now.positions);
+  const std::vector<std::uint32_t> next_place = WeldByPosition(rest ? next.rest_positions : next.positions);
+  constexpr std::uint32_t kNone = 0xffffffffu;
+  std::vector<std::uint32_t> becomes(place.size(), kNone), was(next_place.size(), kNone);
+  for (std::size_t t = 0; t < now.triangles.size(); ++t) {
+    for (int corner = 0; corner < 3; ++corner) {
+      const std::uint32_t from = place[now.triangles[t][corner]], to = next_place[next.triangles[t][corner]];
+      if (becomes[from] == kNone && was[to] == kNone) becomes[from] = to, was[to] = from;
+      if (becomes[from] != to || was[to] != from) return false;
+    }
+  }
+  return true;
+}
+
 // The instances of the next frame in the order of this one's.
 Status PlaceNextFrame(const Scene& scene, const NextFrame& next, const GuidegenOptions& options, View& view) {
   SCUMBLE_ASSIGN(view.next_camera, CameraRays::Make(next.camera, options.width, options.height));
@@ -112,9 +135,8 @@ Status PlaceNextFrame(const Scene& scene, const NextFrame& next, const GuidegenO
     const auto found = by_name.find({instance.object, instance.mesh});
     if (found != by_name.end() && std::size_t(instance.mesh) < next.scene.meshes.size()) {
       const Mesh& mesh = next.scene.meshes[std::size_t(instance.mesh)];
-      const Mesh& now = scene.meshes[std::size_t(instance.mesh)];
-      // A different number of triangles means a different object under an old name.
-      if (mesh.triangles.size() == now.triangles.size() && mesh.positions.size() == now.positions.size()) {
+      // Other triangles mean a different object under an old name, or faces that were cut along other diagonals.
+      if (SameTriangles(scene.meshes[std::size_t(instance.mesh)], mesh)) {
         placed.mesh = &mesh;
         placed.view_from_object = view.next_camera.ViewFromObject(found->second->world_from_object);
       }

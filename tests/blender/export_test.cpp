@@ -123,6 +123,64 @@ TEST(BlenderMeshes, RestPositionsDoNotMove) {
   EXPECT_EQ(mesh(first, "Shaped").rest_positions, mesh(first, "Shaped").positions);
 }
 
+// A flat grid that is plane in the first frame and bent in the second: the export has other vertices in each, because
+// corners of equal normals are one vertex.
+class TwistedGrid : public testing::Test {
+ protected:
+  static Scene Alone(const std::string& name) {
+    Scene scene = Loaded(name);
+    std::erase_if(scene.instances, [](const Instance& instance) { return instance.object != "Twisted"; });
+    EXPECT_EQ(scene.instances.size(), 1u);
+    return scene;
+  }
+  static const Mesh& MeshOf(const Scene& scene) { return scene.meshes[std::size_t(scene.instances[0].mesh)]; }
+
+  const Scene first_ = Alone("deformed"), sixth_ = Alone("deformed6");
+};
+
+TEST_F(TwistedGrid, HasRestPositions) {
+  const Mesh &a = MeshOf(first_), &b = MeshOf(sixth_);
+  ASSERT_EQ(a.rest_positions.size(), a.positions.size());
+  ASSERT_EQ(b.rest_positions.size(), b.positions.size());
+  ASSERT_EQ(a.triangles.size(), 512u);
+  ASSERT_EQ(b.triangles.size(), 512u);
+  for (std::size_t t = 0; t < a.triangles.size(); ++t) {
+    for (int i = 0; i < 3; ++i) {
+      const std::uint32_t at = a.triangles[t][i], then = b.triangles[t][i];
+      EXPECT_EQ(a.rest_positions[at], b.rest_positions[then]) << t;
+      EXPECT_EQ(a.rest_positions[at], a.positions[at]) << t;
+    }
+  }
+}
+
+TEST_F(TwistedGrid, Moves) {
+  Camera above;  // 40 pixels a metre
+  above.orthographic = true;
+  above.ymag = 1.2;
+  above.world_from_camera = glm::dmat4(1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 10, 0, 1);
+  GuidegenOptions options;
+  options.width = options.height = 96;
+  options.layers.Add(Layer::kMotion);
+  const auto result = RenderGuides(first_, above, {sixth_, above}, options);
+  ASSERT_TRUE(result) << result.error().message;
+  int seen = 0;
+  double farthest = 0.0;
+  for (int row = 0; row < 96; ++row) {
+    for (int column = 0; column < 96; ++column) {
+      const double x = (column + 0.5 - 48) / 40, y = (48 - row - 0.5) / 40;
+      if (std::abs(x) >= 1.0 || std::abs(y) >= 1.0) continue;
+      const std::size_t pixel = std::size_t(row * 96 + column);
+      const double moved = 40 * 0.5 * x * (std::cos(y) - 1);
+      ++seen, farthest = std::max(farthest, std::abs(moved));
+      // Between vertices, 5 pixels apart, the surface is straight.
+      ASSERT_NEAR(result->guides.Plane(Layer::kMotion, 0)[pixel], moved, 0.15) << column << " " << row;
+      ASSERT_NEAR(result->guides.Plane(Layer::kMotion, 1)[pixel], 0.0, 1e-4) << column << " " << row;
+    }
+  }
+  EXPECT_EQ(seen, 6400);
+  EXPECT_GT(farthest, 8.0);
+}
+
 TEST(BlenderLamps, PointsAndSpots) {
   const Scene scene = Loaded("lamps");
   const Light& point = Named(scene.lights, "Point");

@@ -323,6 +323,24 @@ def objects():
     return result
 
 
+def twisted_grid(location, material):
+    """2 m wide, of 256 flat quads, plane at frame 1: a shape key turns each vertex about the y axis by y radians."""
+    data, shape = bpy.data.meshes.new("Twisted"), bmesh.new()
+    bmesh.ops.create_grid(shape, x_segments=16, y_segments=16, size=1.0)
+    shape.to_mesh(data)
+    shape.free()
+    data.materials.append(material)
+    thing = link(bpy.data.objects.new("Twisted", data))
+    thing.location = location
+    thing.shape_key_add(name="Basis")
+    key = thing.shape_key_add(name="Twist")
+    for vertex in key.data:
+        vertex.co = (vertex.co.x * math.cos(vertex.co.y), vertex.co.y, vertex.co.x * math.sin(vertex.co.y))
+    for frame, value in ((1, 0.0), (6, 0.5)):
+        key.value = value
+        key.keyframe_insert("value", frame=frame)
+
+
 def deformed():
     """Bent by a modifier behind one that adds vertices, and by a shape key; both move from frame 1 to 6."""
     plain = new_material("Grey", "ShaderNodeBsdfDiffuse")[0]
@@ -344,6 +362,7 @@ def deformed():
         key.value = value
         key.keyframe_insert("value", frame=frame)
     shaped.data.attributes.new("other", "FLOAT", "CORNER")
+    twisted_grid((0, 0, 6), plain)
     bpy.context.scene.frame_set(1)
     return None
 

@@ -165,6 +165,36 @@ TEST(RayScene, CastsMotion) {
   ExpectSame(TakeValid(RenderGuides(reused, next, options)), TakeValid(RenderGuides(scene, camera, next, options)));
 }
 
+// Exporters merge vertices of equal normals and sort the others by normal: both may differ between frames.
+TEST(RayScene, MotionFollowsTrianglesWhateverTheirVerticesAreCalled) {
+  Mesh joint;
+  joint.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+  joint.triangles = {{0, 1, 2}, {0, 2, 3}};
+  Mesh split = joint, other_diagonal = joint, turned = joint;
+  split.positions = {{1, 1, 0}, {-1, 1, 0}, {-1, -1, 0}, {1, 1, 0}, {1, -1, 0}, {-1, -1, 0}};
+  split.triangles = {{5, 4, 3}, {2, 0, 1}};
+  other_diagonal.triangles = {{0, 1, 3}, {1, 2, 3}};
+  turned.triangles = {{0, 1, 2}, {2, 3, 0}};
+  const Camera camera = LookingAt({0.0, 0.0, 5.0}, {0.0, 0.0, 0.0});
+  const GuidegenOptions options = Drawn(32, 32, {Layer::kMotion});
+  const auto middle = [&](const Mesh& now, const Mesh& next) {
+    const Scene scene = SceneOf(now), later = SceneOf(next, Moved(0.5, 0.0, 0.0));
+    const GuidegenResult result = TakeValid(RenderGuides(scene, camera, {later, camera}, options));
+    return result.guides.Plane(Layer::kMotion)[16 * 32 + 16];
+  };
+  const float moved = middle(joint, joint);
+  EXPECT_GT(moved, 1.0f);
+  EXPECT_FLOAT_EQ(middle(joint, split), moved);
+  EXPECT_FLOAT_EQ(middle(split, joint), moved);
+  EXPECT_EQ(middle(joint, other_diagonal), 0.0f);
+  EXPECT_EQ(middle(joint, turned), 0.0f);
+  split.positions[3].x = 2.0f;  // torn open
+  EXPECT_EQ(middle(joint, split), 0.0f);
+  joint.rest_positions = joint.positions;
+  split.rest_positions = {{1, 1, 0}, {-1, 1, 0}, {-1, -1, 0}, {1, 1, 0}, {1, -1, 0}, {-1, -1, 0}};
+  EXPECT_GT(middle(joint, split), 1.0f) << "one place at rest";
+}
+
 TEST(RayScene, CastsFromSeveralThreadsAtOnce) {
   const Scene scene = MixedScene();
   const RayScene reused = Ready(scene, MixedCamera());
