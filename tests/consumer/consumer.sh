@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # A program outside the tree, built against the installed files alone: by CMake's package and by pkg-config. Both paint
-# the picture of `scumble stylize`.
+# the picture of `scumble stylize`. What is installed is whole: every style paints, every script finds what it imports.
 # Usage: consumer.sh SOURCE BUILD
 set -eu
 source=$(cd "$1" && pwd)
@@ -24,6 +24,17 @@ by-cmake/paint suzanne.glb oil one.png
 ./by-pkg-config suzanne.glb oil two.png
 for picture in one.png two.png; do
   prefix/bin/scumble compare wanted.png $picture --quiet > log || { echo "$picture differs"; cat log; exit 1; }
+done
+for style in prefix/share/scumble/exemplars/*/style.toml; do
+  style=$(basename "$(dirname "$style")")
+  prefix/bin/scumble stylize suzanne.glb --style "$style" --size 32x18 --samples 1 --quiet -o style.png > log 2>&1 ||
+    { echo "the installed style $style does not paint"; cat log; exit 1; }
+done
+for script in prefix/share/scumble/blender_scripts/*.py; do
+  for module in $(sed -nE 's/^ *(import|from) ([a-z_]+).*/\2/p' "$script"); do
+    [ ! -e "$source/blender_scripts/$module.py" ] || [ -e "$(dirname "$script")/$module.py" ] ||
+      { echo "$script imports $module, which is not installed"; exit 1; }
+  done
 done
 # A mistake is a sentence and an exit code.
 if by-cmake/paint missing.glb oil three.png > log; then echo "a missing scene was painted"; exit 1; fi

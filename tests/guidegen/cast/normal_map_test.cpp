@@ -13,7 +13,7 @@
 namespace scumble::testing {
 namespace {
 
-void ExpectNear(const glm::dvec3& a, const glm::dvec3& b, double tolerance) {
+void ExpectNormalNear(const glm::dvec3& a, const glm::dvec3& b, double tolerance) {
   EXPECT_LE(glm::length(a - b), tolerance)
       << a.x << " " << a.y << " " << a.z << " against " << b.x << " " << b.y << " " << b.z;
 }
@@ -42,11 +42,11 @@ glm::dvec3 NormalOf(const Scene& scene, const Camera& camera = FlatCamera(3.0, 0
 const glm::dvec3 kStored = glm::normalize(glm::dvec3(1, 2, 2));
 
 TEST(NormalMaps, StrengthIsTheRulesOwn) {
-  ExpectNear(NormalOf(Mapped(kStored, NormalMapRule::kGltf, 0.5f)),
-             glm::normalize(glm::dvec3(0.5 * kStored.x, 0.5 * kStored.y, kStored.z)), 1e-4);
+  ExpectNormalNear(NormalOf(Mapped(kStored, NormalMapRule::kGltf, 0.5f)),
+                   glm::normalize(glm::dvec3(0.5 * kStored.x, 0.5 * kStored.y, kStored.z)), 1e-4);
   for (const float strength : {0.0f, 0.5f, 1.0f, 1.7f}) {
     const glm::dvec3 mixed = glm::mix(glm::dvec3(0, 0, 1), kStored, double(strength));
-    ExpectNear(NormalOf(Mapped(kStored, NormalMapRule::kTangent, strength)), glm::normalize(mixed), 1e-4);
+    ExpectNormalNear(NormalOf(Mapped(kStored, NormalMapRule::kTangent, strength)), glm::normalize(mixed), 1e-4);
   }
 }
 
@@ -55,9 +55,9 @@ TEST(NormalMaps, ObjectSpaceHasBlendersAxesAndTurnsWithTheObject) {
   Scene scene = Mapped(kStored, NormalMapRule::kObject, 1.0f, turned);
   scene.meshes[0].tangents.clear();
   const glm::dmat3 turn(turned);
-  ExpectNear(NormalOf(scene), turn * glm::dvec3(kStored.x, kStored.z, -kStored.y), 1e-4);
+  ExpectNormalNear(NormalOf(scene), turn * glm::dvec3(kStored.x, kStored.z, -kStored.y), 1e-4);
   scene.materials[0].normal_rule = NormalMapRule::kBlenderObject;
-  ExpectNear(NormalOf(scene), turn * glm::dvec3(kStored.x, -kStored.z, kStored.y), 1e-4);
+  ExpectNormalNear(NormalOf(scene), turn * glm::dvec3(kStored.x, -kStored.z, kStored.y), 1e-4);
 }
 
 // The interpolated normal and tangent are not made unit: half-way between two normals, the map's x counts for more.
@@ -71,7 +71,7 @@ TEST(NormalMaps, TheFrameIsInterpolatedAsItIs) {
   const glm::dvec3 expected = glm::normalize(glm::dvec3(-kStored.y * shorter, kStored.x, kStored.z * shorter));
   GuidegenOptions options = Sized(1, 1);
   options.raw_normals = true;
-  ExpectNear(Render(scene, FlatCamera(3.0, 0.5), options).guides.Vec3(Layer::kNormal, 0), expected, 1e-4);
+  ExpectNormalNear(Render(scene, FlatCamera(3.0, 0.5), options).guides.Vec3(Layer::kNormal, 0), expected, 1e-4);
 }
 
 // An object that its matrix stretches, and the same with the stretch in its mesh, which says so.
@@ -86,9 +86,9 @@ TEST(NormalMaps, AStretchInTheMeshIsUndone) {
   mesh.stretch = glm::dmat3(glm::dvec3(sizes.x, 0, 0), glm::dvec3(0, sizes.y, 0), glm::dvec3(0, 0, sizes.z));
   for (glm::vec3& position : mesh.positions) position *= glm::vec3(sizes);
   for (glm::vec3& normal : mesh.normals) normal = glm::normalize(normal / glm::vec3(sizes));
-  ExpectNear(NormalOf(one), NormalOf(other), 1e-6);
+  ExpectNormalNear(NormalOf(one), NormalOf(other), 1e-6);
   for (Scene* scene : {&one, &other}) scene->materials[0].normal_rule = NormalMapRule::kObject;
-  ExpectNear(NormalOf(one), NormalOf(other), 1e-6);
+  ExpectNormalNear(NormalOf(one), NormalOf(other), 1e-6);
 }
 
 // A ramp from black on the left to white on the right, over a square of 2 m.
@@ -109,12 +109,12 @@ Scene Ramp(const Bump& bump) {
 glm::dvec3 Risen(double distance) { return glm::normalize(glm::dvec3(-0.5 * distance, 0, 1)); }
 
 TEST(Bumps, ARampHasTheNormalOfASlope) {
-  ExpectNear(NormalOf(Ramp({.distance = 0.8f})), Risen(0.8), 1e-3);
-  ExpectNear(NormalOf(Ramp({.distance = -0.8f})), Risen(-0.8), 1e-3);
-  ExpectNear(NormalOf(Ramp({.distance = 0.8f}), FrontCamera(3.0, 10.0)), Risen(0.8), 1e-3);
-  ExpectNear(NormalOf(Ramp({.distance = 0.8f, .strength = 0.4f})),
-             glm::normalize(glm::mix(glm::dvec3(0, 0, 1), Risen(0.8), 0.4)), 1e-3);
-  ExpectNear(NormalOf(Ramp({.distance = 0.8f, .strength = 0.0f})), glm::dvec3(0, 0, 1), 1e-6);
+  ExpectNormalNear(NormalOf(Ramp({.distance = 0.8f})), Risen(0.8), 1e-3);
+  ExpectNormalNear(NormalOf(Ramp({.distance = -0.8f})), Risen(-0.8), 1e-3);
+  ExpectNormalNear(NormalOf(Ramp({.distance = 0.8f}), FrontCamera(3.0, 10.0)), Risen(0.8), 1e-3);
+  ExpectNormalNear(NormalOf(Ramp({.distance = 0.8f, .strength = 0.4f})),
+                   glm::normalize(glm::mix(glm::dvec3(0, 0, 1), Risen(0.8), 0.4)), 1e-3);
+  ExpectNormalNear(NormalOf(Ramp({.distance = 0.8f, .strength = 0.0f})), glm::dvec3(0, 0, 1), 1e-6);
 }
 
 TEST(Bumps, DoNotDependOnHowTheWorldTurns) {
@@ -124,14 +124,14 @@ TEST(Bumps, DoNotDependOnHowTheWorldTurns) {
   const glm::dvec3 before = NormalOf(scene, camera);
   scene.instances[0].world_from_object = turn;
   camera.world_from_camera = turn * camera.world_from_camera;
-  ExpectNear(NormalOf(scene, camera), before, 1e-4);
+  ExpectNormalNear(NormalOf(scene, camera), before, 1e-4);
 }
 
 TEST(Bumps, RiseOnTheSideOfTheNormalAlsoSeenFromBehind) {
   const Camera behind = LookingAt({0, 0, -3}, {0, 0, 0}, 10.0);
   // That camera's axes: x and z are turned round. The slope's own normal is Risen; its back looks the other way.
   const glm::dvec3 slope = Risen(0.8);
-  ExpectNear(NormalOf(Ramp({.distance = 0.8f}), behind), {slope.x, 0, slope.z}, 1e-3);
+  ExpectNormalNear(NormalOf(Ramp({.distance = 0.8f}), behind), {slope.x, 0, slope.z}, 1e-3);
 }
 
 TEST(Bumps, ColouredHeightsAreDecoded) {
@@ -142,8 +142,8 @@ TEST(Bumps, ColouredHeightsAreDecoded) {
   GuidegenOptions options = Sized(2, 2);
   options.raw_normals = true;
   const Camera near = FlatCamera(3.0, 0.01);
-  ExpectNear(Render(colour, near, options).guides.Vec3(Layer::kNormal, 0), Risen(0.8 * rise), 3e-3);
-  ExpectNear(Render(plain, near, options).guides.Vec3(Layer::kNormal, 0), Risen(0.8), 3e-3);
+  ExpectNormalNear(Render(colour, near, options).guides.Vec3(Layer::kNormal, 0), Risen(0.8 * rise), 3e-3);
+  ExpectNormalNear(Render(plain, near, options).guides.Vec3(Layer::kNormal, 0), Risen(0.8), 3e-3);
 }
 
 TEST(Bumps, LieOnTheMappedNormal) {
@@ -157,13 +157,13 @@ TEST(Bumps, LieOnTheMappedNormal) {
   scene.meshes[0].tangents.assign(4, {1, 0, 0, 1});
   // det is dx · (dy × n) = n.z for unit steps, and the gradient 0.4 (dy × n) along x.
   const glm::dvec3 across = glm::cross(glm::dvec3(0, 1, 0), mapped);
-  ExpectNear(NormalOf(scene), glm::normalize(mapped * mapped.z - across * 0.4), 1e-3);
+  ExpectNormalNear(NormalOf(scene), glm::normalize(mapped * mapped.z - across * 0.4), 1e-3);
 }
 
 TEST(Bumps, WithoutCoordinatesThereIsNone) {
   Scene scene = Ramp({.distance = 0.8f});
   scene.meshes[0].uvs[0].clear();
-  ExpectNear(NormalOf(scene), glm::dvec3(0, 0, 1), 0.0);
+  ExpectNormalNear(NormalOf(scene), glm::dvec3(0, 0, 1), 0.0);
 }
 
 }  // namespace
