@@ -24,7 +24,7 @@ namespace {
 
 using namespace testing;
 
-constexpr int kWidth = 120, kHeight = 90, kAa = 4;
+constexpr int kPictureWidth = 120, kPictureHeight = 90, kAa = 4;
 
 // Two balls that overlap before a wall; everything is covered, so every border is between objects.
 Scene TwoBalls() {
@@ -70,7 +70,7 @@ Picture MustPaint(const std::vector<const PreparedStyle*>& styles, const StyleMa
   return out;
 }
 
-PreparedStyle MustPrepare(const Style& style, int height = kHeight) {
+PreparedStyle MustPrepare(const Style& style, int height = kPictureHeight) {
   auto prepared = Prepare(style, height);
   EXPECT_TRUE(prepared.ok());
   return *std::move(prepared);
@@ -78,8 +78,8 @@ PreparedStyle MustPrepare(const Style& style, int height = kHeight) {
 
 // Three styles of one colour each, by object: the mean of the subsamples' colours in linear light is known.
 TEST(FragmentPaint, ColoursAreMixedByCoverage) {
-  const GuideSet guides = GuidesAt(kWidth, kHeight, kAa);
-  const GuideSet fine = GuidesAt(kWidth * kAa, kHeight * kAa, 1);
+  const GuideSet guides = GuidesAt(kPictureWidth, kPictureHeight, kAa);
+  const GuideSet fine = GuidesAt(kPictureWidth * kAa, kPictureHeight * kAa, 1);
   const std::array<std::uint16_t, 3> colors[] = {{60000, 2000, 30000}, {1000, 50000, 9000}, {20000, 20000, 65535}};
   std::vector<PreparedStyle> prepared;
   for (const auto& color : colors) prepared.push_back(MustPrepare(PlainStyle(PlainColor(color))));
@@ -87,8 +87,8 @@ TEST(FragmentPaint, ColoursAreMixedByCoverage) {
   const StyleMap map = MapStyles(guides, assignment), of_fine = MapStyles(fine, assignment);
   const Picture picture = MustPaint({&prepared[0], &prepared[1], &prepared[2]}, map, guides);
   int mixed = 0;
-  for (int y = 0; y < kHeight; ++y) {
-    for (int x = 0; x < kWidth; ++x) {
+  for (int y = 0; y < kPictureHeight; ++y) {
+    for (int x = 0; x < kPictureWidth; ++x) {
       float sum[3] = {};
       bool differs = false;
       for (int k = 0; k < kAa * kAa; ++k) {
@@ -186,14 +186,15 @@ BorderError ErrorAtBorders(const Style& style, const GuideSet& guides, const Pic
 
 // Lit Sphere paints a subsample by its normal alone, so the supersampled picture is four times as wide and high.
 TEST(FragmentPaint, LitSphereIsTheLargePictureMadeSmall) {
-  const GuideSet guides = GuidesAt(kWidth, kHeight, kAa);
-  const GuideSet fine = GuidesAt(kWidth * kAa, kHeight * kAa, 1);
+  const GuideSet guides = GuidesAt(kPictureWidth, kPictureHeight, kAa);
+  const GuideSet fine = GuidesAt(kPictureWidth * kAa, kPictureHeight * kAa, 1);
   Style style = PlainStyle(BrushedPicture(160, 0.0));
   style.transfer.method = Method::kLitSphere;
   style.transfer.blend_radius = 0;
   const Picture large = MustTransfer(style, fine).picture;
-  const Picture expected = Supersampled(
-      kWidth, kHeight, [&](int x, int y, int k) { return large.At(x * kAa + k % kAa, y * kAa + k / kAa); });
+  const Picture expected = Supersampled(kPictureWidth, kPictureHeight, [&](int x, int y, int k) {
+    return large.At(x * kAa + k % kAa, y * kAa + k / kAa);
+  });
   const BorderError error = ErrorAtBorders(style, guides, expected);
   EXPECT_LT(error.smooth, 0.01);
   EXPECT_GT(error.jagged, 5 * error.smooth);
@@ -202,8 +203,8 @@ TEST(FragmentPaint, LitSphereIsTheLargePictureMadeSmall) {
 // Votes of every kind: the nearest pixel of a subsample's object has the paint that it would have, but for the strokes'
 // course over one pixel.
 TEST(FragmentPaint, BordersAreThoseOfTheSupersampledVotes) {
-  const GuideSet guides = GuidesAt(kWidth, kHeight, kAa);
-  const GuideSet fine = GuidesAt(kWidth * kAa, kHeight * kAa, 1);
+  const GuideSet guides = GuidesAt(kPictureWidth, kPictureHeight, kAa);
+  const GuideSet fine = GuidesAt(kPictureWidth * kAa, kPictureHeight * kAa, 1);
   for (const int kind : {0, 1, 2, 3, 4}) {
     SCOPED_TRACE(kind);
     Style style = PlainStyle(BrushedPicture(160, 0.02));
@@ -214,7 +215,7 @@ TEST(FragmentPaint, BordersAreThoseOfTheSupersampledVotes) {
     if (kind == 3) style.transfer.hybrid = 4.0;
     if (kind == 4) style.transfer.method = Method::kBruteForce;
     const Picture jagged = MustTransfer(style, WithoutFragments(guides)).picture;
-    const Picture expected = Supersampled(kWidth, kHeight, [&](int x, int y, int k) {
+    const Picture expected = Supersampled(kPictureWidth, kPictureHeight, [&](int x, int y, int k) {
       const auto [u, v] = NearestOfObject(guides, fine, x, y, k);
       return jagged.At(u, v);
     });
@@ -225,7 +226,7 @@ TEST(FragmentPaint, BordersAreThoseOfTheSupersampledVotes) {
 }
 
 TEST(FragmentPaint, OtherPixelsAreTheSame) {
-  const GuideSet guides = GuidesAt(kWidth, kHeight, kAa);
+  const GuideSet guides = GuidesAt(kPictureWidth, kPictureHeight, kAa);
   const Style style = PlainStyle(NoisePicture(100));
   const Picture smooth = MustTransfer(style, guides).picture;
   const Picture jagged = MustTransfer(style, WithoutFragments(guides)).picture;
@@ -242,7 +243,7 @@ TEST(FragmentPaint, OtherPixelsAreTheSame) {
 
 // Styles of all kinds side by side: threads, regions, bands and fields make one picture.
 TEST(FragmentPaint, ThreadsRegionsAndBandsMakeOnePicture) {
-  GuideSet guides = GuidesAt(kWidth, kHeight, kAa, {Layer::kAlbedo, Layer::kLuminance});
+  GuideSet guides = GuidesAt(kPictureWidth, kPictureHeight, kAa, {Layer::kAlbedo, Layer::kLuminance});
   for (std::size_t i = 0; i < guides.pixel_count(); ++i) guides.Plane(Layer::kLuminance)[i] = UnitFloat(Hash(i));
   Style plain = PlainStyle(NoisePicture(100)), lit = plain, tinted = plain;
   plain.transfer.blend_radius = 0;
@@ -261,7 +262,8 @@ TEST(FragmentPaint, ThreadsRegionsAndBandsMakeOnePicture) {
     for (const int threads : {1, 3}) {
       options.keep_field = keep_field, options.threads = threads, options.region = std::nullopt;
       EXPECT_EQ(MustPaint(styles, map, guides, options).rgba, whole.rgba);
-      for (const Region& region : {Region{10, 7, 90, 61}, Region{0, 30, kWidth, 31}, Region{50, 0, 51, kHeight}}) {
+      for (const Region& region :
+           {Region{10, 7, 90, 61}, Region{0, 30, kPictureWidth, 31}, Region{50, 0, 51, kPictureHeight}}) {
         options.region = region;
         const Picture part = MustPaint(styles, map, guides, options);
         for (int y = region.y0; y < region.y1; ++y) {
@@ -275,7 +277,7 @@ TEST(FragmentPaint, ThreadsRegionsAndBandsMakeOnePicture) {
 }
 
 TEST(FragmentPaint, ObjectsThatAreLeftShowThePictureUnderneath) {
-  const GuideSet guides = GuidesAt(kWidth, kHeight, kAa);
+  const GuideSet guides = GuidesAt(kPictureWidth, kPictureHeight, kAa);
   const PreparedStyle red = MustPrepare(PlainStyle(PlainColor({65535, 0, 0})));
   const StyleAssignment assignment{{{IdOfObject(guides, "near"), 0}}, {}, StyleMap::kPassThrough};
   const StyleMap map = MapStyles(guides, assignment);
@@ -293,7 +295,7 @@ TEST(FragmentPaint, ObjectsThatAreLeftShowThePictureUnderneath) {
     EXPECT_TRUE(share[i] <= 0.0f || alone.rgba[4 * i] == 65535);
   }
   const Picture under = PlainColor({0, 0, 65535});
-  Picture over(kWidth, kHeight);
+  Picture over(kPictureWidth, kPictureHeight);
   for (std::size_t i = 0; i < over.rgba.size(); ++i) over.rgba[i] = under.rgba[i % 4];
   TransferOptions options;
   options.over = &over;
