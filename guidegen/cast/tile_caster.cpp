@@ -74,8 +74,8 @@ TileCaster::TileCaster(const EmbreeScene& scene, const View& view, const Guidege
 
 TileCaster::Scratch::Scratch(const TileCaster& caster)
     : triangles(caster.scene_.objects(), caster.object_records_, caster.points_),
-      soft_light(caster.scene_, caster.lights_,
-                 {caster.options_.samples, caster.options_.light_error, caster.options_.seed}),
+      area_light_tile(caster.scene_, caster.lights_,
+                      {caster.options_.samples, caster.options_.light_error, caster.options_.seed}),
       tiles(kStripTiles) {
   for (OfTile& tile : tiles) tile.lit.resize(caster.lit_ ? kTilePixels : 0);
 }
@@ -123,7 +123,7 @@ void TileCaster::WriteOthers(const Tile& tile, int pixel, const glm::dvec2& at, 
       MaxRayOffset(view_.camera.Through(at.x, at.y), hits.clear_from[pixel], point.position);
 }
 
-void TileCaster::Light(const Tile& tile, SoftLight& soft_light, TileScratch& scratch, Share& share) const {
+void TileCaster::Light(const Tile& tile, AreaLightTile& area_light_tile, TileScratch& scratch, Share& share) const {
   const TileHits& hits = scratch.hits;
   const std::vector<SurfacePoint>& points = scratch.lit;
   std::array<double, kTilePixels> reached = {};  // shadows included
@@ -147,26 +147,26 @@ void TileCaster::Light(const Tile& tile, SoftLight& soft_light, TileScratch& scr
     });
     batch.Flush(report);
   }
-  static_assert(SoftLight::kTileSide == kTileSide);
-  scratch.soft.clear();
+  static_assert(AreaLightTile::kTileSide == kTileSide);
+  scratch.area_lit.clear();
   for (int pixel = 0; pixel < kTilePixels; ++pixel) {  // a square after the other: neighbours share packets
     if (TileColumn(pixel) >= tile.width || TileRow(pixel) >= tile.height || !hits.Met(pixel)) continue;
-    scratch.soft.push_back({TileColumn(pixel),
-                            TileRow(pixel),
-                            &points[std::size_t(pixel)],
-                            std::uint32_t(Index(tile, pixel)),
-                            reached[std::size_t(pixel)],
-                            {}});
+    scratch.area_lit.push_back({TileColumn(pixel),
+                                TileRow(pixel),
+                                &points[std::size_t(pixel)],
+                                std::uint32_t(Index(tile, pixel)),
+                                reached[std::size_t(pixel)],
+                                {}});
   }
-  if (lights_.CanBeMet() && !soft_light.Run(scratch.soft, share.gate, share.rays)) return;
-  for (const SoftPixel& soft : scratch.soft) {
-    const auto pixel = std::size_t(TilePixel(soft.column, soft.row));
-    const double lit = reached[pixel] + soft.light.reached;
-    const double most = unoccluded[pixel] + soft.light.unoccluded;
+  if (lights_.CanBeMet() && !area_light_tile.Run(scratch.area_lit, share.gate, share.rays)) return;
+  for (const AreaLightPixel& one : scratch.area_lit) {
+    const auto pixel = std::size_t(TilePixel(one.column, one.row));
+    const double lit = reached[pixel] + one.light.reached;
+    const double most = unoccluded[pixel] + one.light.unoccluded;
     // Each light is within float's range; their sum need not be.
     constexpr double kMaxFloat = std::numeric_limits<float>::max();
-    if (planes_.luminance) planes_.luminance[soft.index] = float(std::min(lit, kMaxFloat));
-    if (planes_.shadow && most > 0.0) planes_.shadow[soft.index] = float(1.0 - lit / most);
+    if (planes_.luminance) planes_.luminance[one.index] = float(std::min(lit, kMaxFloat));
+    if (planes_.shadow && most > 0.0) planes_.shadow[one.index] = float(1.0 - lit / most);
   }
 }
 
@@ -220,7 +220,7 @@ void TileCaster::Fill(const Tile& tile, Scratch& buffers, TileScratch& scratch, 
     });
   }
   // Where nothing emits, luminance and shadow keep their background value, which is 0.
-  if (lit_) Light(tile, buffers.soft_light, scratch, share);
+  if (lit_) Light(tile, buffers.area_light_tile, scratch, share);
 }
 
 void TileCaster::Cast(std::span<const Tile> tiles, Scratch& scratch, Share& share,

@@ -13,9 +13,9 @@
 #include "guidegen/cast/tile_hits.h"
 #include "guidegen/cast/tile_surface.h"
 #include "guidegen/guidegen.h"
+#include "guidegen/light/area_light_tile.h"
 #include "guidegen/light/light_sampling.h"
 #include "guidegen/light/path_tracer.h"
-#include "guidegen/light/soft_light.h"
 #include "guidegen/rays/embree_scene.h"
 #include "guidegen/rays/progress_gate.h"
 #include "guidegen/surface/triangle_cache.h"
@@ -44,11 +44,11 @@ class TileCaster {
       TileGuides guides;
       TilePoints points;
       std::vector<SurfacePoint> lit;
-      std::vector<SoftPixel> soft;
+      std::vector<AreaLightPixel> area_lit;
       std::vector<PrimaryRays::Moved> moved;
     };
     TriangleCache triangles;
-    SoftLight soft_light;
+    AreaLightTile area_light_tile;
     PrimaryRays::SubsampleHits seen;
     std::vector<PrimaryRays::Beside> beside;
     std::vector<OfTile> tiles;
@@ -94,7 +94,7 @@ class TileCaster {
   void WriteWhole(std::span<const Tile> tiles, const Scratch& scratch) const;
   void Fill(const Tile& tile, Scratch& buffers, TileScratch& scratch, Share& share,
             std::vector<PathPixel>* pixels) const;
-  void Light(const Tile& tile, SoftLight& soft_light, TileScratch& scratch, Share& share) const;
+  void Light(const Tile& tile, AreaLightTile& area_light_tile, TileScratch& scratch, Share& share) const;
   glm::dvec2 Centre(const Tile& tile, int pixel) const {
     return {tile.x0 + TileColumn(pixel) + 0.5, tile.y0 + TileRow(pixel) + 0.5};
   }

@@ -1,6 +1,6 @@
 // Direct light on white Lambert from lights with extent: area lights, meshes that emit, the world. These are the rays
-// that make luminance and shadow expensive. This is the light of one point, a sample at a time; soft_light.h decides
-// how many samples each point takes, and casts the rays of many points together.
+// that make luminance and shadow expensive. This is the light of one point, a sample at a time; area_light_tile.h
+// decides how many samples each point takes, and casts the rays of many points together.
 #pragma once
 
 #include <vector>
@@ -79,8 +79,8 @@ class PointLighting {
   glm::dvec3 origin_{0.0};
 };
 
-// The mean of `samples` samples of each term: one ray after the other, what soft_light.h is measured against. The same
-// sampler gives the same bits.
+// The mean of `samples` samples of each term: one ray after the other, what area_light_tile.h is measured against. The
+// same sampler gives the same bits.
 AreaLighting SampleAreaLights(const EmbreeScene& scene, const LightSet& lights, const SurfacePoint& point,
                               const Sampler& sampler, int samples, RayCounts& rays);
 

@@ -41,7 +41,7 @@ void AddPictureOptions(CLI::App& verb, PictureOptions& options, bool needed) {
   verb.add_option(
           "--seed", options.request.seed,
           "another seed, another pattern: where chunks begin, what paint flat surfaces, shadows and edges take, "
-          "and the noise of a scene's soft lights; the same seed, the same bytes")
+          "and the noise of a scene's area lights; the same seed, the same bytes")
       ->type_name("N")
       ->check(RefuseNegative)
       ->capture_default_str();

@@ -84,7 +84,7 @@ TEST(ExtremeScale, PowersOfTwoChangeNoBit) {
 
 // Irradiance is strength over squared distance, a light's strength grows with the square of the scale, and radiances do
 // not; chance is hashed by pixel. So light with extent, wherever it is reflected, has the same bits too.
-TEST(ExtremeScale, PowersOfTwoChangeNoBitOfSoftLight) {
+TEST(ExtremeScale, PowersOfTwoChangeNoBitOfAreaLight) {
   GuidegenOptions options = Sized(24, 18, Everything().Add(kAllPaths));
   options.samples = 4;
   ExpectNoBitChanges(SoftScene, options);

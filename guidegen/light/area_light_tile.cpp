@@ -1,4 +1,4 @@
-#include "guidegen/light/soft_light.h"
+#include "guidegen/light/area_light_tile.h"
 
 #include <algorithm>
 #include <array>
@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kBlockPixels = 16;
 constexpr int kBlockSamples = 8;  // of a term of a pixel: a packet of rays from one point to one light
 constexpr std::size_t kMostTerms = LightSet::kFewLights + 1;
-constexpr int kGridSide = SoftLight::kTileSide;
+constexpr int kGridSide = AreaLightTile::kTileSide;
 constexpr int kWindow = 2;  // pixels on each side of one whose neighbours' samples count
 
 // Where all of fewer samples may miss: directions that look for a lamp, one lamp of many, a lamp that sets.
@@ -34,7 +34,7 @@ constexpr double kCurve = 2.0;
 double JumpError(double deviation, double n) { return kJump * deviation / std::sqrt(n * std::sqrt(n)); }
 double CurveError(double deviation, double n) { return kCurve * deviation / (n * std::sqrt(n)); }
 
-bool OnBorder(const SoftPixel& pixel) {
+bool OnBorder(const AreaLightPixel& pixel) {
   const auto is_first_or_last = [](int at) { return at == 0 || at == kGridSide - 1; };
   return is_first_or_last(pixel.column) || is_first_or_last(pixel.row);
 }
@@ -63,7 +63,7 @@ Mask Widened(const Mask& mask) {
 
 }  // namespace
 
-SoftLight::SoftLight(const EmbreeScene& scene, const LightSet& lights, const SoftLightSettings& settings)
+AreaLightTile::AreaLightTile(const EmbreeScene& scene, const LightSet& lights, const AreaLightSettings& settings)
     : scene_(scene),
       lights_(lights),
       settings_(settings),
@@ -73,7 +73,7 @@ SoftLight::SoftLight(const EmbreeScene& scene, const LightSet& lights, const Sof
       block_(kBlockPixels * term_count_ * kBlockSamples) {}
 
 // Casts the next samples of a block of pixels, those that each term wants.
-bool SoftLight::Advance(std::span<SoftPixel> pixels, std::size_t begin, ProgressGate& gate, RayCounts& rays) {
+bool AreaLightTile::Advance(std::span<AreaLightPixel> pixels, std::size_t begin, ProgressGate& gate, RayCounts& rays) {
   const std::size_t end = std::min(begin + kBlockPixels, pixels.size());
   OcclusionBatch<Tag> batch(scene_.handle(), false);
   const auto report = [&](const Tag& tag, bool blocked) { block_[tag.slot] = {blocked ? 0.0 : tag.light, tag.light}; };
@@ -120,7 +120,7 @@ bool SoftLight::Advance(std::span<SoftPixel> pixels, std::size_t begin, Progress
   return true;
 }
 
-void SoftLight::AddBlock(SoftPixel& pixel, std::size_t number, std::size_t place) {
+void AreaLightTile::AddBlock(AreaLightPixel& pixel, std::size_t number, std::size_t place) {
   const std::span<Term> terms = TermsOf(number);
   const auto sample = [&](std::size_t term, int k) -> const AreaLighting& {
     return block_[(place * term_count_ + term) * kBlockSamples + std::size_t(k)];
@@ -147,7 +147,7 @@ void SoftLight::AddBlock(SoftPixel& pixel, std::size_t number, std::size_t place
 }
 
 // Marks the terms of pixels around which both a lit and a blocked sample are, or a bright and a dark one.
-void SoftLight::FindPenumbra(std::span<const SoftPixel> pixels) {
+void AreaLightTile::FindPenumbra(std::span<const AreaLightPixel> pixels) {
   for (std::size_t of_term = 0; of_term < term_count_; ++of_term) {
     Mask lit{}, blocked{}, bright{}, dark{};
     for (std::size_t i = 0; i < pixels.size(); ++i) {
@@ -173,7 +173,7 @@ void SoftLight::FindPenumbra(std::span<const SoftPixel> pixels) {
 }
 
 // The estimated variance of the term's light.
-double SoftLight::SquaredError(const Term& term, bool is_smooth) const {
+double AreaLightTile::SquaredError(const Term& term, bool is_smooth) const {
   if (!(term.sum.unoccluded > 0.0)) return 0.0;
   const double n = term.samples;
   const double mean = term.sum.unoccluded / n;
@@ -193,7 +193,7 @@ double SoftLight::SquaredError(const Term& term, bool is_smooth) const {
 
 // Decides which terms of a pixel take more samples. The error is judged beside the light of the lamps that the pixel
 // sees, so that a lamp in the next room does not hide the noise of this one's.
-void SoftLight::Refine(const SoftPixel& pixel, std::size_t number) {
+void AreaLightTile::Refine(const AreaLightPixel& pixel, std::size_t number) {
   const std::span<Term> terms = TermsOf(number);
   std::array<double, kMostTerms> errors{};
   double light = pixel.other_light, total = 0.0;
@@ -218,13 +218,13 @@ void SoftLight::Refine(const SoftPixel& pixel, std::size_t number) {
 }
 
 // All samples of a fixed number, or the first ones.
-void SoftLight::Begin(std::span<const SoftPixel> pixels) {
+void AreaLightTile::Begin(std::span<const AreaLightPixel> pixels) {
   pixels_.resize(std::max(pixels_.size(), pixels.size()));
   terms_.assign(pixels.size() * term_count_, {});
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     Pixel& pixel = pixels_[i];
     pixel.lighting = PointLighting(scene_, lights_, *pixels[i].point, fixed_ ? kWideDistance : kNearLight);
-    pixel.sampler = Sampler(pixels[i].index, kSoftLightStream, settings_.seed);
+    pixel.sampler = Sampler(pixels[i].index, kAreaLightStream, settings_.seed);
     for (std::size_t term = 0; term < term_count_; ++term) {
       const bool directions = term == light_terms_.size();
       if (directions && !pixel.lighting.HasDirections()) continue;
@@ -236,7 +236,7 @@ void SoftLight::Begin(std::span<const SoftPixel> pixels) {
 }
 
 // After the first samples: more of them until each pixel has enough.
-bool SoftLight::Choose(std::span<SoftPixel> pixels, ProgressGate& gate, RayCounts& rays) {
+bool AreaLightTile::Choose(std::span<AreaLightPixel> pixels, ProgressGate& gate, RayCounts& rays) {
   FindPenumbra(pixels);
   for (std::size_t begin = 0; begin < pixels.size(); begin += kBlockPixels) {
     const std::size_t end = std::min(begin + kBlockPixels, pixels.size());
@@ -252,7 +252,7 @@ bool SoftLight::Choose(std::span<SoftPixel> pixels, ProgressGate& gate, RayCount
   return true;
 }
 
-bool SoftLight::Run(std::span<SoftPixel> pixels, ProgressGate& gate, RayCounts& rays) {
+bool AreaLightTile::Run(std::span<AreaLightPixel> pixels, ProgressGate& gate, RayCounts& rays) {
   Begin(pixels);
   for (std::size_t begin = 0; begin < pixels.size(); begin += kBlockPixels) {
     if (!Advance(pixels, begin, gate, rays)) return false;

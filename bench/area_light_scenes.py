@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Two scenes under soft lamps, for measuring what their light costs.
+"""Two scenes under area lights, for measuring what their light costs.
 
-    /usr/bin/python3 bench/soft_scenes.py FOLDER
+    /usr/bin/python3 bench/area_light_scenes.py FOLDER
 
 ball.glb: a ball on a ground under a square lamp, seen as StyLit's exemplar scene is. level.glb: four rooms of some 2,400
-triangles with doorways, pillars, stairs, shelves and crates, six soft lamps under their ceilings.
+triangles with doorways, pillars, stairs, shelves and crates, six area lights under their ceilings.
 """
 
 import argparse

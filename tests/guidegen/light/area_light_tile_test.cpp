@@ -1,6 +1,6 @@
 // Samples of direct light under lamps with extent: packets of rays against one ray after the other, and pixels that
 // choose how many samples they take against many samples.
-#include "guidegen/light/soft_light.h"
+#include "guidegen/light/area_light_tile.h"
 
 #include <gtest/gtest.h>
 
@@ -87,11 +87,11 @@ struct LitTile {
   std::vector<PlacedLight> placed;
   std::unique_ptr<LightSet> lights;
   std::vector<SurfacePoint> points;
-  std::vector<SoftPixel> pixels;
+  std::vector<AreaLightPixel> pixels;
 };
 
 // Packets, blocks and terms against one ray after the other, in every bit of the sums.
-TEST(SoftLight, AFixedNumberIsTheMeanOfPlainSamples) {
+TEST(AreaLightTile, AFixedNumberIsTheMeanOfPlainSamples) {
   for (const int many : {0, 12}) {
     const Scene scene = EveryLamp(many);
     LitTile tile(scene);
@@ -101,12 +101,12 @@ TEST(SoftLight, AFixedNumberIsTheMeanOfPlainSamples) {
       const Progress none;
       ProgressGate gate(none, 1, 0.0, 1.0);
       RayCounts rays, plain_rays;
-      std::vector<SoftPixel> pixels = tile.pixels;
-      SoftLight soft(*tile.embree, *tile.lights, {samples, 0.0, 7});
+      std::vector<AreaLightPixel> pixels = tile.pixels;
+      AreaLightTile soft(*tile.embree, *tile.lights, {samples, 0.0, 7});
       ASSERT_TRUE(soft.Run(pixels, gate, rays));
-      for (const SoftPixel& pixel : pixels) {
+      for (const AreaLightPixel& pixel : pixels) {
         const AreaLighting plain = SampleAreaLights(*tile.embree, *tile.lights, *pixel.point,
-                                                    Sampler(pixel.index, kSoftLightStream, 7), samples, plain_rays);
+                                                    Sampler(pixel.index, kAreaLightStream, 7), samples, plain_rays);
         EXPECT_EQ(pixel.light.reached, plain.reached) << pixel.column << " " << pixel.row;
         EXPECT_EQ(pixel.light.unoccluded, plain.unoccluded) << pixel.column << " " << pixel.row;
       }
@@ -124,7 +124,7 @@ std::size_t FirstSamples(int width, int height) {
 }
 
 // Where nothing is in the way, the first samples are enough, whatever may be taken; where all is, too.
-TEST(SoftLight, PlainLightTakesTheFirstSamples) {
+TEST(AreaLightTile, PlainLightTakesTheFirstSamples) {
   Scene scene = Floor(Painted(Bsdf::kDiffuse, 0.5f), 20.0);
   scene.lights = {Square({0, 0, 5.0}, 0.2)};  // all of it brings about the same
   const Camera above = FlatCamera(10.0, 1.0);
@@ -167,7 +167,7 @@ Difference AgainstMany(const Scene& scene, const GuidegenOptions& options) {
 
 // The promise of GuidegenOptions::light_error, and no pixel that stands out: five standard errors of 64 samples in the
 // middle of a penumbra are below a tenth.
-TEST(SoftLight, ErrorsStayBelowTheAllowedOne) {
+TEST(AreaLightTile, ErrorsStayBelowTheAllowedOne) {
   for (const double lamp : {0.1, 0.8, 3.0}) {
     const Difference found = AgainstMany(Stage(lamp), Chosen(160, 120));
     EXPECT_LT(found.rms, kUnseenLightError) << lamp;
@@ -181,14 +181,14 @@ TEST(SoftLight, ErrorsStayBelowTheAllowedOne) {
 }
 
 // Lamps that directions look for, emitters, a sky, and more lamps than are sampled individually.
-TEST(SoftLight, EveryKindOfLampKeepsTheError) {
+TEST(AreaLightTile, EveryKindOfLampKeepsTheError) {
   for (const int many : {0, 12}) {
     const Difference found = AgainstMany(EveryLamp(many), Chosen(96, 72));
     EXPECT_LT(found.rms, 1.5 * kUnseenLightError) << many << ": 64 samples are the most, and may be too few";
   }
 }
 
-TEST(SoftLight, BytesDoNotDependOnThreads) {
+TEST(AreaLightTile, BytesDoNotDependOnThreads) {
   for (const int many : {0, 12}) {
     GuidegenOptions options = Chosen(161, 93);
     options.threads = 1;
@@ -203,7 +203,7 @@ TEST(SoftLight, BytesDoNotDependOnThreads) {
 }
 
 // A lamp twice as bright makes no other decision: products with powers of two round nothing.
-TEST(SoftLight, DecisionsAreRatios) {
+TEST(AreaLightTile, DecisionsAreRatios) {
   Scene scene = EveryLamp(0);
   const GuidegenResult one = Render(scene, kView, Chosen(64, 48));
   for (Light& light : scene.lights) light.intensity = std::ldexp(light.intensity, 30);
@@ -217,7 +217,7 @@ TEST(SoftLight, DecisionsAreRatios) {
   }
 }
 
-TEST(SoftLight, AnErrorThatIsNoneIsRefused) {
+TEST(AreaLightTile, AnErrorThatIsNoneIsRefused) {
   for (const double error : {-0.1, double(NAN), double(INFINITY)}) {
     const auto refused = RenderGuides(Stage(0.5), kView, Chosen(8, 8, error));
     ASSERT_FALSE(refused.ok());

@@ -21,16 +21,16 @@
 namespace scumble {
 
 // The sampler's stream for luminance and shadow: different from that of the light paths.
-inline constexpr std::uint32_t kSoftLightStream = 1;
+inline constexpr std::uint32_t kAreaLightStream = 1;
 
-struct SoftLightSettings {
+struct AreaLightSettings {
   int samples = 64;    // of each term; with an error the most there may be
   double error = 0.0;  // as GuidegenOptions::light_error; 0: all take `samples`
   std::uint64_t seed = 0;
 };
 
 // A covered pixel of one tile. `column` and `row` are its place in the tile, 0 … 15.
-struct SoftPixel {
+struct AreaLightPixel {
   int column = 0;
   int row = 0;
   const SurfacePoint* point = nullptr;
@@ -40,14 +40,14 @@ struct SoftPixel {
 };
 
 // Buffers for one thread's tiles. They never change the result. Borrows the scene and the lights.
-class SoftLight {
+class AreaLightTile {
  public:
   static constexpr int kTileSide = 16;  // pixels
 
-  SoftLight(const EmbreeScene& scene, const LightSet& lights, const SoftLightSettings& settings);
+  AreaLightTile(const EmbreeScene& scene, const LightSet& lights, const AreaLightSettings& settings);
 
   // Lights the pixels of a tile. False if the caller cancelled; the results are then incomplete.
-  bool Run(std::span<SoftPixel> pixels, ProgressGate& gate, RayCounts& rays);
+  bool Run(std::span<AreaLightPixel> pixels, ProgressGate& gate, RayCounts& rays);
 
  private:
   // A term of one pixel: sums over its samples.
@@ -70,17 +70,17 @@ class SoftLight {
   };
 
   std::span<Term> TermsOf(std::size_t pixel) { return std::span(terms_).subspan(pixel * term_count_, term_count_); }
-  void Begin(std::span<const SoftPixel> pixels);
-  bool Advance(std::span<SoftPixel> pixels, std::size_t begin, ProgressGate& gate, RayCounts& rays);
-  void AddBlock(SoftPixel& pixel, std::size_t number, std::size_t place);
-  void FindPenumbra(std::span<const SoftPixel> pixels);
-  bool Choose(std::span<SoftPixel> pixels, ProgressGate& gate, RayCounts& rays);
-  void Refine(const SoftPixel& pixel, std::size_t number);
+  void Begin(std::span<const AreaLightPixel> pixels);
+  bool Advance(std::span<AreaLightPixel> pixels, std::size_t begin, ProgressGate& gate, RayCounts& rays);
+  void AddBlock(AreaLightPixel& pixel, std::size_t number, std::size_t place);
+  void FindPenumbra(std::span<const AreaLightPixel> pixels);
+  bool Choose(std::span<AreaLightPixel> pixels, ProgressGate& gate, RayCounts& rays);
+  void Refine(const AreaLightPixel& pixel, std::size_t number);
   double SquaredError(const Term& term, bool is_smooth) const;
 
   const EmbreeScene& scene_;
   const LightSet& lights_;
-  const SoftLightSettings settings_;
+  const AreaLightSettings settings_;
   const bool fixed_;
   const std::vector<int> light_terms_;
   const std::size_t term_count_;  // the last is that of directions
