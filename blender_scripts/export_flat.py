@@ -4,11 +4,13 @@ from dataclasses import dataclass, field
 
 import bpy
 
+import export_hair
 import export_normals
 import export_rest
 from blend_common import camera_rank, cameras_of, can_be_looked_through, note_crooked_camera
 
 MESH_TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
+SHAPE_TYPES = MESH_TYPES | {"CURVES"}
 SILENT_TYPES = {"EMPTY", "ARMATURE", "LATTICE", "SPEAKER", "LIGHT_PROBE"}
 RAYS = {"visible_diffuse": "diffuse", "visible_glossy": "glossy",
         "visible_shadow": "shadow"}
@@ -23,6 +25,7 @@ class Placed:
     mesh: object = None
     slots: tuple = ()  # original materials, None where there is none
     exported: str = ""  # the name that the exporter sees
+    hair: list = field(default_factory=list)  # export_hair.Hair
     is_own_shape: bool = False  # the mesh is the source's, and no geometry nodes made it up for an instance
 
 
@@ -58,6 +61,7 @@ def use_render_modifiers(thing):
         settings.display_percentage = 100
         if settings.child_type != "NONE":
             settings.child_nbr = settings.rendered_child_count
+        settings.display_step = settings.render_step
 
 
 def use_render_data(data):
@@ -105,7 +109,8 @@ def every_instance(depsgraph):
     taken = {}
     for instance in depsgraph.object_instances:
         thing = instance.object
-        if (not instance.is_instance and not instance.show_self) or thing.type in SILENT_TYPES:
+        shown = instance.is_instance or instance.show_self or (instance.show_particles and thing.particle_systems)
+        if not shown or thing.type in SILENT_TYPES:
             continue
         if thing.type == "MESH" and thing.original.type in MESH_TYPES - {"MESH"}:
             continue  # a curve's triangles, which follow the curve itself
@@ -144,6 +149,17 @@ def new_mesh(instance, depsgraph):
     return mesh
 
 
+def new_shape(instance, depsgraph):
+    """(mesh, hair): the mesh is empty where only the hair is shown, or there is no mesh."""
+    thing = instance.object
+    if thing.type == "CURVES":
+        return bpy.data.meshes.new("scumble"), export_hair.curves_hair(thing)
+    shown = instance.is_instance or instance.show_self
+    mesh = new_mesh(instance, depsgraph) if shown else bpy.data.meshes.new("scumble")
+    drawn = not is_generated(instance, depsgraph) and (instance.is_instance or instance.show_particles)
+    return mesh, export_hair.particle_hair(thing) if drawn and thing.type == "MESH" else []
+
+
 def seen_by_camera(thing, shown, view_layer):
     """`shown` is the object in the scene: the thing itself, or its instancer."""
     return thing.visible_camera and shown.visible_camera and not shown.indirect_only_get(view_layer=view_layer)
@@ -157,9 +173,6 @@ def note_limits(thing, shown, view_layer, unsupported):
         unsupported.add(f"object '{thing.name}': is a holdout, which is ignored")
     if getattr(thing, "is_shadow_catcher", False):
         unsupported.add(f"object '{thing.name}': is a shadow catcher, which is ignored")
-    for system in thing.particle_systems:
-        if system.settings.type == "HAIR" and system.settings.render_type == "PATH":
-            unsupported.add(f"object '{thing.name}': its hair '{system.name}' is left out")
 
 
 def flatten(scene, view_layer, unsupported):
@@ -190,7 +203,7 @@ def order_cameras(flat, scene, unsupported):
 
 def place_object(flat, meshes, instance, name, depsgraph, unsupported):
     thing = instance.object
-    if thing.type not in MESH_TYPES | {"CAMERA", "LIGHT"}:
+    if thing.type not in SHAPE_TYPES | {"CAMERA", "LIGHT"}:
         unsupported.add(f"object '{thing.original.name}': is of type {thing.type}, left out")
         return
     placed = Placed(name, thing.original, instance.matrix_world.copy())
@@ -215,18 +228,20 @@ def changes_shape(thing):
 
 
 def add_mesh(flat, number, instance, depsgraph, unsupported):
-    """The export's own copy of a mesh; None where it has no faces."""
+    """The export's own copy of a mesh, and its hair; None where there is neither."""
     original = instance.object.original
-    mesh = new_mesh(instance, depsgraph)
+    mesh, hair = new_shape(instance, depsgraph)
     corners = len(mesh.loops)
     if not export_normals.match_cycles(mesh, flat.normals.get(original.name_full), changes_shape(original)):
         unsupported.add(f"object '{original.name}': its normals are made from its faces, because its mesh has other "
                         "vertices than the one that renders show")
+    if not mesh.polygons and hair:
+        export_hair.stand_for_hair(mesh)
     if not mesh.polygons:
         return None
     mesh.name = f"scumble.{number:06d}"
     flat.corners[mesh.name] = corners
-    return mesh
+    return mesh, hair
 
 
 def place_mesh(flat, meshes, placed, instance, depsgraph, unsupported):
@@ -236,7 +251,9 @@ def place_mesh(flat, meshes, placed, instance, depsgraph, unsupported):
         meshes[key] = add_mesh(flat, len(meshes) + 1, instance, depsgraph, unsupported)
     if meshes[key] is None:
         return
-    placed.mesh = meshes[key]
+    placed.mesh, placed.hair = meshes[key]
+    for hair in placed.hair:
+        flat.materials.setdefault(material_key(hair.material), hair.material)
     placed.is_own_shape = thing.type == "MESH" and not is_generated(instance, depsgraph)
     materials = [slot.material.original if slot.material else None for slot in thing.material_slots]
     placed.slots = tuple(materials or [None])
@@ -249,12 +266,17 @@ def fill_export_scene(flat, materials, unsupported):
     """A new scene that holds one object for each mesh at a place, at the origin: places are written afterwards, because
     the exporter would drop the shear of a matrix. `materials` are the exporter's, by key."""
     scene = bpy.data.scenes.new("scumble")
-    done = set()
+    done, strands = set(), 0
     for number, placed in enumerate(flat.meshes):
         mesh = placed.mesh
         if mesh.name not in done:
             done.add(mesh.name)
             fill_slots(mesh, [materials[material_key(slot)] for slot in placed.slots])
+            for hair in placed.hair:
+                strands += 1
+                stand_in = export_hair.stand_in(materials[material_key(hair.material)], strands)
+                scene.collection.objects.link(stand_in)
+                hair.exported = stand_in.name
             if not keep_used_colors(mesh):
                 unsupported.add(f"object '{placed.name}': its materials read different colour attributes, none is kept")
         copy = bpy.data.objects.new(f"scumble.{number:06d}", mesh)

@@ -6,6 +6,7 @@ import os
 import struct
 
 import export_bends
+import export_hair
 from blend_common import GLTF_FROM_BLENDER
 
 LUMENS_PER_WATT = 683.0
@@ -82,10 +83,30 @@ def style_of(thing):
     return {"style": style} if isinstance(style, str) else {}
 
 
-def complete(document, flat, materials, lamps, cameras):
-    """Restores the places and names of meshes, and adds cameras, lights and extras."""
+def add_hair(document, binary, flat, by_name, settings):
+    """Each mesh gets its hair; the triangles of a mesh that stands for hair alone go."""
+    done = set()
+    for placed in flat.meshes:
+        mesh = by_name[placed.exported].get("mesh")
+        if mesh is None or mesh in done or not placed.hair:
+            continue
+        done.add(mesh)
+        primitives = document["meshes"][mesh]["primitives"]
+        if export_hair.stands_for_hair(placed.mesh):
+            primitives.clear()
+        for hair in placed.hair:
+            stand_in = document["meshes"][by_name[hair.exported]["mesh"]]["primitives"][0]
+            primitives.append(export_hair.primitive_of(document, binary, hair, stand_in.get("material"), settings))
+
+
+def complete(document, binary, flat, materials, lamps, cameras, curves):
+    """Restores the places and names of meshes, and adds hair, cameras, lights and extras. Returns the binary chunk."""
     document["asset"]["generator"] = "scumble export_scene.py"
     by_name = {node["name"]: node for node in document.get("nodes", [])}
+    binary = bytearray(binary)
+    add_hair(document, binary, flat, by_name, curves)
+    if document.get("buffers"):
+        document["buffers"][0]["byteLength"] = len(binary)
     nodes = []
     for placed in flat.meshes:
         mesh = by_name[placed.exported].get("mesh")
@@ -126,3 +147,4 @@ def complete(document, flat, materials, lamps, cameras):
         material["extras"] = {"scumble": {**extras, **style_of(entry["material"])}}
         material["doubleSided"] = True
     export_bends.drop_unused_coat(document)
+    return bytes(binary)

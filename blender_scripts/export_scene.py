@@ -32,6 +32,7 @@ import blend_check  # noqa: E402  (Blender does not put a script's own folder on
 import export_bends  # noqa: E402
 import export_flat  # noqa: E402
 import export_glb  # noqa: E402
+import export_hair  # noqa: E402
 import export_lamps  # noqa: E402
 import export_materials  # noqa: E402
 import export_rest  # noqa: E402
@@ -64,7 +65,8 @@ def export(scene, view_layer, output, unsupported):
             export_colors=True, export_tangents=False, export_extras=False, export_attributes=has_rest or has_heights,
             export_image_format="AUTO")
         document, binary = export_glb.read(raw)
-    export_glb.complete(document, flat, materials, lamps, cameras)
+    curves = export_hair.curve_settings(scene)
+    binary = export_glb.complete(document, binary, flat, materials, lamps, cameras, curves)
     binary = export_stretch.bake(document, binary, document.get("nodes", []))
     document["scenes"][document["scene"]]["name"] = scene.name
     document["scenes"][document["scene"]]["extras"] = {"scumble": {

@@ -35,6 +35,12 @@ def values_of(document, buffer, accessor):
     return np.frombuffer(buffer, np.float32, 3 * accessor["count"], start).reshape(-1, 3)
 
 
+def numbers_of(document, buffer, accessor):
+    """As values_of, of single numbers."""
+    view = document["bufferViews"][accessor["bufferView"]]
+    return np.frombuffer(buffer, np.float32, accessor["count"], view.get("byteOffset", 0))
+
+
 def bake(document, binary, nodes):
     """Stretches the meshes of those nodes that are their mesh's only users, and makes their "matrix" orthogonal.
     Returns the binary."""
@@ -63,6 +69,10 @@ def bake(document, binary, nodes):
             document["meshes"][number].setdefault("extras", {})["scumble"] = {"stretch": stretch.ravel().tolist()}
         for name, index in sorted(accessors):
             stretch_accessor(document, buffer, document["accessors"][index], name, stretch)
+        for primitive in primitives:
+            if "_SCUMBLE_RADIUS" in primitive["attributes"]:
+                radii = document["accessors"][primitive["attributes"]["_SCUMBLE_RADIUS"]]
+                numbers_of(document, buffer, radii)[:] *= np.cbrt(np.linalg.det(stretch))
         matrix[:3, :3] = orthogonal
         node["matrix"] = matrix.T.ravel().tolist()
     return bytes(buffer)

@@ -107,7 +107,7 @@ std::map<std::uint32_t, std::string> NamesById(const std::vector<std::uint32_t>&
 // each frame. Then equal triangles are those whose corners meet in the same way: at places at rest where both have
 // them.
 bool SameTriangles(const Mesh& now, const Mesh& next) {
-  if (now.triangles.size() != next.triangles.size()) return false;
+  if (now.curves.segments != next.curves.segments || now.triangles.size() != next.triangles.size()) return false;
   if (now.triangles == next.triangles) return true;
   const bool rest = !now.rest_positions.empty() && !next.rest_positions.empty();
   const std::vector<std::uint32_t> place = WeldByPosition(rest ? now.rest_positions : now.positions);

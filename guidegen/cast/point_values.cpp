@@ -31,9 +31,7 @@ glm::dvec2 PointValues::Motion(std::uint32_t object, std::uint32_t primitive, co
   if (!next.mesh) return glm::dvec2(0.0);
   // Both frames use equal arithmetic, so that still points move by exactly 0.
   const auto seen_at = [&](const PlacedObject& placed, const CameraRays& camera) {
-    const Triangle triangle = ViewTriangle(placed, primitive);
-    return camera.PixelOf(triangle.corner[0] + (triangle.corner[1] - triangle.corner[0]) * barycentric.x +
-                          (triangle.corner[2] - triangle.corner[0]) * barycentric.y);
+    return camera.PixelOf(ViewPlace(placed, primitive, barycentric));
   };
   const std::optional<glm::dvec2> from = seen_at(scene_.objects()[object], view_.camera);
   const std::optional<glm::dvec2> to = seen_at(next, view_.next_camera);

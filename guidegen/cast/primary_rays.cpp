@@ -149,13 +149,15 @@ void PrimaryRays::CastCentres(const Tile& tile, const TileRays& rays, bool find_
 
 // Finds pixels that are covered completely without casting a ray. If the centres of a pixel and of its four neighbours
 // see one triangle, the triangle's picture is convex and holds the diamond between those centres, and so the whole
-// pixel. A sphere's picture is convex too. Surfaces with holes and pixels at the tile's border are never counted.
+// pixel. A sphere's picture is convex too. Hair, surfaces with holes and pixels at the tile's border are never counted.
 PrimaryRays::Mask PrimaryRays::FindWhole(const Tile& tile, const TileHits& hits) const {
   Mask whole;
   for (int row = 1; row < tile.height - 1; ++row) {
     for (int column = 1; column < tile.width - 1; ++column) {
       const int pixel = TilePixel(column, row);
-      if (!hits.Met(pixel) || MayHaveHoles(*scene_.objects()[hits.object[pixel]].material)) continue;
+      if (!hits.Met(pixel)) continue;
+      const PlacedObject& object = scene_.objects()[hits.object[pixel]];
+      if (MayHaveHoles(*object.material) || (object.mesh && object.mesh->IsCurves())) continue;
       whole[pixel] = true;
       for (const int neighbour : {TilePixel(column - 1, row), TilePixel(column + 1, row), TilePixel(column, row - 1),
                                   TilePixel(column, row + 1)}) {

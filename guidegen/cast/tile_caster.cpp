@@ -80,8 +80,8 @@ TileCaster::Scratch::Scratch(const TileCaster& caster)
   for (OfTile& tile : tiles) tile.lit.resize(caster.lit_ ? kTilePixels : 0);
 }
 
-// Pixels that the vector code cannot do: spheres, normal maps, bumps, bent normals, degenerate triangles, rays that
-// miss the pixel's centre.
+// Pixels that the vector code cannot do: spheres, hair, normal maps, bumps, bent normals, degenerate triangles, rays
+// that miss the pixel's centre.
 void TileCaster::WritePlain(int pixel, const glm::dvec2& at, TileScratch& scratch) const {
   const TileHits& hits = scratch.hits;
   const PlacedObject& object = scene_.objects()[hits.object[pixel]];

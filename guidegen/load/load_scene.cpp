@@ -48,7 +48,8 @@ Expected<Scene> LoadByEnding(const std::filesystem::path& path, const LoadOption
 void CheckContract(const Scene& scene) {
   SCUMBLE_CHECK(!scene.materials.empty());
   for (const Mesh& mesh : scene.meshes) {
-    SCUMBLE_CHECK_EQ(mesh.normals.size(), mesh.positions.size());
+    SCUMBLE_CHECK_EQ(mesh.normals.size(), mesh.IsCurves() ? 0 : mesh.positions.size());
+    SCUMBLE_CHECK(mesh.triangles.empty() || !mesh.IsCurves());
     SCUMBLE_CHECK(mesh.material >= 0 && std::size_t(mesh.material) < scene.materials.size());
   }
   for (const Instance& instance : scene.instances) {

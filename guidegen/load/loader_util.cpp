@@ -182,7 +182,7 @@ Status GeometryBudget::Take(const std::string& file, std::uint64_t vertices, std
 
 Status GeometryBudget::TakeInstance(const std::string& file, const Mesh& mesh, bool is_first) {
   SCUMBLE_RETURN_IF_ERROR(TakeFrom(instances_, file, 1));
-  return is_first ? Ok() : Take(file, mesh.positions.size(), mesh.triangles.size());
+  return is_first ? Ok() : Take(file, mesh.positions.size(), mesh.triangles.size() + mesh.curves.segments.size());
 }
 
 std::uint64_t TriangulatePolygon(std::span<const glm::vec3> corners, std::vector<glm::uvec3>& triangles) {

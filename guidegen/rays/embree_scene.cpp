@@ -12,6 +12,7 @@
 #include "guidegen/rays/coincident_objects.h"
 #include "guidegen/rays/progress_gate.h"
 #include "guidegen/surface/bsdf.h"
+#include "guidegen/surface/curve.h"
 #include "guidegen/surface/work_counters.h"
 
 namespace scumble {
@@ -181,6 +182,31 @@ RTCGeometry MakeSphere(RTCDevice device, const PlacedObject& object) {
   return geometry;
 }
 
+// The hair of Cycles, which has these of Embree too. A flat curve turns to each ray.
+RTCGeometry MakeCurves(RTCDevice device, const PlacedObject& object) {
+  const Mesh& mesh = *object.mesh;
+  RTCGeometry geometry = rtcNewGeometry(device, mesh.curves.ribbons ? RTC_GEOMETRY_TYPE_FLAT_CATMULL_ROM_CURVE
+                                                                    : RTC_GEOMETRY_TYPE_ROUND_CATMULL_ROM_CURVE);
+  auto* points = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
+                                                             4 * sizeof(float), mesh.positions.size()));
+  if (!points) return geometry;
+  const double scale = RadiusScale(object);
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    const glm::vec4 place(object.view_from_object * glm::dvec4(glm::dvec3(mesh.positions[i]), 1.0));
+    for (int axis = 0; axis < 3; ++axis) points[4 * i + std::size_t(axis)] = place[axis];
+    points[4 * i + 3] = static_cast<float>(scale * double(mesh.curves.radii[i]));
+  }
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, mesh.curves.segments.data(), 0,
+                             sizeof(std::uint32_t), mesh.curves.segments.size());
+  if (mesh.curves.ribbons) rtcSetGeometryTessellationRate(geometry, static_cast<float>(mesh.curves.pieces));
+  return geometry;
+}
+
+RTCGeometry MakeGeometry(RTCDevice device, PlacedObject& object, bool light_rays) {
+  if (!object.mesh) return MakeSphere(device, object);
+  return object.mesh->IsCurves() ? MakeCurves(device, object) : MakeMesh(device, object, light_rays);
+}
+
 // Robust: no cracks between neighbours, and no thin object is lost.
 RTCScene NewScene(RTCDevice device, bool robust) {
   RTCScene scene = rtcNewScene(device);
@@ -246,13 +272,12 @@ Status EmbreeScene::Commit(const Needs& needs, const Progress& progress) {
   const std::vector<bool> covered = FindHiddenCoincident(*objects_);
   for (std::size_t i = 0; i < objects_->size(); ++i) {
     PlacedObject& object = (*objects_)[i];
-    if (covered[i] || (object.mesh && object.mesh->triangles.empty())) continue;
-    RTCGeometry geometry =
-        object.mesh ? MakeMesh(device_.get(), object, needs.light_rays) : MakeSphere(device_.get(), object);
+    if (covered[i] || (object.mesh && object.mesh->triangles.empty() && !object.mesh->IsCurves())) continue;
+    RTCGeometry geometry = MakeGeometry(device_.get(), object, needs.light_rays);
     rtcSetGeometryUserData(geometry, &object);
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(scene_.get(), geometry, static_cast<unsigned>(i));
-    if (needs.emitters && object.mesh && MayEmit(*object.material)) {
+    if (needs.emitters && object.mesh && !object.mesh->IsCurves() && MayEmit(*object.material)) {
       if (!emitters_) emitters_.reset(NewScene(device_.get(), needs.robust));
       rtcAttachGeometryByID(emitters_.get(), geometry, static_cast<unsigned>(i));
     }

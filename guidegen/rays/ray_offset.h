@@ -8,11 +8,6 @@
 
 namespace scumble {
 
-// The height of a ray's start above a surface, for each metre of the largest coordinate C: more than the error of
-// Embree's floats, for triangles up to a length of 1.39 C. Measured, it is enough for larger ones and for slivers too.
-// docs/numerics.md has the derivation ("Light, and where its rays start").
-inline constexpr double kRoundingPerCoordinate = 0x1.0p-20;
-
 // The distance in metres between a ray's end and its light: the largest error of Embree's floats at the ray's two ends.
 // A nearer surface may be the wall that the light is mounted on. So a wall hides a light behind it if the light is
 // farther from it than this gap plus the wall's own rounding: 2⁻¹⁹ of the largest coordinate of the wall's triangle,

@@ -73,7 +73,17 @@ struct Material {
   std::string style{};  // as Instance::style, which takes precedence
 };
 
-// One glTF primitive: a triangle list with one material. Every non-empty attribute has one value per position.
+// Hair. The control points of all curves are a mesh's positions; each curve repeats its first and its last one, which
+// its Catmull–Rom segments need at their ends.
+struct Curves {
+  std::vector<float> radii;             // of each control point, in object space
+  std::vector<std::uint32_t> segments;  // of each segment, the first of its four control points
+  bool ribbons = true;                  // flat, turned to the ray, with rounded normals; false: round
+  int pieces = 3;                       // straight ones of each segment, where it is flat
+};
+
+// One glTF primitive: a triangle list with one material, or curves. Every non-empty attribute has one value per
+// position.
 struct Mesh {
   std::vector<glm::vec3> positions;
   std::vector<glm::vec3> normals;  // unit; loaders always fill them
@@ -87,6 +97,9 @@ struct Mesh {
   // before it, as in Cycles where a mesh has one user.
   glm::dmat3 stretch{1.0};
   int material = 0;  // index into Scene::materials, always valid
+  Curves curves;     // where there are any, there are no triangles, normals and texture coordinates
+
+  bool IsCurves() const { return !curves.segments.empty(); }
 };
 
 struct Instance {

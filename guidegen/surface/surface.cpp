@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "guidegen/surface/curve.h"
 #include "guidegen/surface/interpolate.h"
 #include "guidegen/surface/normal_map.h"
 #include "guidegen/surface/texture.h"
@@ -11,6 +12,11 @@
 
 namespace scumble {
 namespace {
+
+// The vertices between which a mesh's attributes are interpolated. Those of hair are the same all along each curve.
+glm::uvec3 CornersOf(const Mesh& mesh, std::uint32_t primitive) {
+  return mesh.IsCurves() ? glm::uvec3(mesh.curves.segments[primitive]) : mesh.triangles[primitive];
+}
 
 glm::dvec3 DirectionToEye(const ViewRay& ray) { return glm::normalize(-ray.direction); }
 
@@ -171,6 +177,7 @@ bool MakeUnit(glm::dvec3& v) {
 }
 
 glm::dvec3 RestPosition(const PlacedObject& object, std::uint32_t primitive, const glm::dvec2& barycentric) {
+  if (object.mesh->IsCurves()) return RestPlaceOfCurve(object, primitive, barycentric.x);
   const glm::uvec3& corners = object.mesh->triangles[primitive];
   const auto& positions = object.mesh->rest_positions.empty() ? object.mesh->positions : object.mesh->rest_positions;
   return Mix(positions[corners.x], positions[corners.y], positions[corners.z], barycentric);
@@ -206,8 +213,16 @@ bool AllDoubleSided(std::span<const PlacedObject> objects) {
                      [](const PlacedObject& object) { return object.material->double_sided; });
 }
 
+glm::dvec3 ViewPlace(const PlacedObject& object, std::uint32_t primitive, const glm::dvec2& barycentric) {
+  if (object.mesh->IsCurves()) return ViewSegment(object, primitive).At(barycentric.x);
+  const Triangle triangle = ViewTriangle(object, primitive);
+  return triangle.corner[0] + (triangle.corner[1] - triangle.corner[0]) * barycentric.x +
+         (triangle.corner[2] - triangle.corner[0]) * barycentric.y;
+}
+
 SurfacePoint FindSurfacePoint(const PlacedObject& object, std::uint32_t primitive, const ViewRay& ray) {
-  return object.mesh ? FindTrianglePoint(object, primitive, ray) : FindSpherePoint(object, ray);
+  if (!object.mesh) return FindSpherePoint(object, ray);
+  return object.mesh->IsCurves() ? FindCurvePoint(object, primitive, ray) : FindTrianglePoint(object, primitive, ray);
 }
 
 glm::vec4 SurfaceColor(const PlacedObject& object, std::uint32_t primitive, glm::dvec2 barycentric) {
@@ -215,7 +230,7 @@ glm::vec4 SurfaceColor(const PlacedObject& object, std::uint32_t primitive, glm:
   glm::vec4 color = object.material->base_color;
   if (!object.mesh) return color;
   const Mesh& mesh = *object.mesh;
-  const glm::uvec3& corners = mesh.triangles[primitive];
+  const glm::uvec3 corners = CornersOf(mesh, primitive);
   if (!mesh.colors.empty()) color *= Interpolate(mesh.colors, corners, barycentric);
   const TextureUse& use = object.material->base_color_texture;
   if (const Picture* picture = FindTexture(object, use)) {
@@ -229,7 +244,7 @@ std::optional<glm::vec4> SampleSurface(const PlacedObject& object, const Texture
   const Picture* picture = FindTexture(object, use);
   if (!picture) return std::nullopt;
   const Mesh& mesh = *object.mesh;
-  return SampleRaw(*picture, use, Interpolate(mesh.uvs[use.uv_set], mesh.triangles[primitive], barycentric));
+  return SampleRaw(*picture, use, Interpolate(mesh.uvs[use.uv_set], CornersOf(mesh, primitive), barycentric));
 }
 
 std::optional<glm::vec4> SampleSurfaceColor(const PlacedObject& object, const TextureUse& use, std::uint32_t primitive,
@@ -237,7 +252,7 @@ std::optional<glm::vec4> SampleSurfaceColor(const PlacedObject& object, const Te
   const Picture* picture = FindTexture(object, use);
   if (!picture) return std::nullopt;
   const Mesh& mesh = *object.mesh;
-  return SampleColor(*picture, use, Interpolate(mesh.uvs[use.uv_set], mesh.triangles[primitive], barycentric));
+  return SampleColor(*picture, use, Interpolate(mesh.uvs[use.uv_set], CornersOf(mesh, primitive), barycentric));
 }
 
 bool MayHaveHoles(const Material& material) { return material.alpha_mode != AlphaMode::kOpaque; }

@@ -54,13 +54,18 @@ inline Triangle ViewTriangle(const PlacedObject& object, std::uint32_t primitive
 inline constexpr double kEdgeOn = 0x1p-24;
 double LongestEdgeSquared(const Triangle& triangle);
 
+// The height of a ray's start above a surface, for each metre of the largest coordinate C: more than the error of
+// Embree's floats, for triangles up to a length of 1.39 C. Measured, it is enough for larger ones and for slivers too.
+// docs/numerics.md has the derivation ("Light, and where its rays start").
+inline constexpr double kRoundingPerCoordinate = 0x1.0p-20;
+
 struct SurfacePoint {
   glm::dvec3 position{0.0};         // view space
   glm::dvec3 facing{0.0};           // unit geometric normal on the viewer's side
   glm::dvec3 normal{0.0};           // unit shading normal, view space
   glm::dvec3 smooth_normal{0.0};    // unit interpolated normal, if `normal` is another one; 0: they are equal
   glm::dvec3 rest_position{0.0};    // object space
-  glm::dvec2 barycentric{0.0};      // weights of the second and third corner
+  glm::dvec2 barycentric{0.0};      // weights of the second and third corner; of hair, x is the place along it
   double largest_coordinate = 0.0;  // of the point and its triangle: float rounding errors are relative to it
   // The longest offset of a ray's origin from the point with nothing between. It leads back along the ray that hit the
   // point, to that ray's start, or to a place before the last back of a single-sided surface that a camera ray passed.
@@ -75,7 +80,10 @@ struct SurfacePoint {
 // surface/shading_normal.h.
 SurfacePoint FindSurfacePoint(const PlacedObject& object, std::uint32_t primitive, const ViewRay& ray);
 
-// The place of a point of a mesh's triangle before any deformation, object space.
+// The place of a point of a mesh's triangle, view space; of hair, that of its middle line.
+glm::dvec3 ViewPlace(const PlacedObject& object, std::uint32_t primitive, const glm::dvec2& barycentric);
+
+// The place of a point of a mesh's triangle before any deformation, object space; of hair, that of its middle line.
 glm::dvec3 RestPosition(const PlacedObject& object, std::uint32_t primitive, const glm::dvec2& barycentric);
 
 // Interpolated unit normals shorter than this have cancelled out: only rounding is left.

@@ -22,8 +22,8 @@ constexpr Bytes kPaint = 8;  // of a pixel of a Picture
 constexpr Bytes kProgram = 30 * kMega, kThread = 4 * kMega;
 constexpr Bytes kFormatsModule = 125 * kMega;  // OpenImageIO and what it loads
 constexpr Bytes kDecoded = 16;                 // of a pixel of a JPEG or WebP, beside the picture that comes of it
-constexpr Bytes kTriangle = 340;               // ours, Embree's, and what reading a text of it leaves behind
-constexpr Bytes kVertex = 40;                  // what triangles that share no corners have more, while normals are made
+constexpr Bytes kTriangle = 340;  // or a segment of hair: ours, Embree's, and what reading a text of it leaves behind
+constexpr Bytes kVertex = 40;     // what triangles that share no corners have more, while normals are made
 constexpr Bytes kPlacedTriangle = 220;  // Embree's, of each further instance: corners, hierarchy, that of what shines
 constexpr Bytes kInstance = 2300;       // its node in the file, ours, and Embree's geometry
 
@@ -158,13 +158,14 @@ void AddProgram(int threads, MemoryNeed& need) { need.Take("program", kProgram +
 
 void AddScene(const Scene& scene, const TexturePixels& more, MemoryNeed& need) {
   Bytes bytes = kPaint * more.all;
-  for (const Mesh& mesh : scene.meshes) bytes += kTriangle * mesh.triangles.size() + kVertex * mesh.positions.size();
+  const auto primitives = [](const Mesh& mesh) { return mesh.triangles.size() + mesh.curves.segments.size(); };
+  for (const Mesh& mesh : scene.meshes) bytes += kTriangle * primitives(mesh) + kVertex * mesh.positions.size();
   // Embree is given each instance's triangles where they stand. Those that an exact copy covers it is not, but they are
   // rare, and finding them takes a look at every corner.
   std::vector<bool> placed(scene.meshes.size());
   for (const Instance& instance : scene.instances) {
     const auto mesh = std::size_t(instance.mesh);
-    if (placed[mesh]) bytes += kPlacedTriangle * scene.meshes[mesh].triangles.size();
+    if (placed[mesh]) bytes += kPlacedTriangle * primitives(scene.meshes[mesh]);
     placed[mesh] = true;
     bytes += kInstance;
   }

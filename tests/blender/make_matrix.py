@@ -22,6 +22,7 @@ from mathutils import Euler, Vector
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import matrix_bends  # noqa: E402  (Blender does not put a script's own folder on the path)
+import matrix_hair  # noqa: E402
 import matrix_shapes  # noqa: E402
 
 LANDSCAPE, PORTRAIT = "160x90", "90x160"
@@ -386,6 +387,16 @@ def shapes():
     matrix_shapes.build(material("diffuse", (0.5, 0.5, 0.5)))
 
 
+def hair(shape):
+    def build():
+        room(diffuse_set())
+        for name in ("Ball", "Box", "Ring", "Small"):
+            bpy.data.objects.remove(bpy.data.objects[name])
+        matrix_hair.build([material("diffuse", (0.6, 0.6, 0.6)), material("diffuse", (0.7, 0.5, 0.2))], shape)
+        lamp("SUN", 4, KEY, angle=0.0)
+    return build
+
+
 DIFFUSE_LAYERS = ["full", "LDE", "LDDE", "LD12E"]
 SCENES = {  # builder, layers, size, samples
     "emissive": (emissive, DIFFUSE_LAYERS, LANDSCAPE, 256),
@@ -400,6 +411,8 @@ SCENES = {  # builder, layers, size, samples
     "orthographic": (camera_scene(type="ORTHO", ortho_scale=6.0), DIFFUSE_LAYERS, LANDSCAPE, 64),
     "shifted": (camera_scene(shift_x=0.12, shift_y=-0.08), DIFFUSE_LAYERS, LANDSCAPE, 64),
     "shapes": (shapes, [], "240x135", 0),
+    "hair": (hair("RIBBONS"), ["LDE"], LANDSCAPE, 64),
+    "hair_round": (hair("THICK"), [], LANDSCAPE, 0),
 }
 for fit in ("AUTO", "HORIZONTAL", "VERTICAL"):
     for way, pixels in (("landscape", LANDSCAPE), ("portrait", PORTRAIT)):

@@ -53,11 +53,15 @@ Expected<Json> DescribeGuides(const std::string& path) {
 }
 
 Json DescribeScene(const Scene& scene) {
-  std::size_t triangles = 0;
-  for (const Instance& instance : scene.instances) triangles += scene.meshes[instance.mesh].triangles.size();
+  std::size_t triangles = 0, segments = 0;
+  for (const Instance& instance : scene.instances) {
+    triangles += scene.meshes[instance.mesh].triangles.size();
+    segments += scene.meshes[instance.mesh].curves.segments.size();
+  }
   const auto textures = std::count_if(scene.textures.begin(), scene.textures.end(),
                                       [](const Picture& picture) { return !picture.empty(); });
   Json json{{"kind", "scene"}, {"triangles", triangles}, {"textures", textures}};
+  if (segments > 0) json["segments of hair"] = segments;
   const auto names = [&](const char* key, const auto& items, auto name_of) {
     json[key] = Json::array();
     for (const auto& item : items) {

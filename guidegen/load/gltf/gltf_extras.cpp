@@ -312,4 +312,15 @@ Status ReadCameraExtras(const tinygltf::Node& node, const std::string& where, Ca
   return fields.Verdict();
 }
 
+Expected<std::optional<Curves>> ReadCurvesExtras(const tinygltf::Primitive& primitive, const std::string& where) {
+  const tinygltf::Value* const value = Find(primitive.extras, "curves");
+  if (!value) return std::optional<Curves>();
+  Fields fields(*value, where);
+  Curves curves;
+  curves.ribbons = fields.IsTrue("ribbons");
+  curves.pieces = static_cast<int>(fields.Number("pieces", 1.0, 16.0));
+  SCUMBLE_RETURN_IF_ERROR(fields.Verdict());
+  return std::optional(std::move(curves));
+}
+
 }  // namespace scumble

@@ -16,6 +16,7 @@ class Model;
 class Node;
 class Value;
 struct Mesh;
+struct Primitive;
 }  // namespace tinygltf
 
 namespace scumble {
@@ -44,6 +45,9 @@ Expected<std::optional<Light>> ReadLightExtras(const tinygltf::Node& node, const
 
 // Completes an instance by the style and pass index in its node's extras.
 Status ReadObjectExtras(const tinygltf::Node& node, const std::string& where, Instance& instance);
+
+// Whether a primitive's extras say that it is hair, and how it is drawn: curves.ribbons and curves.pieces.
+Expected<std::optional<Curves>> ReadCurvesExtras(const tinygltf::Primitive& primitive, const std::string& where);
 
 // Completes a camera by the sensor fit, angle and shift in its node's extras.
 Status ReadCameraExtras(const tinygltf::Node& node, const std::string& where, Camera& camera);

@@ -9,6 +9,7 @@
 
 #include "guidegen/load/auto_smooth.h"
 #include "guidegen/load/gltf/accessor.h"
+#include "guidegen/load/gltf/curves.h"
 #include "guidegen/load/gltf/gltf_extras.h"
 #include "guidegen/load/gltf/mesh_tangents.h"
 #include "guidegen/load/mesh_normals.h"
@@ -33,7 +34,8 @@ class PrimitiveLoader {
  public:
   PrimitiveLoader(const GltfLoad& load, const tinygltf::Primitive& primitive, std::string name,
                   const DeformationRequest* request)
-      : model_(load.model),
+      : load_(load),
+        model_(load.model),
         file_(load.file),
         scene_(load.scene),
         budget_(load.budget),
@@ -55,6 +57,12 @@ class PrimitiveLoader {
 
   // Empty for primitives that are left out.
   Expected<std::optional<Mesh>> Load() {
+    SCUMBLE_ASSIGN(std::optional<Curves> curves, ReadCurvesExtras(primitive_, file_ + ": " + name_));
+    if (curves) {
+      SCUMBLE_ASSIGN(mesh_, LoadCurves(load_, primitive_, name_, *std::move(curves)));
+      SCUMBLE_RETURN_IF_ERROR(ChooseMaterial());
+      return mesh_.IsCurves() ? std::optional<Mesh>(std::move(mesh_)) : std::nullopt;
+    }
     if (primitive_.mode < TINYGLTF_MODE_TRIANGLES || primitive_.mode > TINYGLTF_MODE_TRIANGLE_FAN) {
       warnings_.Add("points and lines are left out, only triangles are seen", name_);
       return std::optional<Mesh>();
@@ -406,6 +414,7 @@ class PrimitiveLoader {
     }
   }
 
+  const GltfLoad& load_;
   const tinygltf::Model& model_;
   const std::string& file_;
   Scene& scene_;

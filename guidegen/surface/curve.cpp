@@ -1,0 +1,172 @@
+#include "guidegen/surface/curve.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace scumble {
+namespace {
+
+// Weights of the four control points, of value and derivatives, by the power of u.
+struct Weights {
+  double of[4];
+};
+
+Weights Values(double u) {
+  const double u2 = u * u, u3 = u2 * u;
+  return {0.5 * (-u3 + 2.0 * u2 - u), 0.5 * (3.0 * u3 - 5.0 * u2 + 2.0), 0.5 * (-3.0 * u3 + 4.0 * u2 + u),
+          0.5 * (u3 - u2)};
+}
+
+Weights Slopes(double u) {
+  const double u2 = u * u;
+  return {0.5 * (-3.0 * u2 + 4.0 * u - 1.0), 0.5 * (9.0 * u2 - 10.0 * u), 0.5 * (-9.0 * u2 + 8.0 * u + 1.0),
+          0.5 * (3.0 * u2 - 2.0 * u)};
+}
+
+Weights Bends(double u) {
+  return {0.5 * (-6.0 * u + 4.0), 0.5 * (18.0 * u - 10.0), 0.5 * (-18.0 * u + 8.0), 0.5 * (6.0 * u - 2.0)};
+}
+
+template <class T>
+T Sum(const Weights& weights, const T* values) {
+  return values[0] * weights.of[0] + values[1] * weights.of[1] + values[2] * weights.of[2] + values[3] * weights.of[3];
+}
+
+// The ray as a line: a unit direction, and the part of places that is across it.
+struct Line {
+  glm::dvec3 origin, direction;
+
+  explicit Line(const ViewRay& ray) : origin(ray.origin), direction(glm::normalize(ray.direction)) {}
+  double Along(const glm::dvec3& place) const { return glm::dot(place - origin, direction); }
+  glm::dvec3 Across(const glm::dvec3& place) const { return place - origin - direction * Along(place); }
+};
+
+// The place along the segment whose middle line passes nearest to the ray, in radii.
+double NearestToRay(const CurveSegment& segment, const Line& line) {
+  const auto miss = [&](double u) {
+    const glm::dvec3 across = line.Across(segment.At(u));
+    const double radius = std::max(segment.RadiusAt(u), 1e-300);
+    return glm::dot(across, across) / (radius * radius);
+  };
+  constexpr int kPlaces = 8;
+  int nearest = 0;
+  double least = miss(0.0);
+  for (int i = 1; i <= kPlaces; ++i) {
+    const double here = miss(double(i) / kPlaces);
+    if (here < least) least = here, nearest = i;
+  }
+  // The middle line's distance itself has no corners there: golden section.
+  double low = std::max(0.0, double(nearest - 1) / kPlaces), high = std::min(1.0, double(nearest + 1) / kPlaces);
+  constexpr double kGolden = 0.6180339887498949;
+  double a = high - kGolden * (high - low), b = low + kGolden * (high - low);
+  double miss_a = miss(a), miss_b = miss(b);
+  for (int i = 0; i < 32; ++i) {
+    if (miss_a < miss_b) {
+      high = b, b = a, miss_b = miss_a;
+      a = high - kGolden * (high - low), miss_a = miss(a);
+    } else {
+      low = a, a = b, miss_a = miss_b;
+      b = low + kGolden * (high - low), miss_b = miss(b);
+    }
+  }
+  return 0.5 * (low + high);
+}
+
+glm::dvec3 UnitOr(glm::dvec3 v, const glm::dvec3& otherwise) { return MakeUnit(v) ? v : otherwise; }
+
+SurfacePoint RibbonPoint(const CurveSegment& segment, const Line& line) {
+  const double u = NearestToRay(segment, line);
+  const glm::dvec3 middle = segment.At(u), offset = -line.Across(middle);
+  const glm::dvec3 back = -line.direction;
+  const glm::dvec3 tangent = UnitOr(segment.Tangent(u), glm::dvec3(0.0));
+  SurfacePoint point;
+  point.position = middle + offset;
+  const glm::dvec3 across = UnitOr(glm::cross(tangent, back), glm::dvec3(0.0));
+  const double radius = segment.RadiusAt(u);
+  const double sine = radius > 0.0 ? std::clamp(glm::dot(offset, across) / radius, -1.0, 1.0) : 0.0;
+  const double cosine = std::sqrt(1.0 - sine * sine);
+  point.normal = UnitOr(sine * across - cosine * UnitOr(glm::cross(tangent, across), -back), back);
+  point.facing = point.normal;
+  point.barycentric.x = u;
+  return point;
+}
+
+// The ray's length and the place along the segment where the disc across the middle line has the ray's point on its
+// rim: Newton's method from the nearest place.
+SurfacePoint RoundPoint(const CurveSegment& segment, const Line& line) {
+  double u = NearestToRay(segment, line);
+  const double radius = segment.RadiusAt(u);
+  const glm::dvec3 start = segment.At(u), across = line.Across(start);
+  const glm::dvec3 tangent = UnitOr(segment.Tangent(u), glm::dvec3(0.0));
+  const double slant = std::max(glm::length(glm::cross(tangent, line.direction)), 1e-3);
+  double length = line.Along(start) - std::sqrt(std::max(0.0, radius * radius - glm::dot(across, across))) / slant;
+  for (int i = 0; i < 12; ++i) {
+    const glm::dvec3 middle = segment.At(u), slope = segment.Tangent(u);
+    const glm::dvec3 from = line.origin + line.direction * length - middle;
+    const double r = segment.RadiusAt(u);
+    const double off_disc = glm::dot(from, slope), off_rim = glm::dot(from, from) - r * r;
+    const double a = glm::dot(line.direction, slope);
+    const double b = glm::dot(from, segment.Bend(u)) - glm::dot(slope, slope);
+    const double c = 2.0 * glm::dot(from, line.direction);
+    const double d = -2.0 * off_disc - 2.0 * r * segment.RadiusSlope(u);
+    const double determinant = a * d - b * c;
+    if (!(std::abs(determinant) > 0.0)) break;
+    const double more_length = (off_disc * d - off_rim * b) / determinant;
+    const double more_u = (off_rim * a - off_disc * c) / determinant;
+    if (!std::isfinite(more_length) || !std::isfinite(more_u)) break;
+    length -= std::clamp(more_length, -2.0 * radius, 2.0 * radius);
+    u = std::clamp(u - more_u, 0.0, 1.0);
+  }
+  SurfacePoint point;
+  point.position = line.origin + line.direction * length;
+  point.normal = UnitOr(point.position - segment.At(u), -line.direction);
+  if (glm::dot(point.normal, line.direction) > 0.0) point.normal = -point.normal;
+  point.facing = point.normal;
+  point.barycentric.x = u;
+  return point;
+}
+
+}  // namespace
+
+glm::dvec3 CurveSegment::At(double u) const { return Sum(Values(u), points); }
+glm::dvec3 CurveSegment::Tangent(double u) const { return Sum(Slopes(u), points); }
+glm::dvec3 CurveSegment::Bend(double u) const { return Sum(Bends(u), points); }
+double CurveSegment::RadiusAt(double u) const { return Sum(Values(u), radii); }
+double CurveSegment::RadiusSlope(double u) const { return Sum(Slopes(u), radii); }
+
+double RadiusScale(const PlacedObject& object) {
+  return std::cbrt(std::abs(glm::determinant(glm::dmat3(object.view_from_object))));
+}
+
+CurveSegment ViewSegment(const PlacedObject& object, std::uint32_t segment) {
+  const Mesh& mesh = *object.mesh;
+  const std::size_t first = mesh.curves.segments[segment];
+  const double scale = RadiusScale(object);
+  CurveSegment result;
+  for (std::size_t i = 0; i < 4; ++i) {
+    result.points[i] = glm::dvec3(object.view_from_object * glm::dvec4(glm::dvec3(mesh.positions[first + i]), 1.0));
+    result.radii[i] = scale * double(mesh.curves.radii[first + i]);
+  }
+  return result;
+}
+
+SurfacePoint FindCurvePoint(const PlacedObject& object, std::uint32_t segment, const ViewRay& ray) {
+  const CurveSegment curve = ViewSegment(object, segment);
+  const Line line(ray);
+  const bool is_ribbon = object.mesh->curves.ribbons;
+  SurfacePoint point = is_ribbon ? RibbonPoint(curve, line) : RoundPoint(curve, line);
+  point.rest_position = RestPlaceOfCurve(object, segment, point.barycentric.x);
+  const double clearance = is_ribbon ? 1.125 * curve.RadiusAt(point.barycentric.x) : 0.0;
+  point.largest_coordinate = std::max(LargestCoordinate(point.position), clearance / kRoundingPerCoordinate);
+  return point;
+}
+
+glm::dvec3 RestPlaceOfCurve(const PlacedObject& object, std::uint32_t segment, double u) {
+  const Mesh& mesh = *object.mesh;
+  const auto& places = mesh.rest_positions.empty() ? mesh.positions : mesh.rest_positions;
+  const std::size_t first = mesh.curves.segments[segment];
+  const glm::dvec3 points[4] = {places[first], places[first + 1], places[first + 2], places[first + 3]};
+  return Sum(Values(u), points);
+}
+
+}  // namespace scumble

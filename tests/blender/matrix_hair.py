@@ -1,0 +1,69 @@
+"""Hair in every way in which Blender makes it: part of make_matrix.py."""
+
+import bmesh
+import bpy
+
+
+def emitter(name, place, materials):
+    data, shape = bpy.data.meshes.new(name), bmesh.new()
+    bmesh.ops.create_uvsphere(shape, u_segments=24, v_segments=12, radius=0.5)
+    for face in shape.faces:
+        face.smooth = True
+    shape.to_mesh(data)
+    shape.free()
+    for material in materials:
+        data.materials.append(material)
+    thing = bpy.data.objects.new(name, data)
+    thing.location = place
+    bpy.context.scene.collection.objects.link(thing)
+    return thing
+
+
+def grow(thing, **values):
+    system = thing.modifiers.new("Hair", "PARTICLE_SYSTEM").particle_system
+    settings = system.settings
+    settings.type, settings.count, settings.hair_length = "HAIR", 60, 0.7
+    settings.hair_step, settings.render_step, settings.display_step = 5, 4, 2
+    settings.brownian_factor, settings.tangent_factor = 0.03, 0.05
+    settings.radius_scale, settings.root_radius, settings.tip_radius = 0.1, 1.0, 0.3
+    settings.material = len(thing.material_slots)
+    for key, value in values.items():
+        setattr(settings, key, value)
+    return system
+
+
+def made_by_nodes(name, place, material):
+    """A mesh whose geometry nodes give curves beside it."""
+    thing = emitter(name, place, [material])
+    nodes = bpy.data.node_groups.new(name, "GeometryNodeTree")
+    nodes.inputs.new("NodeSocketGeometry", "Geometry")
+    nodes.outputs.new("NodeSocketGeometry", "Geometry")
+    first, last = nodes.nodes.new("NodeGroupInput"), nodes.nodes.new("NodeGroupOutput")
+    spiral, radius = nodes.nodes.new("GeometryNodeCurveSpiral"), nodes.nodes.new("GeometryNodeSetCurveRadius")
+    paint, join = nodes.nodes.new("GeometryNodeSetMaterial"), nodes.nodes.new("GeometryNodeJoinGeometry")
+    for key, value in (("Resolution", 12), ("Rotations", 2.0), ("Start Radius", 0.6), ("End Radius", 0.8),
+                       ("Height", 0.7)):
+        spiral.inputs[key].default_value = value
+    radius.inputs["Radius"].default_value = 0.06
+    paint.inputs["Material"].default_value = material
+    link = nodes.links.new
+    link(spiral.outputs[0], radius.inputs["Curve"])
+    link(radius.outputs[0], paint.inputs["Geometry"])
+    link(paint.outputs[0], join.inputs[0])
+    link(first.outputs[0], join.inputs[0])
+    link(join.outputs[0], last.inputs[0])
+    thing.modifiers.new("Nodes", "NODES").node_group = nodes
+
+
+def build(materials, shape):
+    """`materials`: of the bodies, of the hair."""
+    bpy.context.scene.cycles_curves.shape = shape
+    body, hair = materials
+    grow(emitter("Ball", (-1.2, 0.0, 0.6), [body, hair]))
+    grow(emitter("Tufts", (0.0, 0.3, 0.6), [body, hair]), count=12, child_type="INTERPOLATED", rendered_child_count=6,
+         child_nbr=1, clump_factor=0.3)
+    alone = emitter("Alone", (1.2, 0.0, 0.6), [hair])
+    alone.scale = (0.7, 0.9, 1.2)
+    alone.show_instancer_for_render = False
+    grow(alone, shape=0.5, use_close_tip=True)
+    made_by_nodes("Spiral", (0.0, -0.9, 0.0), hair)
