@@ -114,6 +114,8 @@ def every_instance(depsgraph):
             continue
         if thing.type == "MESH" and thing.original.type in MESH_TYPES - {"MESH"}:
             continue  # a curve's triangles, which follow the curve itself
+        if instance.is_instance and thing.type == "CURVE" and thing.original.type == "MESH":
+            continue  # curves that a mesh's nodes leave, which are not drawn
         yield instance, name_of(instance, taken)
 
 

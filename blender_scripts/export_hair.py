@@ -109,8 +109,9 @@ def curves_hair(thing):
 
 
 def curve_settings(scene):
+    """Cycles gives Embree one piece more than a power of two."""
     curves = scene.cycles_curves
-    return {"ribbons": curves.shape == "RIBBONS", "pieces": min(max(curves.subdivisions, 0), 15) + 1}
+    return {"ribbons": curves.shape == "RIBBONS", "pieces": min(max(1 << curves.subdivisions, 1), 16) + 1}
 
 
 # ---- The file -------------------------------------------------------------------------------------------------------

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace scumble {
 namespace {
@@ -74,16 +75,54 @@ double NearestToRay(const CurveSegment& segment, const Line& line) {
 
 glm::dvec3 UnitOr(glm::dvec3 v, const glm::dvec3& otherwise) { return MakeUnit(v) ? v : otherwise; }
 
-SurfacePoint RibbonPoint(const CurveSegment& segment, const Line& line) {
-  const double u = NearestToRay(segment, line);
-  const glm::dvec3 middle = segment.At(u), offset = -line.Across(middle);
+// Where a ray meets a straight piece of a ribbon: `along` the piece and `across` it, in [0, 1] and [-1, 1] where it
+// does.
+struct PieceHit {
+  double along, across;
+  double Miss() const { return std::max({-along, along - 1.0, std::abs(across) - 1.0, 0.0}); }
+};
+
+// The middle line at both ends of a piece, and the way from there to the edge, as seen along a ray; the ray is at 0.
+// Newton's method on (1 - t) (from + s from_edge) + t (to + s to_edge) = 0.
+PieceHit MeetPiece(const glm::dvec2& from, const glm::dvec2& from_edge, const glm::dvec2& to,
+                   const glm::dvec2& to_edge) {
+  const glm::dvec2 way = to - from;
+  PieceHit hit{std::clamp(-glm::dot(from, way) / std::max(glm::dot(way, way), 1e-300), 0.0, 1.0), 0.0};
+  for (int i = 0; i < 8; ++i) {
+    const glm::dvec2 edge = glm::mix(from_edge, to_edge, hit.along);
+    const glm::dvec2 miss = glm::mix(from, to, hit.along) + hit.across * edge;
+    const glm::dvec2 by_along = way + hit.across * (to_edge - from_edge);
+    const double determinant = by_along.x * edge.y - by_along.y * edge.x;
+    if (!(std::abs(determinant) > 0.0)) break;
+    hit.along -= (miss.x * edge.y - miss.y * edge.x) / determinant;
+    hit.across -= (by_along.x * miss.y - by_along.y * miss.x) / determinant;
+  }
+  return hit;
+}
+
+// Embree's ribbon: `pieces` straight ones, whose edges are at right angles to the curve at their ends.
+SurfacePoint RibbonPoint(const CurveSegment& segment, const Line& line, int pieces) {
   const glm::dvec3 back = -line.direction;
-  const glm::dvec3 tangent = UnitOr(segment.Tangent(u), glm::dvec3(0.0));
+  const glm::dvec3 aside =
+      UnitOr(glm::cross(back, std::abs(back.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)), glm::dvec3(0.0));
+  const glm::dvec3 up = glm::cross(back, aside);
+  const auto seen = [&](const glm::dvec3& v) { return glm::dvec2(glm::dot(v, aside), glm::dot(v, up)); };
+  const auto across_at = [&](double u) { return UnitOr(glm::cross(segment.Tangent(u), back), glm::dvec3(0.0)); };
+  double u = 0.0, sine = 0.0, length = 0.0, least_miss = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < pieces; ++i) {
+    const double begin = double(i) / pieces, end = double(i + 1) / pieces;
+    const glm::dvec3 from = segment.At(begin), to = segment.At(end);
+    const PieceHit hit = MeetPiece(seen(from - line.origin), segment.RadiusAt(begin) * seen(across_at(begin)),
+                                   seen(to - line.origin), segment.RadiusAt(end) * seen(across_at(end)));
+    const double along = std::clamp(hit.along, 0.0, 1.0), miss = std::isfinite(hit.Miss()) ? hit.Miss() : 1e300;
+    const double here = glm::mix(line.Along(from), line.Along(to), along);
+    if (miss > least_miss || (miss == least_miss && here >= length)) continue;
+    least_miss = miss, length = here;
+    u = glm::mix(begin, end, along), sine = std::isfinite(hit.across) ? std::clamp(hit.across, -1.0, 1.0) : 0.0;
+  }
   SurfacePoint point;
-  point.position = middle + offset;
-  const glm::dvec3 across = UnitOr(glm::cross(tangent, back), glm::dvec3(0.0));
-  const double radius = segment.RadiusAt(u);
-  const double sine = radius > 0.0 ? std::clamp(glm::dot(offset, across) / radius, -1.0, 1.0) : 0.0;
+  point.position = line.origin + line.direction * length;
+  const glm::dvec3 tangent = UnitOr(segment.Tangent(u), glm::dvec3(0.0)), across = across_at(u);
   const double cosine = std::sqrt(1.0 - sine * sine);
   point.normal = UnitOr(sine * across - cosine * UnitOr(glm::cross(tangent, across), -back), back);
   point.facing = point.normal;
@@ -154,7 +193,7 @@ SurfacePoint FindCurvePoint(const PlacedObject& object, std::uint32_t segment, c
   const CurveSegment curve = ViewSegment(object, segment);
   const Line line(ray);
   const bool is_ribbon = object.mesh->curves.ribbons;
-  SurfacePoint point = is_ribbon ? RibbonPoint(curve, line) : RoundPoint(curve, line);
+  SurfacePoint point = is_ribbon ? RibbonPoint(curve, line, object.mesh->curves.pieces) : RoundPoint(curve, line);
   point.rest_position = RestPlaceOfCurve(object, segment, point.barycentric.x);
   const double clearance = is_ribbon ? 1.125 * curve.RadiusAt(point.barycentric.x) : 0.0;
   point.largest_coordinate = std::max(LargestCoordinate(point.position), clearance / kRoundingPerCoordinate);

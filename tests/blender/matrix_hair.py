@@ -33,14 +33,18 @@ def grow(thing, **values):
 
 
 def made_by_nodes(name, place, material):
-    """A mesh whose geometry nodes give curves beside it."""
-    thing = emitter(name, place, [material])
+    """An object of hair curves, all made by geometry nodes."""
+    data = bpy.data.hair_curves.new(name)
+    data.materials.append(material)
+    thing = bpy.data.objects.new(name, data)
+    thing.location = place
+    bpy.context.scene.collection.objects.link(thing)
     nodes = bpy.data.node_groups.new(name, "GeometryNodeTree")
     nodes.inputs.new("NodeSocketGeometry", "Geometry")
     nodes.outputs.new("NodeSocketGeometry", "Geometry")
-    first, last = nodes.nodes.new("NodeGroupInput"), nodes.nodes.new("NodeGroupOutput")
+    last = nodes.nodes.new("NodeGroupOutput")
     spiral, radius = nodes.nodes.new("GeometryNodeCurveSpiral"), nodes.nodes.new("GeometryNodeSetCurveRadius")
-    paint, join = nodes.nodes.new("GeometryNodeSetMaterial"), nodes.nodes.new("GeometryNodeJoinGeometry")
+    paint = nodes.nodes.new("GeometryNodeSetMaterial")
     for key, value in (("Resolution", 12), ("Rotations", 2.0), ("Start Radius", 0.6), ("End Radius", 0.8),
                        ("Height", 0.7)):
         spiral.inputs[key].default_value = value
@@ -49,9 +53,7 @@ def made_by_nodes(name, place, material):
     link = nodes.links.new
     link(spiral.outputs[0], radius.inputs["Curve"])
     link(radius.outputs[0], paint.inputs["Geometry"])
-    link(paint.outputs[0], join.inputs[0])
-    link(first.outputs[0], join.inputs[0])
-    link(join.outputs[0], last.inputs[0])
+    link(paint.outputs[0], last.inputs[0])
     thing.modifiers.new("Nodes", "NODES").node_group = nodes
 
 
@@ -63,7 +65,7 @@ def build(materials, shape):
     grow(emitter("Tufts", (0.0, 0.3, 0.6), [body, hair]), count=12, child_type="INTERPOLATED", rendered_child_count=6,
          child_nbr=1, clump_factor=0.3)
     alone = emitter("Alone", (1.2, 0.0, 0.6), [hair])
-    alone.scale = (0.7, 0.9, 1.2)
+    alone.scale = (0.8, 0.8, 0.8)
     alone.show_instancer_for_render = False
     grow(alone, shape=0.5, use_close_tip=True)
     made_by_nodes("Spiral", (0.0, -0.9, 0.0), hair)

@@ -318,7 +318,7 @@ Expected<std::optional<Curves>> ReadCurvesExtras(const tinygltf::Primitive& prim
   Fields fields(*value, where);
   Curves curves;
   curves.ribbons = fields.IsTrue("ribbons");
-  curves.pieces = static_cast<int>(fields.Number("pieces", 1.0, 16.0));
+  curves.pieces = static_cast<int>(fields.Number("pieces", 1.0, 17.0));
   SCUMBLE_RETURN_IF_ERROR(fields.Verdict());
   return std::optional(std::move(curves));
 }
