@@ -182,6 +182,17 @@ RTCGeometry MakeSphere(RTCDevice device, const PlacedObject& object) {
   return geometry;
 }
 
+// Round hair is not seen from its inside, through its open ends.
+void LeaveOutInsides(const RTCFilterFunctionNArguments* args) {
+  const unsigned count = args->N;
+  for (unsigned i = 0; i < count; ++i) {
+    const float along = RTCHitN_Ng_x(args->hit, count, i) * RTCRayN_dir_x(args->ray, count, i) +
+                        RTCHitN_Ng_y(args->hit, count, i) * RTCRayN_dir_y(args->ray, count, i) +
+                        RTCHitN_Ng_z(args->hit, count, i) * RTCRayN_dir_z(args->ray, count, i);
+    if (args->valid[i] != 0 && along > 0.0f) args->valid[i] = 0;
+  }
+}
+
 // The hair of Cycles, which has these of Embree too. A flat curve turns to each ray.
 RTCGeometry MakeCurves(RTCDevice device, const PlacedObject& object) {
   const Mesh& mesh = *object.mesh;
@@ -198,7 +209,12 @@ RTCGeometry MakeCurves(RTCDevice device, const PlacedObject& object) {
   }
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, mesh.curves.segments.data(), 0,
                              sizeof(std::uint32_t), mesh.curves.segments.size());
-  if (mesh.curves.ribbons) rtcSetGeometryTessellationRate(geometry, static_cast<float>(mesh.curves.pieces));
+  if (mesh.curves.ribbons) {
+    rtcSetGeometryTessellationRate(geometry, static_cast<float>(mesh.curves.pieces));
+  } else {
+    rtcSetGeometryIntersectFilterFunction(geometry, LeaveOutInsides);
+    rtcSetGeometryOccludedFilterFunction(geometry, LeaveOutInsides);
+  }
   return geometry;
 }
 

@@ -130,36 +130,45 @@ SurfacePoint RibbonPoint(const CurveSegment& segment, const Line& line, int piec
   return point;
 }
 
-// The ray's length and the place along the segment where the disc across the middle line has the ray's point on its
-// rim: Newton's method from the nearest place.
+// The place along the segment, near `u`, that is nearest to `place`: there the way to it is at right angles to the
+// curve.
+double NearestToPlace(const CurveSegment& segment, const glm::dvec3& place, double u) {
+  for (int i = 0; i < 6; ++i) {
+    const glm::dvec3 from = place - segment.At(u), slope = segment.Tangent(u);
+    const double squared = glm::dot(slope, slope), bent = squared - glm::dot(from, segment.Bend(u));
+    if (!(squared > 0.0)) break;
+    u = std::clamp(u + glm::dot(from, slope) / (bent > 0.25 * squared ? bent : squared), 0.0, 1.0);
+  }
+  return u;
+}
+
+// The first point of the ray that is a radius away from the middle line. On the way there the distance from the line
+// falls, ever more slowly: Newton's method from before the hair comes nearer and never too far.
 SurfacePoint RoundPoint(const CurveSegment& segment, const Line& line) {
   double u = NearestToRay(segment, line);
-  const double radius = segment.RadiusAt(u);
-  const glm::dvec3 start = segment.At(u), across = line.Across(start);
+  const double nearest = line.Along(segment.At(u));
+  const double thickest = std::max(segment.RadiusAt(0.0), std::max(segment.RadiusAt(u), segment.RadiusAt(1.0)));
   const glm::dvec3 tangent = UnitOr(segment.Tangent(u), glm::dvec3(0.0));
-  const double slant = std::max(glm::length(glm::cross(tangent, line.direction)), 1e-3);
-  double length = line.Along(start) - std::sqrt(std::max(0.0, radius * radius - glm::dot(across, across))) / slant;
-  for (int i = 0; i < 12; ++i) {
-    const glm::dvec3 middle = segment.At(u), slope = segment.Tangent(u);
-    const glm::dvec3 from = line.origin + line.direction * length - middle;
-    const double r = segment.RadiusAt(u);
-    const double off_disc = glm::dot(from, slope), off_rim = glm::dot(from, from) - r * r;
-    const double a = glm::dot(line.direction, slope);
-    const double b = glm::dot(from, segment.Bend(u)) - glm::dot(slope, slope);
-    const double c = 2.0 * glm::dot(from, line.direction);
-    const double d = -2.0 * off_disc - 2.0 * r * segment.RadiusSlope(u);
-    const double determinant = a * d - b * c;
-    if (!(std::abs(determinant) > 0.0)) break;
-    const double more_length = (off_disc * d - off_rim * b) / determinant;
-    const double more_u = (off_rim * a - off_disc * c) / determinant;
-    if (!std::isfinite(more_length) || !std::isfinite(more_u)) break;
-    length -= std::clamp(more_length, -2.0 * radius, 2.0 * radius);
-    u = std::clamp(u - more_u, 0.0, 1.0);
+  const double slant = std::max(glm::length(glm::cross(tangent, line.direction)), 0.05);
+  double length = nearest - 1.5 * thickest / slant;
+  glm::dvec3 normal = -line.direction;
+  for (int i = 0; i < 32; ++i) {
+    const glm::dvec3 place = line.origin + line.direction * length;
+    u = NearestToPlace(segment, place, u);
+    const glm::dvec3 from = place - segment.At(u);
+    const double distance = glm::length(from), left = distance - segment.RadiusAt(u);
+    normal = UnitOr(from, -line.direction);
+    const double nearer = -glm::dot(normal, line.direction);  // by a step along the ray
+    if (std::abs(left) <= 1e-9 * distance || !(nearer > 0.0)) break;
+    const double next = std::min(length + left / nearer, nearest);
+    if (next == length) break;
+    length = next;
   }
   SurfacePoint point;
   point.position = line.origin + line.direction * length;
-  point.normal = UnitOr(point.position - segment.At(u), -line.direction);
-  if (glm::dot(point.normal, line.direction) > 0.0) point.normal = -point.normal;
+  // A ray that only just misses the rim meets it there.
+  const double away = glm::dot(normal, line.direction);
+  point.normal = away > 0.0 ? UnitOr(normal - away * line.direction, -line.direction) : normal;
   point.facing = point.normal;
   point.barycentric.x = u;
   return point;
@@ -171,7 +180,6 @@ glm::dvec3 CurveSegment::At(double u) const { return Sum(Values(u), points); }
 glm::dvec3 CurveSegment::Tangent(double u) const { return Sum(Slopes(u), points); }
 glm::dvec3 CurveSegment::Bend(double u) const { return Sum(Bends(u), points); }
 double CurveSegment::RadiusAt(double u) const { return Sum(Values(u), radii); }
-double CurveSegment::RadiusSlope(double u) const { return Sum(Slopes(u), radii); }
 
 double RadiusScale(const PlacedObject& object) {
   return std::cbrt(std::abs(glm::determinant(glm::dmat3(object.view_from_object))));

@@ -18,12 +18,11 @@ struct CurveSegment {
   glm::dvec3 points[4];
   double radii[4];
 
-  // The middle line at u in [0, 1], its first and its second derivative, and the radius and its derivative.
+  // The middle line at u in [0, 1], its first and its second derivative, and the radius.
   glm::dvec3 At(double u) const;
   glm::dvec3 Tangent(double u) const;
   glm::dvec3 Bend(double u) const;
   double RadiusAt(double u) const;
-  double RadiusSlope(double u) const;
 };
 CurveSegment ViewSegment(const PlacedObject& object, std::uint32_t segment);
 

@@ -314,7 +314,7 @@ def objects():
     cube("Leaf", (0, 0, 0), plain).parent = scatter
     scatter.instance_type = "VERTS"
     scatter.show_instancer_for_render = False
-    link(bpy.data.objects.new("Strands", bpy.data.hair_curves.new("Strands"))).location = (9, 16, 0)
+    link(bpy.data.objects.new("Smoke", bpy.data.volumes.new("Smoke"))).location = (9, 16, 0)
     scene.frame_set(1)
     result = {"1": bounds()}
     scene.frame_set(6)
