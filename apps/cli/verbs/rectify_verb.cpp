@@ -161,9 +161,9 @@ Expected<ExitCode> RunRectify(const CLI::App& verb, const RectifyRequest& reques
   SCUMBLE_ASSIGN(const PictureHeader header, InspectPicture(request.scan));
   SCUMBLE_RETURN_IF_ERROR(CheckScanSize(header.width, header.height, header.dpi, request.scan));
   const std::optional<fs::path> guides = GuidesOfPainting(request.output);
-  const std::optional<int> kit = guides ? KitSize(*guides) : std::nullopt;
+  const int kit = guides ? KitSize(*guides).value_or(0) : 0;  // 0: there is none
   RectifyOptions options;
-  options.size = verb.count("--size") > 0 ? request.size : kit.value_or(request.size);
+  options.size = verb.count("--size") > 0 ? request.size : kit > 0 ? kit : request.size;
   options.with_margin = !request.square, options.white_balance = !request.no_white_balance;
   options.dpi = header.dpi;
   SCUMBLE_ASSIGN(Picture scan, ReadPicture(request.scan));
@@ -171,9 +171,9 @@ Expected<ExitCode> RunRectify(const CLI::App& verb, const RectifyRequest& reques
   PictureWriteOptions write;
   write.bits = header.bits > 8 && PictureBits(request.output, {.bits = 16}) == 16 ? 16 : 8;
   SCUMBLE_RETURN_IF_ERROR(WritePicture(request.output, rectified.picture, write));
-  if (kit && *kit != options.size) {
+  if (kit > 0 && kit != options.size) {
     globals.Warn(fmt::format("{} has {} pixels and the kit's {} {}: the style there will refuse it; take --size {}",
-                             request.output, options.size, guides->string(), *kit, *kit));
+                             request.output, options.size, guides->string(), kit, kit));
   }
   for (const std::string& warning : rectified.report.warnings) globals.Warn(request.scan + ": " + warning);
   if (globals.json) {
