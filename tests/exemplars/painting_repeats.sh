@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Painting an exemplar twice with one random seed gives equal bytes, and another seed another picture: every style is
-# painted twice, alternately with one seed and with two. At a small size.
+# painted twice, alternately with one seed and with two. At a small size. Four that take longest are left out, because
+# they lay paint on with the brushes of others: impasto as oil does, and the flat brush.
 # Usage: painting_repeats.sh PAINT_EXEMPLARS EXEMPLARS
 set -eu
 paint=$1
@@ -8,11 +9,18 @@ exemplars=$2
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 
-"$paint" --style all --size 64 --seed 1 -o "$folder/first" > /dev/null &
+styles=()
+for style in "$exemplars"/*/style.toml; do
+  name=$(basename "$(dirname "$style")")
+  case $name in gouache | plein-air | scene-oil | tinted-oil) ;; *) styles+=("$name") ;; esac
+done
+for name in "${styles[@]}"; do
+  "$paint" --style "$name" --size 64 --seed 1 -o "$folder/first" > /dev/null
+done &
 first=$!
 seed=1
-for style in "$exemplars"/*/style.toml; do
-  "$paint" --style "$(basename "$(dirname "$style")")" --size 64 --seed $seed -o "$folder/seed-$seed" > /dev/null
+for name in "${styles[@]}"; do
+  "$paint" --style "$name" --size 64 --seed $seed -o "$folder/seed-$seed" > /dev/null
   seed=$((3 - seed))
 done
 wait "$first"
@@ -30,9 +38,8 @@ for style in "$folder"/first/*/; do
   done
 done
 # The painted exemplars are those that the bundled styles list.
-for style in "$exemplars"/*/style.toml; do
-  name=$(basename "$(dirname "$style")")
-  for picture in $(sed -n 's/^\(image\|paper\) = "\(.*\.png\)".*/\2/p' "$style"); do
+for name in "${styles[@]}"; do
+  for picture in $(sed -n 's/^\(image\|paper\) = "\(.*\.png\)".*/\2/p' "$exemplars/$name/style.toml"); do
     [ -s "$folder/first/$name/$picture" ] || { echo "$name: no $picture"; exit 1; }
   done
 done
