@@ -216,6 +216,12 @@ void AddGuidesRead(const GuideFileInfo& info, const GuideReadOptions& read, Memo
   need.Take("guides", kFloat * ChannelsOf(layers) * pixels);
   const bool plain = !info.from_blender && info.layers.size() == 1 && info.layers.begin()->first.empty();
   if (plain) return;
+  if (info.fragments > 0) {
+    layers.Add({Layer::kObject, Layer::kMaterial});
+    // As they stand in the file's header, in a copy of it and in memory, with an index each, and their colours.
+    const Bytes of_fragment = 3 * kFloat * (ChannelsOf(info.layers.begin()->second) + 1) + kPaint;
+    need.Take("fragments", of_fragment * info.fragments);
+  }
   // Another reader: all channels side by side, then by layer.
   Bytes channels = 1;
   for (const auto& [name, found] : info.layers) channels += ChannelsOf(found);
