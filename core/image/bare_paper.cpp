@@ -1,6 +1,7 @@
 #include "core/image/bare_paper.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -58,6 +59,24 @@ float Difference(glm::vec3 a, glm::vec3 b) {
 // 0 for paper, 1 for paint that hides it.
 float Opacity(glm::vec3 color, glm::vec3 paper) { return SmoothStep(kGrain, kFullPaint, Difference(color, paper)); }
 
+// The sum of opacities of paint on that paper.
+double PaintOn(glm::vec3 paper, const std::vector<glm::vec3>& colors) {
+  double paint = 0.0;
+  for (const glm::vec3 color : colors) paint += Opacity(color, paper);
+  return paint;
+}
+
+// The colours of the opaque pixels in each corner.
+std::array<std::vector<glm::vec3>, 4> OpaqueCorners(const Picture& picture) {
+  std::array<std::vector<glm::vec3>, 4> corners;
+  ForEachInCorners(picture, [&](int x, int y) {
+    const std::uint16_t* texel = picture.At(x, y);
+    if (texel[3] <= 32767) return;
+    corners[(2 * x < picture.width ? 0 : 1) + (2 * y < picture.height ? 0 : 2)].push_back(Linear(texel));
+  });
+  return corners;
+}
+
 // The sum of alpha over the corners, and their pixels.
 struct Corners {
   double alpha = 0.0, count = 0.0;
@@ -71,27 +90,32 @@ struct Corners {
 
 bool HasClearCorners(const Picture& picture) { return Corners(picture).AreClear(); }
 
+bool HasUnevenCorners(const Picture& picture) {
+  std::array<glm::vec3, 4> papers;
+  const std::array<std::vector<glm::vec3>, 4> corners = OpaqueCorners(picture);
+  for (std::size_t k = 0; k < 4; ++k) {
+    if (corners[k].empty()) return false;
+    papers[k] = Median(corners[k]);
+    if (PaintOn(papers[k], corners[k]) >= kMostPaintInCorners * static_cast<double>(corners[k].size())) return false;
+  }
+  return std::ranges::any_of(papers, [&](glm::vec3 paper) { return Difference(paper, papers[0]) > kGrain; });
+}
+
 BarePaper FindBarePaper(const Picture& picture) {
   const Corners corners(picture);
   if (!(corners.count > 0.0)) return {};
   if (corners.AreClear()) return {BarePaper::Kind::kTransparent, glm::vec3(0.0f)};
   const double count = corners.count;
-  std::vector<glm::vec3> colors, by_corner[4];
-  ForEachInCorners(picture, [&](int x, int y) {
-    const std::uint16_t* texel = picture.At(x, y);
-    if (texel[3] <= 32767) return;
-    colors.push_back(Linear(texel));
-    by_corner[(2 * x < picture.width ? 0 : 1) + (2 * y < picture.height ? 0 : 2)].push_back(colors.back());
-  });
+  std::vector<glm::vec3> colors;
+  const std::array<std::vector<glm::vec3>, 4> by_corner = OpaqueCorners(picture);
+  for (const std::vector<glm::vec3>& corner : by_corner) colors.insert(colors.end(), corner.begin(), corner.end());
   // A sheet that is half transparent is no paper.
   if (static_cast<double>(colors.size()) < (1.0 - kMostPaintInCorners) * count) return {};
   const glm::vec3 paper = Median(colors);
   for (const std::vector<glm::vec3>& corner : by_corner) {
     if (!corner.empty() && Difference(Median(corner), paper) > kUneven) return {};
   }
-  double paint = 0.0;
-  for (const glm::vec3 color : colors) paint += Opacity(color, paper);
-  if (paint >= kMostPaintInCorners * static_cast<double>(colors.size())) return {};
+  if (PaintOn(paper, colors) >= kMostPaintInCorners * static_cast<double>(colors.size())) return {};
   return {BarePaper::Kind::kPaper, paper};
 }
 

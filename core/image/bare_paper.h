@@ -23,6 +23,10 @@ struct BarePaper {
 // and where the four of them are of about one colour.
 BarePaper FindBarePaper(const Picture& picture);
 
+// Whether each of the four corners is bare and of one colour for itself, and they differ: paper that is lit unevenly,
+// or paint whose tone changes slowly.
+bool HasUnevenCorners(const Picture& picture);
+
 // Whether FindBarePaper finds the corners transparent. Takes no memory.
 bool HasClearCorners(const Picture& picture);
 

@@ -15,6 +15,9 @@
 
 namespace scumble {
 
+// What to do about fragments that are unusable: the end of messages.
+inline constexpr const char* kRemedyForFragments = ": make the guides again with scumble guidegen";
+
 struct Fragments {
   // So a pixel shows four surfaces at most: that of its centre, and the three others with the largest coverage.
   static constexpr int kMostInPixel = 3;
@@ -32,8 +35,9 @@ struct Fragments {
   std::size_t From(std::size_t pixel_index) const;
 
   // Ok, or what makes the fragments unusable beside these guides: layers that are missing, pixels that are not in the
-  // picture or out of order, more than kMostInPixel in one, more coverage than the pixel's own, or values that
-  // GuideSet::Validate refuses. `name` stands for the guides in the message. O(fragments).
+  // picture or out of order, more than kMostInPixel in one, no coverage or more than the pixel's own, ids that the
+  // guides' names lack (where there are names), or values that GuideSet::Validate refuses. `name` stands for the guides
+  // in the message. O(fragments).
   Status Validate(const GuideSet& guides, const std::string& name) const;
 };
 

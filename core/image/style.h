@@ -124,6 +124,14 @@ struct SphereCut {
   double x = 0, y = 0, radius = 0;  // of the sphere
 };
 
+// Why the paint of a picture shows no clear sphere, as far as it can be told.
+enum class SphereDoubt {
+  kNone,          // there is no doubt
+  kNoCircle,      // its outline is no circle
+  kShadow,        // it would be one but for darker ground below it
+  kUnevenGround,  // the ground has no one colour
+};
+
 // A painted sphere, which fills a square picture exactly; or any painted scene with its guides.
 struct Exemplar {
   std::string name;  // for messages
@@ -136,7 +144,7 @@ struct Exemplar {
   std::filesystem::path guides_file = {};  // the file that guides are or would be read from; empty: none
   int margin = 0;                          // pixels of the template that were cut off the file on every side
   std::optional<SphereCut> cut = {};       // of a sphere that does not fill its file
-  bool unclear = false;                    // the paint clearly does not fill the square, and shows no clear sphere
+  SphereDoubt doubt = SphereDoubt::kNone;  // the paint clearly does not fill the square, and shows no clear sphere
 
   // The place of the picture's corner in the file.
   glm::ivec2 Origin() const { return cut ? glm::ivec2(cut->left, cut->top) : glm::ivec2(margin); }

@@ -36,10 +36,26 @@ void CutTo(const Circle& circle, Exemplar& exemplar) {
   exemplar.picture = std::move(cut);
 }
 
-// What a picture that is no square shows instead of a sphere.
-std::string WhyNone(Kind kind) {
-  return kind == Kind::kNoGround ? "its corners are neither transparent nor paper of one colour to find a sphere on"
-                                 : "it shows no clear sphere on its ground";
+// What a picture that is no square shows instead of a sphere, and what to do.
+std::string WhyNone(const FoundSphere& found) {
+  const std::string crop = "an exemplar is a square that its sphere fills; crop it to the sphere";
+  switch (found.doubt) {
+    case SphereDoubt::kShadow:
+      return "around " + PlaceText(found.circle) +
+             " it shows a sphere that is no clear circle, because the ground below it is darker than elsewhere, as in "
+             "a shadow: cut the shadow away, so that the ground has one colour, or crop the picture to the square "
+             "around the sphere";
+    case SphereDoubt::kUnevenGround:
+      return "its ground has several colours, as paper that is lit unevenly: cut the sphere out onto transparency, or "
+             "crop the picture to the square around it";
+    case SphereDoubt::kNone:
+    case SphereDoubt::kNoCircle:
+      break;
+  }
+  return (found.kind == Kind::kNoGround
+              ? "its corners are neither transparent nor paper of one colour to find a sphere on: "
+              : "it shows no clear sphere on its ground: ") +
+         crop + ", or give the guides of the scene that it shows";
 }
 
 }  // namespace
@@ -68,11 +84,9 @@ Status PlaceSphere(Exemplar& exemplar) {
       break;
   }
   if (!is_square) {
-    return InputError(exemplar.name + " is " + SizeText(picture) + ", and " + WhyNone(found.kind) +
-                      ": an exemplar is a square that its sphere fills; crop it to the sphere, or give the guides of "
-                      "the scene that it shows");
+    return InputError(exemplar.name + " is " + SizeText(picture) + ", and " + WhyNone(found));
   }
-  exemplar.unclear = true;
+  exemplar.doubt = found.doubt;
   return Ok();
 }
 
@@ -82,9 +96,29 @@ std::string DescribeCut(const SphereCut& cut) {
          ", with a radius of " + Rounded(cut.radius) + " pixels";
 }
 
-std::string DescribeUnclear() {
-  return "its paint clearly does not fill the picture, and its outline is no clear circle, so it is taken as if the "
-         "sphere filled the square";
+std::string DescribeDoubt(SphereDoubt doubt) {
+  const std::string so = ", so it is taken as if the sphere filled the square";
+  switch (doubt) {
+    case SphereDoubt::kShadow:
+      return "its paint clearly does not fill the picture, and its outline is no clear circle, because the ground "
+             "below "
+             "the sphere is darker than elsewhere, as in a shadow" +
+             so;
+    case SphereDoubt::kUnevenGround:
+      return "its paint clearly does not fill the picture, and its outline is no clear circle, because the ground has "
+             "several colours, as paper that is lit unevenly" +
+             so;
+    case SphereDoubt::kNone:
+    case SphereDoubt::kNoCircle:
+      break;
+  }
+  return "its paint clearly does not fill the picture, and its outline is no clear circle" + so;
+}
+
+std::string RemedyForDoubt(SphereDoubt doubt) {
+  if (doubt == SphereDoubt::kShadow) return "cut the shadow away, or crop the picture to the sphere";
+  if (doubt == SphereDoubt::kUnevenGround) return "cut the sphere out onto transparency, or crop the picture to it";
+  return "crop it to the sphere";
 }
 
 }  // namespace scumble

@@ -11,13 +11,14 @@ namespace scumble {
 // For an exemplar without guides, which would say where the sphere is. If the picture shows one sphere that clearly
 // does not fill it (FindSphere), the picture is cut to the square around that sphere, and `cut` says where; parts of
 // the square beyond the file repeat its edge. A picture that fills its square stays as it is, byte for byte. So does a
-// square whose sphere is not clear: `unclear` is set. A whole template (LooksLikeTemplate) is left alone.
+// square whose sphere is not clear: `doubt` is set. A whole template (LooksLikeTemplate) is left alone.
 //
 // kInput for an ellipse, for several spheres, and for a picture that is no square and shows no clear sphere.
 Status PlaceSphere(Exemplar& exemplar);
 
-// Clauses without the file's name: what `cut` says, and what `unclear` means.
+// Clauses without the file's name: what `cut` and `doubt` say, and what to do about the latter.
 std::string DescribeCut(const SphereCut& cut);
-std::string DescribeUnclear();
+std::string DescribeDoubt(SphereDoubt doubt);
+std::string RemedyForDoubt(SphereDoubt doubt);
 
 }  // namespace scumble

@@ -36,6 +36,7 @@ constexpr Bytes kSurfaceSeeds = 48;     // MatchCoherent
 constexpr Bytes kBandTile = 110'000;    // seeds of 512 columns, for one thread
 constexpr int kBandRadius = 3;          // up to it sources are kept for a few rows only
 constexpr Bytes kExplained = 24;        // planes that --show is drawn from, and a second picture
+constexpr Bytes kFoundSphere = 8;       // FindSphere, beside the picture
 constexpr Bytes kTones = 8 * kMega;     // SourceVariation, of an exemplar of any size
 constexpr Bytes kPixelsOfFragment = 8;  // with --aa: objects' borders are rarely denser
 constexpr Bytes kCoherence = 9;         // MeasureCoherence, for --json
@@ -95,13 +96,17 @@ void AddStyle(const Style& style, int height, MemoryNeed& need) {
   const auto scaled = [&](int side) {
     return Bytes(ScaledSize(side, settings.scale, settings.reference_height, height));
   };
-  Bytes read = 0, prepared = 0, largest = 0;
+  Bytes read = 0, prepared = 0, largest = 0, whole = 0;
   for (const Exemplar& exemplar : style.exemplars) {
     const Bytes file = Bytes(exemplar.picture.width) * Bytes(exemplar.picture.height);
     const Bytes width = scaled(style.exemplars.front().picture.width);
     const Bytes texels = width * scaled(style.exemplars.front().picture.height);
     read += kPaint * file;
     if (exemplar.guides) read += kFloat * ChannelsOf(exemplar.guides->layers()) * exemplar.guides->pixel_count();
+    if (exemplar.cut) {
+      const Bytes pixels = Bytes(exemplar.cut->file_width) * Bytes(exemplar.cut->file_height);
+      whole = std::max(whole, (kPaint + kFoundSphere) * pixels);
+    }
     Bytes of_texel = kPaint;
     if (!exemplar.is_sphere) of_texel += 13;  // normals and what is usable
     if (!settings.guide_weights.ArePlain()) of_texel += 3 * kFloat * ChannelsOf(settings.guide_weights.Layers());
@@ -124,6 +129,7 @@ void AddStyle(const Style& style, int height, MemoryNeed& need) {
     prepared += kPaint * fit(paper.width) * fit(paper.height);
   }
   need.Take("styles", read);
+  need.TakeTransient("finding a sphere", whole);
   need.Take("exemplars", prepared);
   need.TakeTransient("preparing exemplars", largest);
 }
@@ -211,6 +217,12 @@ void AddGuidesRead(const GuideFileInfo& info, const GuideReadOptions& read, Memo
   need.Take("guides", kFloat * ChannelsOf(layers) * pixels);
   const bool plain = !info.from_blender && info.layers.size() == 1 && info.layers.begin()->first.empty();
   if (plain) return;
+  if (info.fragments > 0) {
+    layers.Add({Layer::kObject, Layer::kMaterial});
+    // As they stand in the file's header, in a copy of it and in memory, with an index each, and their colours.
+    const Bytes of_fragment = 3 * kFloat * (ChannelsOf(info.layers.begin()->second) + 1) + kPaint;
+    need.Take("fragments", of_fragment * info.fragments);
+  }
   // Another reader: all channels side by side, then by layer.
   Bytes channels = 1;
   for (const auto& [name, found] : info.layers) channels += ChannelsOf(found);

@@ -209,6 +209,69 @@ Expected<StaticScene> OpenToMeasure(const SceneRequest& options, std::optional<i
   return opened;
 }
 
+void TakeSamples(const Variant& variant, SceneRequest& scene) {
+  if (variant.samples > 0) scene.samples = variant.samples, scene.samples_given = true;
+}
+
+// Casts and paints a frame of a scene by any variant. The scene is opened for the first one. All that is given outlives
+// it.
+class SceneTrials {
+ public:
+  SceneTrials(const SceneRequest& scene, std::optional<int> frame, const std::string& over, StyleSet& styles,
+              const PictureRequest& picture, const RunContext& context)
+      : request_(scene),
+        frame_(frame),
+        styles_(styles),
+        silent_(context.WithoutNotes()),
+        painter_(styles, picture, frame, scene.scene, over, context) {}
+
+  using Needs = bool(const Scene&, const LayerSet&, const SceneRequest&);
+  Expected<bool> Asks(Needs* needs) {
+    SCUMBLE_RETURN_IF_ERROR(Open());
+    return needs(opened_->scene, opened_->layers, request_);
+  }
+
+  // Milliseconds of casting and painting.
+  Expected<double> Paint(const Variant& variant) {
+    double casting_ms = 0.0;
+    SCUMBLE_ASSIGN(const GuideSet guides, Cast(variant, casting_ms));
+    SCUMBLE_ASSIGN(const double painting_ms, painter_.Paint(variant, guides));
+    return casting_ms + painting_ms;
+  }
+
+  Expected<double> MeasureError(const Variant& variant) {
+    double casting_ms = 0.0;
+    SCUMBLE_ASSIGN(const GuideSet guides, Cast(variant, casting_ms));
+    return painter_.MeasureError(variant, guides);
+  }
+
+ private:
+  Status Open() {
+    if (opened_) return Ok();
+    SCUMBLE_ASSIGN(opened_, OpenToMeasure(request_, frame_, styles_, silent_));
+    return Ok();
+  }
+
+  Expected<GuideSet> Cast(const Variant& variant, double& casting_ms) {
+    SCUMBLE_RETURN_IF_ERROR(Open());
+    SceneRequest small = request_;
+    small.size = {request_.size.width / UpsampleOf(variant), request_.size.height / UpsampleOf(variant)};
+    TakeSamples(variant, small);
+    Stopwatch watch;
+    SCUMBLE_ASSIGN(SceneGuides made, CastScene(opened_->scene, opened_->view.camera, nullptr, small, opened_->layers,
+                                               silent_, {}, false));
+    casting_ms = watch.Lap();
+    return std::move(made.guides);
+  }
+
+  const SceneRequest& request_;
+  std::optional<int> frame_;
+  StyleSet& styles_;
+  RunContext silent_;
+  std::optional<StaticScene> opened_;
+  TrialPainter painter_;
+};
+
 std::string ExposureText(const PictureRequest& picture) {
   return picture.exposure ? fmt::format("{}", *picture.exposure) : "auto";
 }
@@ -270,13 +333,13 @@ Expected<std::optional<BudgetChoice>> ChooseForScene(const BudgetRequest& option
                                                      const RunContext& context) {
   if (!options.chooses()) return std::optional<BudgetChoice>();
   BudgetChoice choice;
-  const Size& size = scene.size;
   // Named points do not look at the scene: where its light takes no samples, fewer make no difference.
   const bool may_have_fewer =
       !scene.samples_given && std::any_of(styles.styles.begin(), styles.styles.end(), AsksForLight);
-  LadderFrame ladder{true, size.width, size.height, options.guides_are_fixed, may_have_fewer ? scene.samples : 0};
+  LadderFrame ladder{true, scene.size.width, scene.size.height, options.guides_are_fixed,
+                     may_have_fewer ? scene.samples : 0};
   const auto take = [&](const Variant& variant) {
-    if (variant.samples > 0) scene.samples = variant.samples, scene.samples_given = true;
+    TakeSamples(variant, scene);
     return Take(variant, styles, picture);
   };
   if (options.quality) {
@@ -286,51 +349,21 @@ Expected<std::optional<BudgetChoice>> ChooseForScene(const BudgetRequest& option
   const std::string circumstances = fmt::format("stylize; scene {:016x}; {}; {}; isa {}; half {}; {}",
                                                 HashOfFiles(scene.scene), SizeToText(scene.size), GuideSettings(scene),
                                                 scene.isa, scene.half, CommonCircumstances(styles, picture, context));
-  const RunContext silent = context.WithoutNotes();
-  std::optional<StaticScene> opened;
-  TrialPainter trial(styles, picture, frame, scene.scene, over, context);
-  const auto open = [&]() -> Status {
-    if (opened) return Ok();
-    SCUMBLE_ASSIGN(opened, OpenToMeasure(scene, frame, styles, silent));
-    return Ok();
-  };
-  using Needs = bool(const Scene&, const LayerSet&, const SceneRequest&);
-  const auto kept = [&](const char* question, Needs* needs) {
-    return KeptAnswer(question + circumstances, options.recalibrate, context, [&]() -> Expected<bool> {
-      SCUMBLE_RETURN_IF_ERROR(open());
-      return needs(opened->scene, opened->layers, scene);
-    });
-  };
+  SceneTrials trials(scene, frame, over, styles, picture, context);
   if (ladder.samples > 0) {
+    const auto kept = [&](const char* question, SceneTrials::Needs* needs) {
+      return KeptAnswer(question + circumstances, options.recalibrate, context, [&] { return trials.Asks(needs); });
+    };
     SCUMBLE_ASSIGN(const bool needed, kept("samples; ", NeedSamples));
     SCUMBLE_ASSIGN(const bool paths, kept("paths; ", NeedPathSamples));
     // Pixels that choose their samples take fewer than a step of many for each.
     ladder.samples = !needed ? 0 : paths ? ladder.samples : std::min(ladder.samples, kChosenSamples);
   }
-  double casting_ms = 0.0;
-  const auto cast = [&](const Variant& variant) -> Expected<GuideSet> {
-    SCUMBLE_RETURN_IF_ERROR(open());
-    SceneRequest small = scene;
-    small.size = {size.width / UpsampleOf(variant), size.height / UpsampleOf(variant)};
-    if (variant.samples > 0) small.samples = variant.samples, small.samples_given = true;
-    Stopwatch watch;
-    SCUMBLE_ASSIGN(SceneGuides made,
-                   CastScene(opened->scene, opened->view.camera, nullptr, small, opened->layers, silent, {}, false));
-    casting_ms = watch.Lap();
-    return std::move(made.guides);
-  };
-  const PaintVariant paint = [&](const Variant& variant) -> Expected<double> {
-    SCUMBLE_ASSIGN(const GuideSet guides, cast(variant));
-    SCUMBLE_ASSIGN(const double painting, trial.Paint(variant, guides));
-    return casting_ms + painting;
-  };
-  const PaintVariant judge = [&](const Variant& variant) -> Expected<double> {
-    SCUMBLE_ASSIGN(const GuideSet guides, cast(variant));
-    return trial.MeasureError(variant, guides);
-  };
   SCUMBLE_ASSIGN(const Variant variant,
                  VariantWithin(options, ladder, circumstances, "exposure " + ExposureText(picture), styles, context,
-                               {paint, judge}, choice));
+                               {[&](const Variant& one) { return trials.Paint(one); },
+                                [&](const Variant& one) { return trials.MeasureError(one); }},
+                               choice));
   SCUMBLE_RETURN_IF_ERROR(take(variant));
   return std::optional(std::move(choice));
 }

@@ -7,6 +7,7 @@
 #include <functional>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/image/hash.h"
@@ -107,6 +108,114 @@ TEST(FindSphere, SignaturesDoNotMatter) {
     }
   }
   ExpectFound(sheet, {230, 230, 180}, 1.5);
+}
+
+// A hand that cuts along a circle strays from it slowly: random harmonics, which make it an ellipse of some 1% too.
+Ball CutByHand(int seed) {
+  Ball ball{256, 250, 190};
+  ball.reach = [seed](double angle) {
+    double reach = 1.0;
+    for (int k = 2; k < 14; ++k) {
+      const double strength = 0.008 * (UnitFloat(Hash(seed, k)) - 0.5);
+      reach += strength * std::sin(k * angle + 6.28 * UnitFloat(Hash(seed, k, 1)));
+    }
+    return reach;
+  };
+  return ball;
+}
+
+TEST(FindSphere, CirclesThatAreCutOutByHandAreNoEllipses) {
+  for (int seed = 0; seed < 8; ++seed) {
+    SCOPED_TRACE(seed);
+    const Ball ball = CutByHand(seed);
+    ExpectFound(Drawn(512, 512, seed % 2 ? kWhite : kNothing, {ball}), ball, 4.0);
+  }
+}
+
+// 460 × 440 is taken for an ellipse, even if it is cut out by hand; 454 × 446 is a circle to any brush.
+TEST(FindSphere, EllipsesFromThreePerCentOn) {
+  for (const auto& [squash, kind] : {std::pair{440.0 / 460, Kind::kEllipse},
+                                     {0.962, Kind::kEllipse},
+                                     {0.98, Kind::kInside},
+                                     {446.0 / 454, Kind::kInside}}) {
+    for (const double ground : {kWhite, kNothing}) {
+      Ball ball{256, 250, 225};
+      ball.squash = squash;
+      const FoundSphere found = FindSphere(Drawn(512, 512, ground, {ball}));
+      EXPECT_EQ(found.kind, kind) << squash;
+      if (kind != Kind::kEllipse) continue;
+      EXPECT_NEAR(found.longer, 450, 3);
+      EXPECT_NEAR(found.shorter, 450 * squash, 3);
+    }
+  }
+  for (int seed = 0; seed < 4; ++seed) {
+    Ball ball = CutByHand(seed);
+    ball.squash = 440.0 / 460;
+    EXPECT_EQ(FindSphere(Drawn(512, 512, kWhite, {ball})).kind, Kind::kEllipse) << seed;
+  }
+}
+
+// An ellipse on the ground below the ball, darkest in its middle; on transparency its strength is its alpha.
+void AddShadow(Picture& sheet, const Ball& ball, double strength) {
+  const Picture bare = sheet;
+  const bool clear = bare.At(0, 0)[3] == 0;
+  for (int y = 0; y < sheet.height; ++y) {
+    for (int x = 0; x < sheet.width; ++x) {
+      const double u = (x + 0.5 - ball.x - 0.1 * ball.radius) / (1.1 * ball.radius);
+      const double v = (y + 0.5 - ball.y - ball.radius) / (0.3 * ball.radius);
+      const double by = strength * std::clamp(1.6 * (1.0 - std::hypot(u, v)), 0.0, 1.0);
+      if (!(by > 0.0)) continue;
+      if (clear) {
+        SetGrey(sheet, x, y, 0.0), sheet.At(x, y)[3] = static_cast<std::uint16_t>(65535.0 * by);
+      } else {
+        SetGrey(sheet, x, y, bare.At(x, y)[0] / 65535.0 * (1.0 - by));
+      }
+    }
+  }
+}
+
+TEST(FindSphere, AShadowBelowTheBallIsNamed) {
+  for (const double ground : {kWhite, 0.6, kNothing}) {
+    for (const auto& [width, height] : {std::pair{512, 512}, {720, 480}}) {
+      for (const double strength : {0.45, 0.9}) {
+        SCOPED_TRACE(std::to_string(ground) + " " + std::to_string(width) + " " + std::to_string(strength));
+        const Ball ball{0.5 * width, 0.45 * height, 0.33 * height};
+        Picture sheet = Sheet(width, height, ground);
+        AddShadow(sheet, ball, ground < 0.0 ? 0.9 : strength);
+        Draw(sheet, ball);
+        const FoundSphere found = FindSphere(sheet);
+        ASSERT_EQ(found.kind, Kind::kUnclear);
+        EXPECT_EQ(found.doubt, SphereDoubt::kShadow);
+        EXPECT_NEAR(found.circle.x, ball.x, 4);
+        EXPECT_NEAR(found.circle.y, ball.y, 4);
+      }
+    }
+  }
+  // Other things beside a ball are none: another ball, a bar, a ball above.
+  EXPECT_EQ(FindSphere(Drawn(512, 512, kWhite, {{180, 256, 120}, {330, 256, 120}})).doubt, SphereDoubt::kNoCircle);
+  EXPECT_EQ(FindSphere(Drawn(512, 512, kWhite, {{256, 180, 120}, {256, 330, 120}})).doubt, SphereDoubt::kNoCircle);
+  Picture bar = Drawn(640, 480, kWhite, {{250, 240, 150}});
+  for (int y = 200; y < 280; ++y) {
+    for (int x = 300; x < 600; ++x) SetGrey(bar, x, y, 0.3);
+  }
+  EXPECT_EQ(FindSphere(bar).doubt, SphereDoubt::kNoCircle);
+}
+
+TEST(FindSphere, UnevenGroundIsNamed) {
+  int named = 0;
+  for (const double fall : {0.25, 0.35, 0.5, 0.7}) {
+    Picture sheet = Drawn(720, 480, 0.9, {{360, 240, 150}});
+    Overlay(sheet, [&](double x, double y) { return 1.0 - fall * (0.7 * x / 720 + 0.3 * y / 480); });
+    const FoundSphere found = FindSphere(sheet);
+    EXPECT_NE(found.kind, Kind::kFills) << fall;
+    if (found.kind == Kind::kInside) continue;  // as if it were even
+    EXPECT_EQ(found.doubt, SphereDoubt::kUnevenGround) << fall << ", " << static_cast<int>(found.kind);
+    ++named;
+  }
+  EXPECT_GE(named, 2);
+  Picture noise(300, 200);
+  for (int i = 0; i < 300 * 200; ++i) SetGrey(noise, i % 300, i / 300, UnitFloat(Hash(i)));
+  EXPECT_EQ(FindSphere(noise).doubt, SphereDoubt::kNone) << "no paper at all";
 }
 
 // An eye, a ball with a ring: two outlines, one in the other, of one sphere.

@@ -35,7 +35,7 @@ void Run(Bytes input) {
   CheckRefusal(guides, 100000);
   if (guides) CheckGuides(*guides, *info);
   const auto plain = internal::ReadPlainGuides(path, options);
-  if (guides && plain) CheckSame(*plain, *guides);
+  if (guides && plain && *plain) CheckSame(**plain, *guides);
   CheckRefusal(ReadChannels(path), 100000);
 }
 

@@ -8,9 +8,12 @@ namespace {
 void Run(Bytes input) {
   const auto path = InFile("guides.exr", input);
   const auto info = internal::InspectPlainGuides(path);
-  if (!info || std::int64_t(info->width) * info->height > kMostPixels) return;
+  if (info) CheckRefusal(*info);
+  if (!info || !*info || std::int64_t((*info)->width) * (*info)->height > kMostPixels) return;
   const auto guides = internal::ReadPlainGuides(path, WhateverThereIs());
-  if (guides) CheckGuides(*guides, *info);
+  if (!guides) return;
+  CheckRefusal(*guides);
+  if (*guides) CheckGuides(**guides, **info);
 }
 
 }  // namespace

@@ -80,6 +80,32 @@ def exr(name, parts):
         write(target, name, data)
 
 
+def with_attribute(data, name, kind, value):
+    """A plain EXR file with one attribute more, of a type that OpenImageIO does not write."""
+    end = 8
+    while data[end]:
+        for _ in range(2):
+            end = data.index(0, end) + 1
+        end += 4 + struct.unpack_from("<i", data, end)[0]
+    added = name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<i", len(value)) + value
+    first = struct.unpack_from("<Q", data, end + 1)[0]  # the chunks' places stand before the first one
+    count = (first - end - 1) // 8
+    places = struct.unpack_from(f"<{count}Q", data, end + 1)
+    return (data[:end] + added + b"\0" + struct.pack(f"<{count}Q", *(place + len(added) for place in places)) +
+            data[first:])
+
+
+def make_fragments():
+    """Guides with two fragments in one pixel and one in another."""
+    data = (FOLDER / "guides" / "guides_none.exr").read_bytes()
+    names = ["A", "normal.X", "normal.Y", "normal.Z", "depth.Z", "object.ID", "material.ID"]
+    planes = [(0.25, 0.5, 0.125), (0, 0, 0.6), (0, 1, 0), (1, 0, 0.8), (2, 3, 4), (3, 4, 4), (3, 3, 3)]
+    value = (struct.pack("<5I", 1, 3, 3, 3, len(names)) + b"".join(n.encode() + b"\0" for n in names) +
+             struct.pack("<3I", 4, 4, 7) + b"".join(struct.pack("<3f", *plane) for plane in planes))
+    for target in ("guides", "exr"):
+        write(target, "fragments.exr", with_attribute(data, "scumble:fragments", "scumbleFragments", value))
+
+
 def make_exr():
     guides = ["A", "normal.X", "normal.Y", "normal.Z", "depth.Z", "object.ID", "material.ID"]
     texts = {"scumble:objects": "3 Ball\n4 A\\nB\n", "scumble:materials": "3 Grey\n", "scumble:camera": "Camera",
@@ -339,6 +365,7 @@ def make_other_pictures():
 if __name__ == "__main__":
     FOLDER.mkdir(parents=True, exist_ok=True)
     make_exr()
+    make_fragments()
     make_gltf()
     make_text()
     make_pictures()

@@ -50,8 +50,9 @@ std::vector<PaintFault> AmbiguityFaults(const AmbiguityReport& report) {
 
 // Of a sphere that does not fill its file.
 std::vector<PaintFault> PlaceFaults(const Exemplar& exemplar) {
-  if (exemplar.unclear) {
-    return {{"no-clear-sphere", Weight::kMistake, DescribeUnclear(), "crop it to the sphere", std::nullopt}};
+  if (exemplar.doubt != SphereDoubt::kNone) {
+    return {{"no-clear-sphere", Weight::kMistake, DescribeDoubt(exemplar.doubt), RemedyForDoubt(exemplar.doubt),
+             std::nullopt}};
   }
   if (!exemplar.cut) return {};
   return {{"taken-as-it-lies", Weight::kRemark, DescribeCut(*exemplar.cut),

@@ -6,9 +6,11 @@
 #include <numbers>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/image/painting/paint_mask.h"
+#include "core/image/painting/sphere_doubt.h"
 
 namespace scumble {
 namespace {
@@ -25,8 +27,10 @@ constexpr double kLeastOutline = 0.8;                 // of all directions
 constexpr double kMostBeyond = 0.04;                  // of the circle's area
 constexpr double kMostCut = 0.015;                    // of the radius, beyond the picture's sides
 constexpr double kLeastRadius = 15.0;                 // pixels
-constexpr double kRound = 0.95;                       // the shorter diameter of a circle to the longer
-constexpr double kLeastOther = 0.05;                  // of the largest region's pixels: another region of paint
+constexpr double kLikelyOutline = 0.4;                // of all directions
+constexpr double kRound = 0.97;                       // the shorter diameter of a circle to the longer
+constexpr double kRoundOfSeveral = 0.95;
+constexpr double kLeastOther = 0.05;  // of the largest region's pixels: another region of paint
 
 // How far from each side the first painted line is, as a share of the picture: left, right, top, bottom.
 struct Gaps {
@@ -74,30 +78,46 @@ glm::dvec2 MiddleOf(const std::vector<std::uint8_t>& mask, int width) {
   return count > 0.0 ? sum / count : sum;
 }
 
-// The pixels of each 4-connected region of paint, largest first.
-std::vector<std::vector<std::size_t>> Regions(const PaintMask& mask) {
-  const int width = mask.width(), height = mask.height();
-  std::vector<std::uint8_t> left = mask.values();
-  std::vector<std::vector<std::size_t>> regions;
-  for (std::size_t start = 0; start < left.size(); ++start) {
-    if (!left[start]) continue;
-    std::vector<std::size_t> region(1, start);
-    left[start] = 0;
-    for (std::size_t next = 0; next < region.size(); ++next) {
-      const std::size_t i = region[next];
+// A 4-connected region of paint: its first pixel in row order, and its number of pixels.
+struct PaintRegion {
+  std::size_t first = 0, size = 0;
+};
+
+// Takes the region of paint around a pixel out of `left` and calls visit(pixel) for each of its pixels. Goes in waves
+// from the pixel on, so that only the front is in memory.
+template <class Visit>
+void TakeRegion(std::size_t first, int width, int height, std::vector<std::uint8_t>& left, const Visit& visit) {
+  std::vector<std::size_t> front(1, first), next;
+  left[first] = 0;
+  while (!front.empty()) {
+    next.clear();
+    for (const std::size_t i : front) {
+      visit(i);
       const int x = static_cast<int>(i % std::size_t(width)), y = static_cast<int>(i / std::size_t(width));
-      const auto visit = [&](bool inside, std::size_t neighbour) {
+      const auto reach = [&](bool inside, std::size_t neighbour) {
         if (!inside || !left[neighbour]) return;
         left[neighbour] = 0;
-        region.push_back(neighbour);
+        next.push_back(neighbour);
       };
-      visit(x > 0, i - 1), visit(x + 1 < width, i + 1);
-      visit(y > 0, i - std::size_t(width)), visit(y + 1 < height, i + std::size_t(width));
+      reach(x > 0, i - 1), reach(x + 1 < width, i + 1);
+      reach(y > 0, i - std::size_t(width)), reach(y + 1 < height, i + std::size_t(width));
     }
-    regions.push_back(std::move(region));
+    front.swap(next);
   }
-  std::ranges::stable_sort(regions, [](const auto& a, const auto& b) { return a.size() > b.size(); });
-  return regions;
+}
+
+// The two largest regions, the larger one first.
+std::array<PaintRegion, 2> LargestRegions(const PaintMask& mask) {
+  std::vector<std::uint8_t> left = mask.values();
+  std::array<PaintRegion, 2> largest;
+  for (std::size_t first = 0; first < left.size(); ++first) {
+    if (!left[first]) continue;
+    PaintRegion region{first, 0};
+    TakeRegion(first, mask.width(), mask.height(), left, [&](std::size_t) { ++region.size; });
+    if (region.size > largest[0].size) std::swap(region, largest[0]);
+    if (region.size > largest[1].size) largest[1] = region;
+  }
+  return largest;
 }
 
 // The circle or ellipse of an outline of paint in a picture.
@@ -129,12 +149,21 @@ class OutlineFit {
     return is_circle && IsInPicture() && IsAlone();
   }
 
-  std::optional<EllipseFit> Ellipse() const {
+  // The tolerance around the circle's line.
+  double tolerance() const { return ToleranceFor(*circle_); }
+
+  // Whether so much of the outline lies on the circle that the rest may have a cause of its own.
+  bool IsLikely() const {
+    return circle_ && outline_radius_ >= kLeastRadius && agree_ >= kLikelyOutline * kOutlineDirections;
+  }
+
+  // If its shorter diameter is less than `round` of the longer.
+  std::optional<EllipseFit> Ellipse(double round = kRound) const {
     if (points_.size() < kLeastOutline * kOutlineDirections) return std::nullopt;
     const auto fit = FitEllipse(points_, MiddleOf(mask_, width_), std::max(1.0, 0.01 * size_));
     if (!fit || fit->agree < kLeastOutline * kOutlineDirections || fit->shorter < 2.0 * kLeastRadius)
       return std::nullopt;
-    return fit->shorter < kRound * fit->longer ? fit : std::nullopt;
+    return fit->shorter < round * fit->longer ? fit : std::nullopt;
   }
 
  private:
@@ -191,21 +220,20 @@ class OutlineFit {
 
 // Two regions of paint that are spheres both.
 std::optional<FoundSphere> TwoSpheres(const PaintMask& mask) {
-  const auto regions = Regions(mask);
-  if (regions.size() < 2 ||
-      static_cast<double>(regions[1].size()) < kLeastOther * static_cast<double>(regions[0].size())) {
+  const std::array<PaintRegion, 2> regions = LargestRegions(mask);
+  if (static_cast<double>(regions[1].size) < std::max(1.0, kLeastOther * static_cast<double>(regions[0].size))) {
     return std::nullopt;
   }
   // Dots and strokes are regions too.
-  std::size_t all = 0;
-  for (const auto& region : regions) all += region.size();
-  if (2 * (regions[0].size() + regions[1].size()) < all) return std::nullopt;
+  const auto all = static_cast<std::size_t>(std::ranges::count(mask.values(), std::uint8_t{1}));
+  if (2 * (regions[0].size + regions[1].size) < all) return std::nullopt;
   std::array<Circle, 2> circles;
+  std::vector<std::uint8_t> left = mask.values();
   for (std::size_t k = 0; k < 2; ++k) {
-    std::vector<std::uint8_t> alone(mask.values().size(), 0);
-    for (const std::size_t i : regions[k]) alone[i] = 1;
+    std::vector<std::uint8_t> alone(left.size(), 0);
+    TakeRegion(regions[k].first, mask.width(), mask.height(), left, [&](std::size_t i) { alone[i] = 1; });
     const OutlineFit outline(alone, mask.width(), mask.height());
-    if (!outline.IsSure() || outline.Ellipse()) return std::nullopt;
+    if (!outline.IsSure() || outline.Ellipse(kRoundOfSeveral)) return std::nullopt;
     circles[k] = *outline.circle();
   }
   // One inside the other is one sphere, with a ring or a core.
@@ -213,6 +241,12 @@ std::optional<FoundSphere> TwoSpheres(const PaintMask& mask) {
   if (glm::length(apart) < std::max(circles[0].radius, circles[1].radius)) return std::nullopt;
   FoundSphere found{FoundSphere::Kind::kSeveral};
   found.circle = circles[0], found.second = circles[1];
+  return found;
+}
+
+FoundSphere Empty(bool is_square) {
+  FoundSphere found{is_square ? FoundSphere::Kind::kFills : FoundSphere::Kind::kUnclear};
+  if (!is_square) found.doubt = SphereDoubt::kNoCircle;
   return found;
 }
 
@@ -229,18 +263,24 @@ FoundSphere FindSphere(const Picture& picture) {
   const int width = picture.width, height = picture.height;
   const bool is_square = width == height;
   const BarePaper ground = FindBarePaper(picture);
-  if (ground.kind == BarePaper::Kind::kCovered) return {Kind::kNoGround};
+  FoundSphere no_ground{Kind::kNoGround};
+  if (ground.kind == BarePaper::Kind::kCovered) {
+    if (HasUnevenCorners(picture)) no_ground.doubt = SphereDoubt::kUnevenGround;
+    return no_ground;
+  }
   const auto is_paint = [&](int x, int y) { return IsPaint(picture, ground, x, y); };
   if (is_square && GapsOf(width, height, kReaches, is_paint).AllWithin(kReaches)) return {Kind::kFills};
   const PaintMask mask(picture, ground);
-  if (!mask.known()) return {Kind::kNoGround};
+  if (!mask.known()) {
+    if (HasUnevenCorners(picture)) no_ground.doubt = SphereDoubt::kUnevenGround;
+    return no_ground;
+  }
   const std::vector<std::uint8_t>& values = mask.values();
   const Gaps gaps = GapsOf(width, height, 1.0, [&](int x, int y) { return values[std::size_t(y) * width + x] != 0; });
   // An empty sheet shows nothing that could lie anywhere else.
   const auto painted = static_cast<double>(std::ranges::count(values, std::uint8_t{1}));
-  if (painted < kPaintedLine * static_cast<double>(values.size())) return {is_square ? Kind::kFills : Kind::kUnclear};
+  if (painted < kPaintedLine * static_cast<double>(values.size())) return Empty(is_square);
   const bool clearly_inside = !is_square || gaps.ClearlyInside();
-  const FoundSphere unclear{clearly_inside ? Kind::kUnclear : Kind::kFills};
   if (const auto two = TwoSpheres(mask)) return *two;
   const OutlineFit outline(values, width, height);
   if (const auto ellipse = outline.Ellipse(); ellipse && (!is_square || gaps.OppositeBeyond(kFlattened))) {
@@ -248,7 +288,16 @@ FoundSphere FindSphere(const Picture& picture) {
     found.longer = ellipse->longer, found.shorter = ellipse->shorter;
     return found;
   }
-  if (!outline.IsSure()) return unclear;
+  if (!outline.IsSure()) {
+    if (!clearly_inside) return {Kind::kFills};
+    FoundSphere unclear{Kind::kUnclear};
+    unclear.doubt = SphereDoubt::kNoCircle;
+    if (outline.IsLikely()) {
+      unclear.circle = *outline.circle();
+      unclear.doubt = DoubtAbout(picture, mask, unclear.circle, 2.0 * outline.tolerance());
+    }
+    return unclear;
+  }
   const Circle line{outline.circle()->x, outline.circle()->y, outline.outline_radius()};
   FoundSphere found{is_square && FillsSquare(line, width) ? Kind::kFills : Kind::kInside};
   found.circle = *outline.circle();

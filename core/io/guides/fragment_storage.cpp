@@ -4,7 +4,9 @@
 #include <bit>
 #include <cstring>
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
 
 #include "core/io/exr/half_float.h"
 
@@ -42,15 +44,41 @@ class Reader {
   std::span<const std::byte> bytes_;
 };
 
-struct Header {
-  std::uint32_t width, height, count, channels;
+struct FragmentHeader {
+  std::size_t count = 0;
+  std::vector<std::string> channels;
 };
 
-std::optional<Header> ReadHeader(Reader& reader) {
-  const auto version = reader.Number(), width = reader.Number(), height = reader.Number(), count = reader.Number(),
-             channels = reader.Number();
-  if (!channels || *version != kVersion) return std::nullopt;
-  return Header{*width, *height, *count, *channels};
+// Reads everything before the fragments' pixels and compares the size of the rest with what the header says.
+Expected<FragmentHeader> ReadFragmentHeader(Reader& reader, int width, int height, const std::string& name) {
+  const auto refuse = [&](const std::string& what) {
+    return InputError(name + ": its attribute " + kFragmentAttribute + " " + what + kRemedyForFragments);
+  };
+  const std::string cut = "ends in its header, so the file is damaged";
+  const auto version = reader.Number(), found_width = reader.Number(), found_height = reader.Number(),
+             count = reader.Number(), channels = reader.Number();
+  if (!channels) return refuse(cut);
+  if (*version != kVersion) {
+    return refuse("has version " + std::to_string(*version) + ", and this program reads version " +
+                  std::to_string(kVersion));
+  }
+  if (*found_width != std::uint32_t(width) || *found_height != std::uint32_t(height)) {
+    return refuse("is of a picture of " + std::to_string(*found_width) + "×" + std::to_string(*found_height) +
+                  " pixels, the file is " + std::to_string(width) + "×" + std::to_string(height));
+  }
+  FragmentHeader header{*count, {}};
+  for (std::uint32_t i = 0; i < *channels; ++i) {
+    auto channel = reader.Name();
+    if (!channel) return refuse(cut);
+    header.channels.push_back(*std::move(channel));
+  }
+  // A name takes a byte at least, so this is far from the largest number.
+  const std::uint64_t bytes_of_one = 4 * (1 + std::uint64_t(*channels));
+  if (reader.left() / bytes_of_one != header.count || reader.left() % bytes_of_one != 0) {
+    return refuse("names " + std::to_string(header.count) + " fragments of " + std::to_string(bytes_of_one) +
+                  " bytes and has " + std::to_string(reader.left()) + " bytes for them, so the file is damaged");
+  }
+  return header;
 }
 
 // The guides' layer and component of a name.
@@ -95,44 +123,41 @@ std::vector<std::byte> EncodeFragments(const GuideSet& guides, bool half) {
   return bytes;
 }
 
-std::size_t CountFragments(std::span<const std::byte> bytes) {
+Expected<std::size_t> CountFragments(std::span<const std::byte> bytes, int width, int height, const std::string& name) {
   Reader reader(bytes);
-  const std::optional<Header> header = ReadHeader(reader);
-  return header ? header->count : 0;
+  SCUMBLE_ASSIGN(const FragmentHeader header, ReadFragmentHeader(reader, width, height, name));
+  return header.count;
 }
 
-std::shared_ptr<const Fragments> DecodeFragments(std::span<const std::byte> bytes, const GuideSet& guides) {
+Expected<std::shared_ptr<const Fragments>> DecodeFragments(std::span<const std::byte> bytes, const GuideSet& guides,
+                                                           const std::string& name) {
   Reader reader(bytes);
-  const std::optional<Header> header = ReadHeader(reader);
-  if (!header || int(header->width) != guides.width() || int(header->height) != guides.height()) return nullptr;
-  std::vector<std::string> names;
-  for (std::uint32_t i = 0; i < header->channels; ++i) {
-    const auto name = reader.Name();
-    if (!name) return nullptr;
-    names.push_back(*name);
-  }
-  const std::uint64_t wanted = std::uint64_t(4) * header->count * (1 + std::uint64_t(header->channels));
-  if (header->count == 0 || header->count > std::uint32_t(1) << 30 || reader.left() != wanted) return nullptr;
+  SCUMBLE_ASSIGN(const FragmentHeader header, ReadFragmentHeader(reader, guides.width(), guides.height(), name));
+  if (header.count == 0) return std::shared_ptr<const Fragments>();
   auto fragments = std::make_shared<Fragments>();
-  for (std::uint32_t i = 0; i < header->count; ++i) fragments->pixel.push_back(*reader.Number());
-  fragments->values = GuideSet(int(header->count), 1);
+  for (std::size_t i = 0; i < header.count; ++i) fragments->pixel.push_back(*reader.Number());
+  fragments->values = GuideSet(int(header.count), 1);
+  std::set<std::pair<Layer, int>> missing;
   for (const LayerInfo& info : AllLayers()) {
-    if (guides.Has(info.layer)) fragments->values.Add(info.layer);
+    if (!guides.Has(info.layer)) continue;
+    fragments->values.Add(info.layer);
+    for (int c = 0; c < ChannelCount(info.layer); ++c) missing.emplace(info.layer, c);
   }
-  std::size_t found = 0;
-  for (const std::string& name : names) {
-    const auto channel = ChannelOf(name, guides);
-    found += channel ? 1 : 0;
-    for (std::uint32_t i = 0; i < header->count; ++i) {
+  for (const std::string& channel_name : header.channels) {
+    const auto channel = ChannelOf(channel_name, guides);
+    if (channel) missing.erase(*channel);
+    for (std::size_t i = 0; i < header.count; ++i) {
       const float value = std::bit_cast<float>(*reader.Number());
       if (channel) fragments->values.Plane(channel->first, channel->second)[i] = value;
     }
   }
-  std::size_t expected = 0;
-  for (const LayerInfo& info : AllLayers())
-    expected += guides.Has(info.layer) ? std::size_t(ChannelCount(info.layer)) : 0;
-  if (found != expected || !fragments->Validate(guides, "")) return nullptr;
-  return fragments;
+  if (!missing.empty()) {
+    const auto& [layer, component] = *missing.begin();
+    return InputError(name + ": its attribute " + kFragmentAttribute + " has no channel " +
+                      Info(layer).channels[std::size_t(component)] + ", which the file has" + kRemedyForFragments);
+  }
+  SCUMBLE_RETURN_IF_ERROR(fragments->Validate(guides, name));
+  return std::shared_ptr<const Fragments>(std::move(fragments));
 }
 
 }  // namespace scumble::internal

@@ -62,7 +62,7 @@ std::string NamesOf(const ExrHeader& header) {
 
 }  // namespace
 
-std::optional<GuideSet> ReadPlainGuides(const std::filesystem::path& path, const GuideReadOptions& options) {
+std::optional<Expected<GuideSet>> ReadPlainGuides(const std::filesystem::path& path, const GuideReadOptions& options) {
   if (!options.view_layer.empty() || !options.light_layer.empty() || !options.blender_camera.empty())
     return std::nullopt;
   GuideSet guides;
@@ -73,10 +73,12 @@ std::optional<GuideSet> ReadPlainGuides(const std::filesystem::path& path, const
     meanings = std::move(*all);
     const LayerSet complete = CompleteLayers(meanings);
     guides = GuideSet(found.width, found.height);
+    LayerSet optional = options.optional;
+    if (found.blobs.count(kFragmentAttribute)) optional.Add({Layer::kObject, Layer::kMaterial});
     for (const LayerInfo& info : AllLayers()) {
       const bool is_required = options.required.Has(info.layer);
       if (is_required && !complete.Has(info.layer)) return std::nullopt;
-      if (complete.Has(info.layer) && (is_required || options.optional.Has(info.layer))) guides.Add(info.layer);
+      if (complete.Has(info.layer) && (is_required || optional.Has(info.layer))) guides.Add(info.layer);
     }
     return PlaneFor([&](const std::string& name) {
       const auto meant = meanings.find(name);
@@ -92,15 +94,15 @@ std::optional<GuideSet> ReadPlainGuides(const std::filesystem::path& path, const
     NormalizeNormals(guides);
   }
   LimitDepths(guides);
+  if (!guides.Validate(path.string())) return std::nullopt;
   const auto fragments = header->blobs.find(kFragmentAttribute);
   if (fragments != header->blobs.end() && guides.Has(Layer::kCoverage)) {
-    guides.fragments = DecodeFragments(fragments->second.bytes, guides);
+    SCUMBLE_ASSIGN(guides.fragments, DecodeFragments(fragments->second.bytes, guides, path.string()));
   }
-  if (!guides.Validate(path.string())) return std::nullopt;
   return guides;
 }
 
-std::optional<GuideFileInfo> InspectPlainGuides(const std::filesystem::path& path) {
+std::optional<Expected<GuideFileInfo>> InspectPlainGuides(const std::filesystem::path& path) {
   std::optional<Meanings> meanings;
   const auto header = ReadPlainExr(path, [&](const ExrHeader& found) -> std::optional<PlaneFor> {
     meanings = MeaningsOf(found);
@@ -117,7 +119,9 @@ std::optional<GuideFileInfo> InspectPlainGuides(const std::filesystem::path& pat
   info.layers[""] = CompleteLayers(*meanings);
   TakeHeader(header->texts, info.header);
   const auto fragments = header->blobs.find(kFragmentAttribute);
-  if (fragments != header->blobs.end()) info.fragments = CountFragments(fragments->second.bytes);
+  if (fragments != header->blobs.end()) {
+    SCUMBLE_ASSIGN(info.fragments, CountFragments(fragments->second.bytes, info.width, info.height, path.string()));
+  }
   return info;
 }
 

@@ -126,23 +126,25 @@ TEST(ExrFile, PlainGuidesAreReadAsTheModuleReadsThem) {
         for (const GuideReadOptions& options : {Everything(), some}) {
           const auto plain = internal::ReadPlainGuides(file, options);
           const auto by_module = (*formats)->read_guides(file, options);
-          ASSERT_TRUE(plain && by_module);
-          ExpectSameBits(*plain, *by_module);
-          EXPECT_EQ(plain->attributes, by_module->attributes);
-          EXPECT_EQ(plain->object_names, by_module->object_names);
-          EXPECT_EQ(plain->object_styles, by_module->object_styles);
-          EXPECT_EQ(plain->camera->name, by_module->camera->name);
-          EXPECT_EQ(plain->camera->view_from_world, by_module->camera->view_from_world);
+          ASSERT_TRUE(plain && *plain && by_module);
+          const GuideSet& read = **plain;
+          ExpectSameBits(read, *by_module);
+          EXPECT_EQ(read.attributes, by_module->attributes);
+          EXPECT_EQ(read.object_names, by_module->object_names);
+          EXPECT_EQ(read.object_styles, by_module->object_styles);
+          EXPECT_EQ(read.camera->name, by_module->camera->name);
+          EXPECT_EQ(read.camera->view_from_world, by_module->camera->view_from_world);
         }
         const auto plain = internal::InspectPlainGuides(file);
         const auto by_module = (*formats)->inspect_guides(file);
-        ASSERT_TRUE(plain && by_module);
-        EXPECT_EQ(std::pair(plain->width, plain->height), std::pair(by_module->width, by_module->height));
-        EXPECT_EQ(plain->has_half, by_module->has_half);
-        EXPECT_EQ(plain->from_blender, by_module->from_blender);
-        EXPECT_EQ(plain->layers, by_module->layers);
-        EXPECT_EQ(plain->channels, by_module->channels);
-        EXPECT_EQ(plain->header.attributes, by_module->header.attributes);
+        ASSERT_TRUE(plain && *plain && by_module);
+        const GuideFileInfo& read = **plain;
+        EXPECT_EQ(std::pair(read.width, read.height), std::pair(by_module->width, by_module->height));
+        EXPECT_EQ(read.has_half, by_module->has_half);
+        EXPECT_EQ(read.from_blender, by_module->from_blender);
+        EXPECT_EQ(read.layers, by_module->layers);
+        EXPECT_EQ(read.channels, by_module->channels);
+        EXPECT_EQ(read.header.attributes, by_module->header.attributes);
       }
     }
   }

@@ -1,12 +1,16 @@
 // Fragments in guide files.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "core/image/fragments.h"
 #include "core/image/hash.h"
+#include "core/io/file/atomic_file.h"
 #include "core/io/guide_file.h"
 #include "core/io/guides/fragment_storage.h"
 #include "tests/support/guide_files.h"
@@ -14,6 +18,9 @@
 
 namespace scumble {
 namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
 
 // Valid guides of a few layers, with one to three fragments in every fifth pixel.
 GuideSet GuidesWithFragments(int width, int height) {
@@ -98,10 +105,12 @@ TEST(FragmentFile, HoldTheLayersThatAreRead) {
   const TemporaryFolder folder;
   const GuideSet guides = GuidesWithFragments(20, 11);
   ASSERT_TRUE(WriteGuides(folder / "g.exr", guides));
-  const LayerSet some = {Layer::kCoverage, Layer::kNormal};
-  const auto read = ReadGuides(folder / "g.exr", Layers(some));
+  const auto read = ReadGuides(folder / "g.exr", Layers({Layer::kCoverage, Layer::kNormal}));
   ASSERT_TRUE(read);
   ASSERT_TRUE(read->fragments);
+  // Surfaces are told apart by their ids.
+  const LayerSet some = {Layer::kCoverage, Layer::kNormal, Layer::kObject};
+  EXPECT_EQ(read->layers(), some);
   EXPECT_EQ(read->fragments->values.layers(), some);
   EXPECT_EQ(read->fragments->pixel, guides.fragments->pixel);
 }
@@ -117,22 +126,88 @@ TEST(FragmentFile, WithoutThemIsAsBefore) {
   EXPECT_EQ(InspectGuides(folder / "g.exr")->fragments, 0u);
 }
 
-TEST(FragmentFile, DamagedOnesAreNull) {
+TEST(FragmentFile, WhatIsCutOffOrChangedIsRefused) {
   const GuideSet guides = GuidesWithFragments(20, 11);
   const std::vector<std::byte> bytes = internal::EncodeFragments(guides, false);
-  ASSERT_TRUE(internal::DecodeFragments(bytes, guides));
+  const auto refusal = [&](std::span<const std::byte> some, const GuideSet& of) {
+    const auto decoded = internal::DecodeFragments(some, of, "g.exr");
+    return decoded ? std::string() : decoded.error().message;
+  };
+  EXPECT_EQ(refusal(bytes, guides), "");
   for (std::size_t size = 0; size < bytes.size(); size += 1 + size / 7) {
-    EXPECT_FALSE(internal::DecodeFragments(std::span(bytes).first(size), guides)) << size;
+    EXPECT_THAT(refusal(std::span(bytes).first(size), guides), HasSubstr("damaged")) << size;
+    EXPECT_FALSE(internal::CountFragments(std::span(bytes).first(size), 20, 11, "g.exr")) << size;
   }
-  const auto changed = [&](std::size_t at) {
+  for (std::size_t at = 0; at < 24; ++at) {
     std::vector<std::byte> other = bytes;
     other[at] ^= std::byte{0x40};
-    return internal::DecodeFragments(other, guides);
-  };
-  for (std::size_t at = 0; at < 24; ++at) EXPECT_FALSE(changed(at)) << at;
+    EXPECT_THAT(refusal(other, guides), AllOf(HasSubstr("g.exr: its "), HasSubstr("scumble guidegen"))) << at;
+  }
   GuideSet larger(21, 11);
   larger.Add(Layer::kCoverage), larger.Add(Layer::kNormal);
-  EXPECT_FALSE(internal::DecodeFragments(bytes, larger));
+  EXPECT_THAT(refusal(bytes, larger), HasSubstr("of a picture of 20×11 pixels, the file is 21×11"));
+  std::vector<std::byte> later = bytes;
+  later[0] = std::byte{2};
+  EXPECT_THAT(refusal(later, guides), HasSubstr("has version 2, and this program reads version 1"));
+  // Two channels of one name, so that another is missing.
+  std::vector<std::byte> twice = bytes;
+  const std::string from = "normal.Y", to = "normal.X";
+  const auto place = std::ranges::search(twice, from, {}, [](std::byte byte) { return char(byte); });
+  ASSERT_FALSE(place.empty());
+  std::ranges::transform(to, place.begin(), [](char c) { return std::byte(c); });
+  EXPECT_THAT(refusal(twice, guides), HasSubstr("has no channel normal.Y"));
+}
+
+// What is wrong in a file ends every command that reads it; the message names the file and the remedy.
+TEST(FragmentFile, ADamagedFileIsRefused) {
+  const TemporaryFolder folder;
+  GuideSet good = GuidesWithFragments(20, 11);
+  for (int id = 0; id < 99; ++id) good.object_names[std::uint32_t(id)] = "object " + std::to_string(id);
+  const auto refusal = [&](const auto& change) {
+    GuideSet guides = good;
+    auto fragments = std::make_shared<Fragments>(*good.fragments);
+    change(*fragments);
+    guides.fragments = fragments;
+    EXPECT_TRUE(WriteGuides(folder / "g.exr", guides));
+    const auto read = ReadGuides(folder / "g.exr", Layers(guides.layers()));
+    if (read) return std::string();
+    EXPECT_EQ(read.error().kind, ErrorKind::kInput);
+    EXPECT_THAT(read.error().message, HasSubstr((folder / "g.exr").string()));
+    return read.error().message;
+  };
+  const std::string remedy = "make the guides again with scumble guidegen";
+  const auto coverage_of_first = [](float value) {
+    return [value](Fragments& f) { f.values.Plane(Layer::kCoverage)[0] = value; };
+  };
+  EXPECT_EQ(refusal([](Fragments&) {}), "");
+  EXPECT_THAT(refusal([](Fragments& f) { f.pixel.back() = 220; }),
+              AllOf(HasSubstr("outside the picture"), HasSubstr(remedy)));
+  EXPECT_THAT(refusal([](Fragments& f) { f.pixel.back() = 0; }), AllOf(HasSubstr("out of order"), HasSubstr(remedy)));
+  EXPECT_THAT(refusal([](Fragments& f) { std::fill_n(f.pixel.begin(), 4, 0u); }),
+              AllOf(HasSubstr("too many"), HasSubstr(remedy)));
+  EXPECT_THAT(refusal(coverage_of_first(std::nanf(""))), AllOf(HasSubstr("a coverage of nan"), HasSubstr(remedy)));
+  EXPECT_THAT(refusal(coverage_of_first(-0.5f)), AllOf(HasSubstr("a coverage of -0.5"), HasSubstr(remedy)));
+  EXPECT_THAT(refusal(coverage_of_first(1.1f)), AllOf(HasSubstr("cover more than their pixel"), HasSubstr(remedy)));
+  EXPECT_THAT(refusal([](Fragments& f) { f.values.Plane(Layer::kObject)[0] = 99.0f; }),
+              AllOf(HasSubstr("show objects that the guides do not name"), HasSubstr(remedy)));
+  EXPECT_THAT(refusal([](Fragments& f) { f.values.Plane(Layer::kNormal)[0] = 9.0f; }), HasSubstr("unit vector"));
+  EXPECT_THAT(refusal([](Fragments& f) { f.values.Plane(Layer::kAlbedo)[0] = std::nanf(""); }),
+              HasSubstr("NaN or infinite"));
+
+  // The number of fragments in the file itself.
+  ASSERT_TRUE(WriteGuides(folder / "g.exr", good));
+  auto bytes = ReadWholeFile(folder / "g.exr");
+  ASSERT_TRUE(bytes);
+  const std::string type = internal::kFragmentType;
+  const auto found = std::ranges::search(*bytes, type, {}, [](std::byte byte) { return char(byte); });
+  ASSERT_FALSE(found.empty());
+  constexpr std::ptrdiff_t kBehind = 1 + 4 + 12;  // the end of the name, the attribute's size, three numbers
+  *(found.end() + kBehind + 1) ^= std::byte{0x40};
+  ASSERT_TRUE(WriteFileAtomically(folder / "g.exr", *bytes));
+  for (const std::string& message : {ReadGuides(folder / "g.exr", Layers(good.layers())).error().message,
+                                     InspectGuides(folder / "g.exr").error().message}) {
+    EXPECT_THAT(message, AllOf(HasSubstr("g.exr: its attribute scumble:fragments names"), HasSubstr(remedy)));
+  }
 }
 
 TEST(Fragments, AreRefusedWhereTheyDoNotFit) {

@@ -55,7 +55,7 @@ TEST_F(PlaceSphereTest, TakesTheSphereAsItLies) {
     ASSERT_TRUE(style) << style.error().message;
     const Exemplar& exemplar = style->exemplars.front();
     ASSERT_TRUE(exemplar.cut);
-    EXPECT_FALSE(exemplar.unclear);
+    EXPECT_EQ(exemplar.doubt, SphereDoubt::kNone);
     EXPECT_NEAR(exemplar.cut->left, 60, 2);
     EXPECT_NEAR(exemplar.cut->top, 80, 2);
     EXPECT_NEAR(exemplar.picture.width, 300, 4);
@@ -121,6 +121,42 @@ TEST_F(PlaceSphereTest, RefusesInWords) {
   expect(bar, {"odd.png is 640×360", "shows no clear sphere", "crop it to the sphere"});
 }
 
+// What keeps a sphere from being found is named where it can be told, with what to do.
+TEST_F(PlaceSphereTest, NamesShadowsAndUnevenPaper) {
+  PaintedSphere painted;
+  painted.size = 240, painted.reach = 2.0;
+  const auto with_shadow = [&](int width, int height) {
+    const Picture bare = Laid(PaintSphere(painted), width, height, width / 2 - 120, 60, 0.95);
+    Picture sheet = bare;
+    for (int y = 250; y < 360; ++y) {
+      for (int x = 0; x < width; ++x) {
+        if (std::hypot((x - width / 2) / 140.0, (y - 305) / 45.0) > 1.0) continue;
+        SetGrey(sheet, x, y, std::min(0.5, bare.At(x, y)[0] / 65535.0));
+      }
+    }
+    return sheet;
+  };
+  const auto expect_refused = [&](const Picture& picture, const std::vector<std::string>& words) {
+    const Expected<Style> style = LoadStyle(Write("odd.png", picture));
+    ASSERT_FALSE(style);
+    for (const std::string& word : words) {
+      EXPECT_NE(style.error().message.find(word), std::string::npos) << word << ": " << style.error().message;
+    }
+  };
+  expect_refused(with_shadow(600, 400),
+                 {"odd.png is 600×400, and around x=300, y=1", "the ground below it is darker", "cut the shadow away"});
+  Picture uneven = Laid(PaintSphere(painted), 600, 400, 180, 60, 0.95);
+  Overlay(uneven, [](double x, double) { return 1.0 - 0.5 * x / 600; });
+  expect_refused(uneven, {"odd.png is 600×400", "lit unevenly", "cut the sphere out onto transparency"});
+
+  const Expected<Style> square = LoadStyle(Write("square.png", with_shadow(400, 400)));
+  ASSERT_TRUE(square) << square.error().message;
+  const Exemplar& exemplar = square->exemplars.front();
+  EXPECT_EQ(exemplar.doubt, SphereDoubt::kShadow);
+  EXPECT_NE(DescribeDoubt(exemplar.doubt).find("the ground below the sphere is darker"), std::string::npos);
+  EXPECT_NE(RemedyForDoubt(exemplar.doubt).find("cut the shadow away"), std::string::npos);
+}
+
 // Where a square's sphere is not clear, it is taken as ever, and says so.
 TEST_F(PlaceSphereTest, AnUnclearSquareStaysAsItIs) {
   Picture picture(400, 400);
@@ -130,7 +166,7 @@ TEST_F(PlaceSphereTest, AnUnclearSquareStaysAsItIs) {
   }
   const Expected<Style> style = LoadStyle(Write("box.png", picture));
   ASSERT_TRUE(style) << style.error().message;
-  EXPECT_TRUE(style->exemplars.front().unclear);
+  EXPECT_EQ(style->exemplars.front().doubt, SphereDoubt::kNoCircle);
   EXPECT_EQ(style->exemplars.front().picture.width, 400);
 }
 

@@ -10,6 +10,7 @@
 
 #include "guidegen/load/mesh_normals.h"
 #include "tests/support/gltf_builder.h"
+#include "tests/support/numbers.h"
 
 namespace scumble {
 namespace auto_smooth_cases {  // other tests of the loaders have cubes and balls, too
@@ -18,8 +19,6 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-
-constexpr double kPi = 3.14159265358979323846;
 
 Mesh Smoothed(Mesh mesh, double degrees, const std::vector<std::uint32_t>& faces = {}) {
   const std::vector<std::uint32_t> weld = WeldByPosition(mesh.positions);

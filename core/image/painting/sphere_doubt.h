@@ -1,0 +1,15 @@
+// Why paint shows no clear sphere, as far as its picture tells.
+#pragma once
+
+#include "core/image/painting/circle_fit.h"
+#include "core/image/painting/paint_mask.h"
+#include "core/image/style.h"
+
+namespace scumble {
+
+// `circle` is the one on which most of the outline lies, if that is a good part of it, and `tolerance` how far from it
+// paint still belongs to it. Ground that is darker below the circle and touches it is a shadow; wide and faint paint
+// around it is uneven ground. kNoCircle, if it is neither.
+SphereDoubt DoubtAbout(const Picture& picture, const PaintMask& mask, const Circle& circle, double tolerance);
+
+}  // namespace scumble
