@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <string_view>
 #include <system_error>
 
@@ -111,6 +112,30 @@ std::string DefaultName(const Scene& scene, int& found) {
   }
 }
 
+// As iconv calls it, by the byte order mark or, without one, by the zeros beside plain letters; empty for anything
+// else. UTF-16 and UTF-32 mean that a mark follows.
+std::optional<std::string> WideEncodingOf(std::span<const unsigned char> begin) {
+  const auto matches = [&](std::string_view pattern) {  // '0': a zero, 'x': any other byte, else the byte itself
+    if (begin.size() < pattern.size()) return false;
+    for (std::size_t i = 0; i < pattern.size(); ++i) {
+      const char p = pattern[i];
+      const bool fits = p == '0' ? begin[i] == 0 : p == 'x' ? begin[i] != 0 : begin[i] == static_cast<unsigned char>(p);
+      if (!fits) return false;
+    }
+    return true;
+  };
+  if (matches("\xFF\xFE"
+              "00") ||
+      matches("00\xFE\xFF"))
+    return "UTF-32";
+  if (matches("\xFF\xFE") || matches("\xFE\xFF")) return "UTF-16";
+  if (matches("x000x000")) return "UTF-32LE";
+  if (matches("000x000x")) return "UTF-32BE";
+  if (matches("x0x0")) return "UTF-16LE";
+  if (matches("0x0x")) return "UTF-16BE";
+  return std::nullopt;
+}
+
 }  // namespace
 
 Expected<std::vector<std::byte>> ReadRegularFile(const std::filesystem::path& path) {
@@ -132,6 +157,25 @@ std::span<const unsigned char> AsChars(std::span<const std::byte> bytes) {
 
 std::string AsText(std::span<const std::byte> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+Status CheckTextEncoding(const std::string& file, std::span<const std::byte> bytes) {
+  const std::optional<std::string> encoding =
+      WideEncodingOf(AsChars(bytes.first(std::min<std::size_t>(bytes.size(), 8))));
+  if (!encoding) return Ok();
+  return InputError(file + " is text in " + *encoding + "; expected UTF-8: save it so, for example with iconv -f " +
+                    *encoding + " -t UTF-8");
+}
+
+std::string AsTextWithoutMark(std::span<const std::byte> bytes) {
+  const std::string text = AsText(bytes);
+  return text.starts_with("\xEF\xBB\xBF") ? text.substr(3) : text;
+}
+
+Error NoTrianglesError(const std::string& file, std::uint64_t points, const std::string& others) {
+  return InputError(file + " has " + std::to_string(points) + (points == 1 ? " point" : " points") + others +
+                    " and no triangles; expected a mesh, because points and lines are not drawn: make a surface of "
+                    "them, for example in MeshLab or Blender");
 }
 
 std::string UniqueNames::Take(const std::string& wanted) {

@@ -26,6 +26,16 @@ Expected<std::vector<std::byte>> ReadRegularFile(const std::filesystem::path& pa
 std::span<const unsigned char> AsChars(std::span<const std::byte> bytes);
 std::string AsText(std::span<const std::byte> bytes);
 
+// Fails for text in UTF-16 or UTF-32, with a byte order mark or without, and names the encoding: a reader of bytes
+// finds nothing in it, or an error that misleads. Only for formats that are text.
+Status CheckTextEncoding(const std::string& file, std::span<const std::byte> bytes);
+// AsText without the byte order mark of UTF-8.
+std::string AsTextWithoutMark(std::span<const std::byte> bytes);
+
+// The error for a scene of points or lines alone, whose picture would be empty. `others`: what else it has, as
+// ", lines".
+Error NoTrianglesError(const std::string& file, std::uint64_t points, const std::string& others);
+
 // Makes names unique: the wanted one, or with "#2", "#3", … appended.
 class UniqueNames {
  public:

@@ -99,6 +99,7 @@ class ObjLoader {
     ChooseOrigins();
     PlacePositions();
     for (std::size_t s = 0; s < shapes_.size(); ++s) AddShape(s);
+    SCUMBLE_RETURN_IF_ERROR(CheckHasTriangles());
     if (without_normals_ > 0) ComputeNormals();
     LoadMaterials();
     BuildMeshes();
@@ -274,6 +275,13 @@ class ObjLoader {
       triangles_.push_back(triangle);
     }
     ++faces_;
+  }
+
+  Status CheckHasTriangles() const {
+    if (!triangles_.empty() || positions_.empty()) return Ok();
+    const bool has_lines = std::any_of(shapes_.begin(), shapes_.end(),
+                                       [](const tinyobj::shape_t& shape) { return !shape.lines.indices.empty(); });
+    return NoTrianglesError(file_, positions_.size(), has_lines ? ", lines" : "");
   }
 
   // Welds each frame separately: equal positions are one place only if they share an origin.

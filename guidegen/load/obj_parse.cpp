@@ -59,14 +59,22 @@ class LibraryReader : public tinyobj::MaterialReader {
       return false;
     }
     if (!missing) read_.insert(library);
-    std::istringstream stream(AsText(bytes.value()));
+    if (const Status readable = CheckTextEncoding(path.string(), *bytes); !readable) {
+      if (fault_) fault_ = readable;
+      return false;
+    }
+    std::istringstream stream(AsTextWithoutMark(*bytes));
     tinyobj::LoadMtl(indices, materials, &stream, warning, error);
     return true;
   }
 
+  // Of the first library that cannot be used at all.
+  const Status& fault() const { return fault_; }
+
  private:
   const std::filesystem::path& scene_;
   WarningCounter& warnings_;
+  Status fault_ = Ok();
   std::set<std::filesystem::path> read_;
 };
 
@@ -81,7 +89,8 @@ Status ParseObj(const std::filesystem::path& path, WarningCounter& warnings, Obj
   const std::string file = path.string();
   SCUMBLE_ASSIGN(const std::vector<std::byte> bytes, ReadRegularFile(path));
   if (bytes.empty()) return InputError(file + " is empty; expected a Wavefront OBJ scene");
-  std::string text = AsText(bytes);
+  SCUMBLE_RETURN_IF_ERROR(CheckTextEncoding(file, bytes));
+  std::string text = AsTextWithoutMark(bytes);
   contents.has_smoothing = BlankUnused(text);
   std::istringstream stream(std::move(text));
   LibraryReader library(path, warnings);
@@ -98,6 +107,7 @@ Status ParseObj(const std::filesystem::path& path, WarningCounter& warnings, Obj
   } catch (const std::exception& e) {
     error = e.what();
   }
+  SCUMBLE_RETURN_IF_ERROR(library.fault());
   if (ok) return Ok();
   return InputError(file + " is not a valid OBJ file: " + Excerpt(error.empty() ? "no reason given" : error, 300));
 }

@@ -188,6 +188,7 @@ class PlyLoader {
         SCUMBLE_RETURN_IF_ERROR(ReadFaces(element, values));
       }
     }
+    SCUMBLE_RETURN_IF_ERROR(CheckHasTriangles());
     PlaceVertices();
     CutPolygons();
     return Finish();
@@ -396,6 +397,16 @@ class PlyLoader {
     if (cuts > 1) polygons_.push_back({static_cast<std::uint32_t>(mesh_.triangles.size()), std::uint32_t(cuts)});
     for (std::size_t i = 0; i < cuts; ++i) mesh_.triangles.emplace_back(corners[0], corners[i + 1], corners[i + 2]);
     return Ok();
+  }
+
+  Status CheckHasTriangles() const {
+    if (!mesh_.triangles.empty() || mesh_.positions.empty()) return Ok();
+    std::string others;
+    for (const Element& element : header_.elements) {
+      if (element.name == "vertex" || element.count == 0) continue;
+      others += ", " + std::to_string(element.count) + " of '" + Excerpt(element.name, 40) + "'";
+    }
+    return NoTrianglesError(file_, mesh_.positions.size(), others);
   }
 
   // Moves the shape to its origin, which is known once all faces are read. A vertex outside all faces may be any

@@ -151,11 +151,13 @@ ScratchFolder::~ScratchFolder() {
 
 Expected<fs::path> FindBlenderScript(const std::string& name, const BlenderTask& task, const RunContext& context) {
   std::error_code failed;
-  for (const fs::path& root : context.DataFolders("blender_scripts")) {
-    if (fs::is_regular_file(root / name, failed)) return root / name;
+  const std::vector<fs::path> folders = context.DataFolders("blender_scripts");
+  for (const fs::path& folder : folders) {
+    if (fs::is_regular_file(folder / name, failed)) return folder / name;
   }
-  return UnavailableError(task.scene + ": " + name + " is not found beside this program: install it again" +
-                          ByHand(task));
+  const std::string found = folders.empty() ? "blender_scripts/" + name + " is not found beside this program"
+                                            : (folders.front() / name).string() + " is missing";
+  return UnavailableError(task.scene + ": " + found + ": install Scumble again" + ByHand(task));
 }
 
 RunningProgram::RunningProgram(std::string name, int child, const RunContext& context)

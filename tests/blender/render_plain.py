@@ -4,7 +4,8 @@
 
 Writes FOLDER/NAME.exr, multilayer, and FOLDER/NAME.camera with the camera that Blender had. A shot's name lists its
 special settings: one of the cameras (landscape, portrait, shifted, ortho, far), the film (opaque, clear), the filter
-(filtered, sharp), and lens, dof, slightdof or nopos: "shifted-opaque-filtered".
+(filtered, sharp), lens, dof, slightdof or nopos, and lit (a hard sun, and the passes of its light) or catcher (lit, and the
+floor is a shadow catcher): "shifted-opaque-filtered".
 """
 
 import argparse
@@ -48,6 +49,12 @@ def build(words):
         data.dof.use_dof = True
         data.dof.focus_distance, data.dof.aperture_fstop = (4.0, 0.1) if "dof" in words else (8.0, 0.2)
     scene.camera = eye
+    if "lit" in words or "catcher" in words:
+        sun = bpy.data.objects.new("Sun", bpy.data.lights.new("Sun", "SUN"))
+        scene.collection.objects.link(sun)
+        sun.data.energy, sun.data.angle, sun.data.color = 2.0, 0.0, (1.0, 0.5, 0.25)
+        sun.rotation_euler = Euler((0.6, 0.3, 0.0))
+        bpy.data.objects["Floor"].is_shadow_catcher = "catcher" in words
     return scene
 
 
@@ -65,6 +72,8 @@ def set_up(scene, words, path):
     layer = scene.view_layers[0]
     layer.use_pass_normal = layer.use_pass_z = layer.use_pass_cryptomatte_object = True
     layer.use_pass_position = "nopos" not in words
+    layer.use_pass_diffuse_direct = layer.use_pass_shadow = "lit" in words
+    layer.cycles.use_pass_shadow_catcher = "catcher" in words
     layer.use_pass_cryptomatte_material = layer.use_pass_object_index = "sharp" in words
 
 

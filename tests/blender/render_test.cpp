@@ -26,7 +26,7 @@ class Shots : public testing::Environment {
         " --shot landscape-opaque-filtered landscape-clear-filtered landscape-clear-sharp "
         "portrait-shifted-clear-filtered "
         "shifted-clear-sharp ortho-shifted-clear-sharp ortho-opaque-filtered far-clear-sharp landscape-slightdof "
-        "landscape-lens landscape-dof landscape-nopos > " +
+        "landscape-lens landscape-dof landscape-nopos landscape-clear-sharp-lit landscape-clear-sharp-catcher > " +
         log + " 2>&1";
     std::string text;
     if (std::system(command.c_str()) != 0) {
@@ -110,6 +110,63 @@ TEST(BlenderRender, NamesAreThoseOfTheScene) {
   EXPECT_EQ(sharp.material_names.begin()->second, "Red \"paint\"");
 }
 
+GuideSet ReadLit(const std::string& shot, const LayerSet& light) {
+  GuideReadOptions options;
+  options.required.Remove(Layer::kMaterial).Add(light);
+  const auto guides = ReadGuides(Shots::File(shot + ".exr"), options);
+  EXPECT_TRUE(guides) << guides.error().message;
+  return guides ? *guides : GuideSet(1, 1);
+}
+
+// The direction to the sun of render_plain.py, turned by 0.6 about x and then 0.3 about y, in glTF's world; its
+// strength is 2, and its colour's luminance 0.2126 · 1 + 0.7152 · 0.5 + 0.0722 · 0.25.
+const glm::dvec3 kToSun(std::sin(0.3) * std::cos(0.6), std::cos(0.3) * std::cos(0.6), std::sin(0.6));
+constexpr double kSunOnWhite = 2.0 * 0.588250 / 3.14159265358979323846;
+
+// Under one hard lamp the light is what the formula says, times what the shadow leaves of it.
+TEST(BlenderRender, LightIsThatOfTheFormula) {
+  const GuideSet guides = ReadLit("landscape-clear-sharp-lit", {Layer::kLuminance, Layer::kShadow});
+  const glm::dmat3 world_from_view = glm::transpose(glm::dmat3(guides.camera->view_from_world));
+  std::size_t compared = 0, shadowed = 0, wrong = 0, away = 0;
+  for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
+    if (guides.Plane(Layer::kCoverage)[i] < 1.0f) continue;
+    const double facing = glm::dot(world_from_view * glm::dvec3(guides.Vec3(Layer::kNormal, i)), kToSun);
+    const double luminance = guides.Plane(Layer::kLuminance)[i], shadow = guides.Plane(Layer::kShadow)[i];
+    if (std::fabs(facing) < 0.1) continue;  // smooth normals and flat triangles disagree about what faces the sun
+    ++compared;
+    shadowed += facing > 0.0 && shadow > 0.99;
+    away += facing < 0.0 && (shadow < 0.99 || luminance > 1e-4);
+    wrong += facing > 0.0 && std::fabs(luminance - (1.0 - shadow) * facing * kSunOnWhite) > 2e-3;
+  }
+  EXPECT_GT(compared, 10000u);
+  EXPECT_GT(shadowed, 500u);
+  EXPECT_LE(wrong, compared / 500);
+  EXPECT_EQ(away, 0u) << "what no lamp faces has no light, and counts as shadowed";
+}
+
+// A catcher's shadows are those that the same floor has as an object, but for the light that other things throw on it.
+TEST(BlenderRender, AShadowCatcherIsCoveredAndShadowed) {
+  const GuideSet floor = ReadLit("landscape-clear-sharp-lit", {Layer::kShadow});
+  const GuideSet caught = ReadLit("landscape-clear-sharp-catcher", {Layer::kShadow});
+  std::size_t compared = 0, dark = 0;
+  double difference = 0.0;
+  for (std::size_t i = 0; i < floor.pixel_count(); ++i) {
+    ASSERT_NEAR(floor.Plane(Layer::kCoverage)[i], caught.Plane(Layer::kCoverage)[i], 1e-4f) << i;
+    const auto name = floor.object_names.find(IdOf(floor.Plane(Layer::kObject)[i]));
+    ASSERT_EQ(floor.Plane(Layer::kObject)[i], caught.Plane(Layer::kObject)[i]) << i;
+    if (floor.Plane(Layer::kCoverage)[i] < 1.0f) continue;
+    if (name->second != "Floor") {
+      ASSERT_EQ(caught.Plane(Layer::kShadow)[i], 0.0f) << i << ": nothing says what falls on objects";
+      continue;
+    }
+    ++compared, dark += caught.Plane(Layer::kShadow)[i] > 0.8f;
+    difference += std::fabs(floor.Plane(Layer::kShadow)[i] - caught.Plane(Layer::kShadow)[i]);
+  }
+  EXPECT_GT(compared, 5000u);
+  EXPECT_GT(dark, 300u);
+  EXPECT_LT(difference / double(compared), 0.05);
+}
+
 // An opaque film's alpha is 1 everywhere; Cryptomatte has the coverage of a transparent film.
 TEST(BlenderRender, CoverageIsThatOfATransparentFilm) {
   const GuideSet opaque = Read("landscape-opaque-filtered", false), clear = Read("landscape-clear-filtered", false);
@@ -183,6 +240,24 @@ TEST_F(BlenderTransfer, APlainRenderBecomesAPicture) {
          Shots::File("landscape-opaque-filtered.camera")});
   // Cameras that differ in the seventh digit settle a few pixels on another chunk.
   RunOk({"compare", "a.png", "b.png", "--fail", "0.02", "--failpercent", "2"});
+  // Several lights, and a catcher; what is missing is named as Blender's menus name it.
+  const std::string lit = Shots::File("landscape-clear-sharp-lit.exr");
+  RunOk({"transfer", lit, "--style", "chiaroscuro", "-o", "l.png"});
+  RunOk({"transfer", lit, "--style", "chiaroscuro", "--light-layer", "ViewLayer", "-o", "m.png"});
+  EXPECT_EQ(Pixels("l.png"), Pixels("m.png"));
+  const Arguments caught = {"--style", "oil",  "--assign", "Floor=catcher", "--set", "transfer.shadow=paint",
+                            "-o",      "s.png"};
+  RunOk(With({"transfer", Shots::File("landscape-clear-sharp-catcher.exr")}, caught));
+  const std::string dark = Shots::File("landscape-clear-sharp.exr");
+  ExpectError({"transfer", dark, "--style", "chiaroscuro", "-o", "c.png"}, 3,
+              {"has no layer luminance", "View Layer > Passes > Diffuse Direct"});
+  ExpectError(With({"transfer", dark}, caught), 3, {"has no layer shadow", "View Layer > Passes > Shadow"});
+  ExpectError({"transfer", lit, "--style", "chiaroscuro", "--light-layer", "Clay", "-o", "c.png"}, 3,
+              {"no view layer 'Clay' with passes of light; there are 'ViewLayer'"});
+  WriteGuideFile("own.exr", Ball(32));
+  ExpectError({"transfer", "own.exr", "--style", "oil", "--light-layer", "Clay", "-o", "c.png"}, 3,
+              {"no Blender render", "--light-layer"});
+  ExpectError({"transfer", lit, "--style", "oil", "--light-layer", "", "-o", "c.png"}, 2, {"--light-layer"});
   ExpectError({"transfer", Shots::File("landscape-nopos.exr"), "--style", "oil", "-o", "c.png"}, 3,
               {"landscape-nopos.exr", "pass Position", "--camera FILE"});
   ExpectError({"transfer", Shots::File("landscape-lens.exr"), "--style", "oil", "-o", "c.png"}, 3,

@@ -206,6 +206,34 @@ TEST_F(BlenderProcess, BothVerbsTellTheSameFailureInTheSameWords) {
   fails("./none", 5, "./none cannot be run (No such file or directory): install Blender 3.4, or say where it is");
 }
 
+// Python alone stands in for Blender here: a script that lacks a part ends before it asks anything of Blender.
+TEST_F(BlenderProcess, AnInstallationThatLacksAScriptIsNamed) {
+  const CommandSettings settings = CopyProgram("home/bin");
+  const fs::path scripts = At("home/share/scumble/blender_scripts");
+  WriteText("python/bpy.py", "");
+  WriteProgram("blender", "while [ \"$1\" != -P ]; do shift; done\nPYTHONPATH='" + At("python").string() +
+                              "' exec python3 \"$2\"");
+  WriteText("shot.blend", "");
+  const auto fails = [&](const std::string& missing, bool exports, bool renders) {
+    const std::string sentence = missing + ": install Scumble again";
+    const Arguments with = {"--blender", "./blender"};
+    const Arguments compare = {"crosscheck", Scene("suzanne.glb"), "--size", "32", "--samples", "0"};
+    if (exports) {
+      ExpectError(With({"guidegen", "shot.blend", "-o", "g.exr"}, with), 5,
+                  {"shot.blend: " + sentence + ", or export the scene to .glb by hand"}, settings);
+    }
+    if (renders) ExpectError(With(compare, with), 5, {"suzanne.glb: " + sentence}, settings);
+  };
+  fails("blender_scripts/export_scene.py is not found beside this program", true, false);
+  fs::create_directories(scripts);
+  fails((scripts / "export_scene.py").string() + " is missing", true, false);
+  fs::copy(SCUMBLE_SOURCE_DIR "/blender_scripts", scripts);
+  fs::remove(scripts / "blend_check.py");
+  fails((scripts / "blend_check.py").string() + " is missing", true, true);
+  fs::remove(scripts / "render_guides.py");
+  fails((scripts / "render_guides.py").string() + " is missing", false, true);
+}
+
 TEST_F(BlenderProcess, TargetsAreCheckedBeforeItRuns) {
   WriteProgram("blender", "touch ran");
   WriteText("shot.blend", "");

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 #include <unordered_map>
 
 #include "guidegen/load/gltf/accessor.h"
@@ -50,6 +51,7 @@ class GltfLoader {
     for (std::size_t i = 0; i < rig_.nodes.size(); ++i) rig_node_of_[rig_.nodes[i].node] = static_cast<int>(i);
     SCUMBLE_ASSIGN(names_, NameObjects(model_, file_, rig_.nodes));
     for (std::size_t i = 0; i < rig_.nodes.size(); ++i) SCUMBLE_RETURN_IF_ERROR(LoadNode(i));
+    SCUMBLE_RETURN_IF_ERROR(CheckHasTriangles());
     SCUMBLE_RETURN_IF_ERROR(CheckAnimatedWeights());
     if (!rig_.meshes.empty()) SCUMBLE_RETURN_IF_ERROR(rig_.Pose(std::nullopt, scene_));
     WarnOfIgnoredParts();
@@ -266,6 +268,26 @@ class GltfLoader {
     return InputError(file_ + ": skin " + std::to_string(index) + " has " + std::to_string(matrices) +
                       " inverse bind matrices for " + std::to_string(skin.joints.size()) +
                       " joints; expected as many: export it again");
+  }
+
+  // Fails for a scene of points and lines alone, which would be an empty picture.
+  Status CheckHasTriangles() const {
+    if (!rig_.instances.empty()) return Ok();
+    std::uint64_t points = 0;
+    bool has_lines = false;
+    std::set<int> seen;
+    for (const RigNode& visit : rig_.nodes) {
+      const int mesh = model_.nodes[std::size_t(visit.node)].mesh;
+      if (mesh < 0 || !seen.insert(mesh).second) continue;
+      for (const tinygltf::Primitive& primitive : model_.meshes[std::size_t(mesh)].primitives) {
+        const auto position = primitive.attributes.find("POSITION");
+        const bool is_drawn = primitive.mode >= TINYGLTF_MODE_TRIANGLES || position == primitive.attributes.end();
+        if (is_drawn || position->second < 0 || std::size_t(position->second) >= model_.accessors.size()) continue;
+        points += model_.accessors[std::size_t(position->second)].count;
+        has_lines |= primitive.mode != TINYGLTF_MODE_POINTS;
+      }
+    }
+    return points == 0 ? Ok() : Status(NoTrianglesError(file_, points, has_lines ? ", lines" : ""));
   }
 
   // Every key of an animated mesh must have as many weights as there are targets.

@@ -225,9 +225,28 @@ Expected<float> UnitFactor(double value, const char* what, const std::string& wh
   return InputError(where + " has the " + what + " factor " + std::to_string(value) + "; expected 0 … 1");
 }
 
-tinygltf::TextureInfo TextureInExtension(const tinygltf::Value& from) {
+void WarnOfTextureIndex(const std::string& texture, const std::string& owner, WarningCounter& warnings) {
+  warnings.Add("textures whose index is missing or below 0 are left out", owner + ", " + texture);
+}
+
+// A texture is absent where its key is: one that is there must have an index.
+void CheckTextureIndices(const tinygltf::Material& from, const std::string& owner, WarningCounter& warnings) {
+  const auto check = [&](const tinygltf::ParameterMap& values, const char* texture) {
+    const auto found = values.find(texture);
+    if (found != values.end() && found->second.TextureIndex() < 0) WarnOfTextureIndex(texture, owner, warnings);
+  };
+  check(from.values, "baseColorTexture");
+  check(from.values, "metallicRoughnessTexture");
+  check(from.additionalValues, "normalTexture");
+  check(from.additionalValues, "emissiveTexture");
+}
+
+// `name`, `owner`: of the texture and of its material, for the warning.
+tinygltf::TextureInfo TextureInExtension(const tinygltf::Value& from, const char* name, const std::string& owner,
+                                         WarningCounter& warnings) {
   tinygltf::TextureInfo info;
   if (from.Has("index") && from.Get("index").IsInt()) info.index = from.Get("index").GetNumberAsInt();
+  if (info.index < 0) WarnOfTextureIndex(name, owner, warnings);
   if (from.Has("texCoord") && from.Get("texCoord").IsInt()) info.texCoord = from.Get("texCoord").GetNumberAsInt();
   const char* transform = "KHR_texture_transform";
   if (from.Has("extensions") && from.Get("extensions").Has(transform)) {
@@ -239,7 +258,9 @@ tinygltf::TextureInfo TextureInExtension(const tinygltf::Value& from) {
 // Converts KHR_materials_pbrSpecularGlossiness, the older model, to metallic-roughness as far as possible. Its metals
 // have a black diffuse colour and a specular one, which is lost here.
 Expected<tinygltf::PbrMetallicRoughness> FromSpecularGlossiness(const tinygltf::Value& extension,
-                                                                const std::string& where) {
+                                                                const std::string& file, const std::string& owner,
+                                                                WarningCounter& warnings) {
+  const std::string where = file + ": " + owner;
   tinygltf::PbrMetallicRoughness pbr;
   pbr.metallicFactor = 0.0;
   if (extension.Has("diffuseFactor")) {
@@ -247,7 +268,9 @@ Expected<tinygltf::PbrMetallicRoughness> FromSpecularGlossiness(const tinygltf::
     if (!factor) return InputError(where + " has a diffuse factor that is not 4 numbers; export it again");
     pbr.baseColorFactor = *factor;
   }
-  if (extension.Has("diffuseTexture")) pbr.baseColorTexture = TextureInExtension(extension.Get("diffuseTexture"));
+  if (extension.Has("diffuseTexture")) {
+    pbr.baseColorTexture = TextureInExtension(extension.Get("diffuseTexture"), "diffuseTexture", owner, warnings);
+  }
   // With a texture the factor is only the maximum, by default a mirror.
   if (extension.Has("specularGlossinessTexture")) return pbr;
   double glossiness = 1.0;
@@ -272,7 +295,7 @@ Expected<tinygltf::PbrMetallicRoughness> MetallicRoughness(const tinygltf::Mater
       "of KHR_materials_pbrSpecularGlossiness the diffuse colour is taken, and 1 - glossiness as roughness, but "
       "not the specular colour; where a texture has the glossiness, roughness is 1",
       owner);
-  return FromSpecularGlossiness(extension->second, file + ": " + owner);
+  return FromSpecularGlossiness(extension->second, file, owner, warnings);
 }
 
 // KHR_materials_emissive_strength: emission above 1, 1 where it is absent.
@@ -318,6 +341,7 @@ Status LoadGltfMaterials(const tinygltf::Model& model, const std::string& file, 
     const std::string owner = Label("material", static_cast<int>(i), from.name);
     Material material;
     material.name = names.Take(from.name.empty() ? "material_" + std::to_string(i) : from.name);
+    CheckTextureIndices(from, owner, warnings);
     SCUMBLE_ASSIGN(from.pbrMetallicRoughness, MetallicRoughness(from, file, owner, warnings));
     const std::vector<double>& factor = from.pbrMetallicRoughness.baseColorFactor;
     for (int c = 0; c < 4 && std::size_t(c) < factor.size(); ++c) {
@@ -333,10 +357,12 @@ Status LoadGltfMaterials(const tinygltf::Model& model, const std::string& file, 
     material.normal_scale =
         std::isfinite(from.normalTexture.scale) ? static_cast<float>(from.normalTexture.scale) : 1.0f;
     if (const tinygltf::Value* normal = FindExtrasTexture(from.extras, "normal")) {
-      SCUMBLE_ASSIGN(material.normal_texture, textures.Use(TextureInExtension(*normal), owner));
+      SCUMBLE_ASSIGN(material.normal_texture,
+                     textures.Use(TextureInExtension(*normal, "normal", owner, warnings), owner));
     }
     if (const tinygltf::Value* bump = FindExtrasTexture(from.extras, "bump")) {
-      SCUMBLE_ASSIGN(material.bump.height_texture, textures.Use(TextureInExtension(*bump), owner));
+      SCUMBLE_ASSIGN(material.bump.height_texture,
+                     textures.Use(TextureInExtension(*bump, "bump", owner, warnings), owner));
     }
     SCUMBLE_RETURN_IF_ERROR(LoadLighting(from, file, owner, textures, material));
     if (from.alphaMode == "MASK") material.alpha_mode = AlphaMode::kMask;

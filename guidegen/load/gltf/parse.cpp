@@ -45,8 +45,8 @@ Expected<std::span<const unsigned char>> GlbJson(const std::string& file, std::s
     return bad("it has only " + std::to_string(bytes.size()) + " bytes");
   }
   if (ReadU32(bytes, 4) != 2) {
-    return InputError(file + " is glTF version " + std::to_string(ReadU32(bytes, 4)) +
-                      "; expected version 2, export it as glTF 2.0");
+    return InputError(file + " is binary glTF " + std::to_string(ReadU32(bytes, 4)) +
+                      "; expected glTF 2.0: convert it, for example with gltf-pipeline, or export it again");
   }
   const std::size_t length = ReadU32(bytes, 8);
   if (length > bytes.size()) {
@@ -78,6 +78,9 @@ constexpr ListLimit kListLimits[] = {
     {"nodes", 2'000'000},      {"meshes", 2'000'000},        {"materials", kMostElements}, {"textures", kMostElements},
     {"images", kMostElements}, {"samplers", kMostElements},  {"scenes", kMostElements},    {"cameras", kMostElements},
     {"skins", kMostElements},  {"animations", kMostElements}};
+constexpr std::string_view kLists[] = {"accessors", "animations", "buffers", "bufferViews", "cameras",
+                                       "images",    "materials",  "meshes",  "nodes",       "samplers",
+                                       "scenes",    "skins",      "textures"};
 // tinygltf takes 150 bytes for each value inside extras and extensions, whose text may have 2. A million nodes with ten
 // of Blender's custom properties each have 10 million.
 constexpr std::uint64_t kMaxFreeValues = 16'000'000;
@@ -96,6 +99,8 @@ bool IsKnownExtension(std::string_view name) {
 
 // The result of a cheap scan of the JSON before it is parsed.
 struct JsonOutline {
+  std::string version;                        // the asset's, where it is a text
+  std::string keyed_list;                     // a list of glTF 2.0 that is written as an object, as in glTF 1.0
   std::vector<std::string> unknown_required;  // extensions that the file requires and that are not read here
   int depth = 0;                              // of the deepest brackets
   int buffers_without_uri = 0;    // or with an empty one or one that is no text, which tinygltf treats as none
@@ -119,12 +124,13 @@ class Outliner {
         escaped_ = text_.find('\\') != text_.npos;
         if (depth_ == 3 && at_uri_) has_uri_ = !text_.empty();
         if (depth_ == 2 && list_ == "extensionsRequired") TakeRequired();
+        if (depth_ == 2 && at_version_) outline_.version = text_;
       } else if (c == ':') {
         TakeKey();
       } else if (c == ',') {
         TakeComma();
       } else if (c == '{' || c == '[') {
-        Open();
+        Open(c);
       } else if (c == '}' || c == ']') {
         Close();
       }
@@ -142,6 +148,8 @@ class Outliner {
       list_escaped_ = escaped_;
       in_buffers_ = MayBe("buffers");
       in_animations_ = MayBe("animations");
+    } else if (depth_ == 2) {
+      at_version_ = list_ == "asset" && text_ == "version";
     } else if (depth_ == 3 && in_buffers_) {
       at_uri_ = text_ == "uri";
       if (MayBe("uri")) has_uri_ = false;
@@ -160,13 +168,17 @@ class Outliner {
     elements_ += depth_ == 2;
     samplers_ += depth_ == 4 && at_samplers_;
     CountFreeValue();
+    if (depth_ == 2) at_version_ = false;
     if (depth_ == 3) at_uri_ = false;
     at_free_ = false;
   }
 
-  void Open() {
+  void Open(char bracket) {
     outline_.depth = std::max(outline_.depth, ++depth_);
     if (depth_ == 2) elements_ = 1;
+    if (depth_ == 2 && bracket == '{' && std::find(std::begin(kLists), std::end(kLists), list_) != std::end(kLists)) {
+      outline_.keyed_list = list_;
+    }
     if (depth_ == 3) {
       at_uri_ = has_uri_ = at_samplers_ = at_copied_ = false;
       samplers_ = copied_values_ = 0;
@@ -177,7 +189,10 @@ class Outliner {
   }
 
   void Close() {
-    if (depth_ == 2) CheckElements();
+    if (depth_ == 2) {
+      CheckElements();
+      at_version_ = false;
+    }
     if (depth_ == 3) {
       outline_.buffers_without_uri += in_buffers_ && !has_uri_;
       // tinygltf gives each of an animation's samplers a copy of the animation's extensions.
@@ -211,6 +226,7 @@ class Outliner {
   std::string_view list_;  // key of the top level
   bool list_escaped_ = false;
   std::size_t elements_ = 0;
+  bool at_version_ = false;  // the next text at depth 2 is the asset's version
   bool in_buffers_ = false, at_uri_ = false, has_uri_ = false;
   bool at_free_ = false;  // the next value is that of extras or extensions
   int free_depth_ = 0;    // the depth of its brackets; 0 outside
@@ -218,6 +234,17 @@ class Outliner {
   std::uint64_t samplers_ = 0;       // of one animation, less one
   std::uint64_t copied_values_ = 0;  // inside its extensions
 };
+
+// glTF 1.0 has no required extensions and nothing that tinygltf 2 reads.
+Status CheckMajorVersion(const std::string& file, const JsonOutline& outline) {
+  const bool is_old = outline.version.starts_with("1.") || outline.version.starts_with("0.");
+  const bool is_keyed = !outline.keyed_list.empty() && !outline.version.starts_with("2.");
+  if (!is_old && !is_keyed) return Ok();
+  std::string found = " is glTF " + (is_old ? Excerpt(outline.version, 40) : "1.0");
+  if (is_keyed) found += ", whose " + outline.keyed_list + " have names instead of numbers";
+  return InputError(file + found +
+                    "; expected glTF 2.0: convert it, for example with gltf-pipeline, or export it again");
+}
 
 bool KeepEncoded(tinygltf::Image* image, int, std::string* error, std::string*, int, int, const unsigned char* bytes,
                  int size, void*) {
@@ -293,8 +320,10 @@ bool NeverWrite(std::string*, const std::string&, const std::vector<unsigned cha
 
 // tinygltf's message about an accepted file becomes a warning, except where tinygltf is stricter than glTF.
 void WarnOfComplaints(std::string complaints, WarningCounter& warnings) {
-  for (const std::string harmless : {"JSON Chunk end does not aligned to a 4-byte boundary.",
-                                     "'inverseBindMatrices' property is missing in Skin.\n"}) {
+  // The materials' own warnings name textures without an index.
+  for (const std::string harmless :
+       {"JSON Chunk end does not aligned to a 4-byte boundary.", "'inverseBindMatrices' property is missing in Skin.\n",
+        "'index' property is missing in TextureInfo.\n", "'index' property is missing in NormalTextureInfo.\n"}) {
     for (std::size_t at; (at = complaints.find(harmless)) != std::string::npos;) complaints.erase(at, harmless.size());
   }
   if (!complaints.empty()) warnings.Add("some of the file is not valid glTF and is left out", Excerpt(complaints));
@@ -369,9 +398,12 @@ Status ParseGltf(const std::filesystem::path& path, tinygltf::Model& model, Warn
   std::span<const unsigned char> json = bytes;
   if (IsGlb(bytes)) {
     SCUMBLE_ASSIGN(json, GlbJson(file, bytes));
+  } else {
+    SCUMBLE_RETURN_IF_ERROR(CheckTextEncoding(file, whole));
   }
   const JsonOutline outline = Outliner().Read({reinterpret_cast<const char*>(json.data()), json.size()});
-  // First, because whatever else such a file seems to lack (data of buffers, say) may be in the extension's own form.
+  SCUMBLE_RETURN_IF_ERROR(CheckMajorVersion(file, outline));
+  // Early, because whatever else such a file seems to lack (data of buffers, say) may be in the extension's own form.
   SCUMBLE_RETURN_IF_ERROR(CheckRequiredExtensions(file, outline.unknown_required));
   if (outline.depth > kMaxJsonDepth) {
     return InputError(file + " nests its JSON more than " + std::to_string(kMaxJsonDepth) +

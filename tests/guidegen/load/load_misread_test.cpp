@@ -1,0 +1,166 @@
+// Files that would silently become an empty or a plainer picture: points or lines alone, text that is not UTF-8, glTF
+// 1.0, textures without an index. Each is refused or warned of, by what the file really has.
+#include <gmock/gmock.h>
+
+#include "guidegen/load/load_scene.h"
+#include "guidegen/load/loader_util.h"
+#include "tests/support/gltf_builder.h"
+
+namespace scumble {
+namespace {
+
+using nlohmann::json;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+class Misread : public RefusedScenes {
+ protected:
+  Scene Load(const std::filesystem::path& path) {
+    Expected<Scene> scene = LoadScene(path);
+    EXPECT_TRUE(scene.ok()) << scene.error().message;
+    return scene ? std::move(*scene) : Scene{};
+  }
+};
+
+TEST_F(Misread, PlyOfPointsAlone) {
+  const std::string header =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\n";
+  const std::string places = "0 0 0\n1 0 0\n0 1 0\n";
+  EXPECT_THAT(Refusal(Write("cloud.ply", header + "end_header\n" + places)),
+              AllOf(HasSubstr("has 3 points and no triangles"), HasSubstr("make a surface")));
+  // Faces in a list of another name, and other kinds of elements, are named.
+  EXPECT_THAT(Refusal(Write("strips.ply", header +
+                                              "element face 1\nproperty list uchar int corners\n"
+                                              "element edge 2\nproperty int vertex1\nend_header\n" +
+                                              places + "3 0 1 2\n0\n1\n")),
+              HasSubstr("has 3 points, 1 of 'face', 2 of 'edge' and no triangles"));
+  EXPECT_THAT(Load(Write("none.ply",
+                         "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\n"
+                         "property float z\nend_header\n"))
+                  .warnings,
+              ElementsAre(HasSubstr("no geometry")));
+}
+
+TEST_F(Misread, ObjOfPointsAndLinesAlone) {
+  EXPECT_THAT(Refusal(Write("cloud.obj", std::string("v 0 0 0\nv 1 0 0\n"))),
+              HasSubstr("has 2 points and no triangles"));
+  EXPECT_THAT(Refusal(Write("dot.obj", std::string("v 0 0 0\np 1\n"))), HasSubstr("has 1 point and no triangles"));
+  EXPECT_THAT(Refusal(Write("wire.obj", std::string("v 0 0 0\nv 1 0 0\nv 1 1 0\nl 1 2 3\n"))),
+              HasSubstr("has 3 points, lines and no triangles"));
+}
+
+TEST_F(Misread, GltfOfPointsAndLinesAlone) {
+  GltfBuilder b;
+  const int positions = b.Floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, 3);
+  const auto primitive = [&](int mode) { return json{{"attributes", {{"POSITION", positions}}}, {"mode", mode}}; };
+  b.Root({{"mesh", b.Mesh(json::array({primitive(0)}))}});
+  b.Root({{"mesh", 0}});
+  EXPECT_THAT(Refusal(b), HasSubstr("has 3 points and no triangles"));
+  b.Root({{"mesh", b.Mesh(json::array({primitive(1), primitive(2), primitive(3)}))}});
+  EXPECT_THAT(Refusal(b), HasSubstr("has 12 points, lines and no triangles"));
+  b.Root({{"mesh", b.Mesh(json::array({primitive(4)}))}});
+  EXPECT_THAT(Load(Write("scene.glb", b.Glb())).warnings, ElementsAre(HasSubstr("points and lines are left out")));
+}
+
+// Plain letters in one of UTF-16's and UTF-32's forms.
+std::string Wide(const std::string& text, int bytes, bool big, bool mark) {
+  std::string wide;
+  const auto put = [&](unsigned code) {
+    for (int i = 0; i < bytes; ++i) wide += static_cast<char>(code >> 8 * (big ? bytes - 1 - i : i) & 0xFF);
+  };
+  if (mark) put(0xFEFF);
+  for (const char c : text) put(static_cast<unsigned char>(c));
+  return wide;
+}
+
+TEST_F(Misread, TextInWideEncodings) {
+  const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  GltfBuilder b;
+  b.Root({{"name", "Nothing"}});
+  for (const int bytes : {2, 4}) {
+    for (const bool big : {false, true}) {
+      for (const bool mark : {false, true}) {
+        const std::string name = "UTF-" + std::to_string(8 * bytes) + (mark ? "" : big ? "BE" : "LE");
+        const auto names_it =
+            AllOf(HasSubstr("is text in " + name + "; expected UTF-8"), HasSubstr("iconv -f " + name + " -t UTF-8"));
+        EXPECT_THAT(Refusal(Write("wide.obj", Wide(triangle, bytes, big, mark))), names_it);
+        EXPECT_THAT(Refusal(Write("wide.gltf", Wide(b.json.dump(), bytes, big, mark))), names_it);
+        Write("wide.mtl", Wide("newmtl m\nKd 1 0 0\n", bytes, big, mark));
+        const auto scene = LoadScene(Write("a.obj", "mtllib wide.mtl\n" + triangle));
+        ASSERT_FALSE(scene);
+        EXPECT_EQ(scene.error().kind, ErrorKind::kInput);
+        EXPECT_THAT(scene.error().message, AllOf(HasSubstr("wide.mtl"), names_it));
+      }
+    }
+  }
+}
+
+// What a wrong guess would refuse: short files, and letters of other languages.
+TEST_F(Misread, OrdinaryTextIsNotWide) {
+  for (const std::string text : {"", "v", "v ", "v 0", "# ä", "\xC3\xA4", "\xFE", "\xFF"}) {
+    EXPECT_TRUE(CheckTextEncoding("a", std::as_bytes(std::span(text)))) << text;
+  }
+}
+
+// tinyobjloader would lose the first line: here the library, whose own first line is the material's name.
+TEST_F(Misread, TheMarkOfUtf8IsNoText) {
+  Write("m.mtl", std::string("\xEF\xBB\xBFnewmtl red\nKd 1 0 0\n"));
+  const Scene scene = Load(Write("a.obj", std::string("\xEF\xBB\xBFmtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n"
+                                                      "usemtl red\nf 1 2 3\n")));
+  ASSERT_EQ(scene.materials.size(), 1u);
+  EXPECT_EQ(scene.materials[0].name, "red");
+  EXPECT_EQ(scene.materials[0].base_color, glm::vec4(1, 0, 0, 1));
+  EXPECT_THAT(scene.warnings, IsEmpty());
+}
+
+TEST_F(Misread, Gltf1IsNamedFirst) {
+  // With much that would otherwise be named before: an extension, a buffer that is gone, nested values.
+  const json keyed = {{"scene", "s"},
+                      {"scenes", {{"s", {{"nodes", {"n"}}}}}},
+                      {"nodes", {{"n", {{"meshes", {"m"}}}}}},
+                      {"buffers", {{"b", {{"uri", "gone.bin"}, {"byteLength", 9}}}}},
+                      {"extensionsRequired", {"KHR_draco_mesh_compression"}}};
+  const auto refusal = [&](json file) { return Refusal(Write("old.gltf", file.dump())); };
+  const auto remedy = AllOf(HasSubstr("expected glTF 2.0: convert it"), HasSubstr("gltf-pipeline"));
+  json old = keyed;
+  old["asset"] = {{"generator", "x"}, {"profile", {{"version", "7.0"}}}, {"version", "1.0"}};
+  EXPECT_THAT(refusal(old), AllOf(HasSubstr("is glTF 1.0, whose "), HasSubstr("names instead of numbers"), remedy));
+  EXPECT_THAT(refusal(keyed), AllOf(HasSubstr("is glTF 1.0, whose "), remedy)) << "its version is optional";
+  EXPECT_THAT(refusal({{"asset", {{"version", "1.1"}}}}), AllOf(HasSubstr("is glTF 1.1;"), remedy));
+  GltfBuilder binary;
+  binary.Triangle();
+  std::vector<unsigned char> glb = binary.Glb();
+  glb[4] = 1;
+  EXPECT_THAT(Refusal(Write("old.glb", glb)), AllOf(HasSubstr("is binary glTF 1;"), remedy));
+  // Another version is no glTF 1.0, nor is a key of that name elsewhere.
+  json new_one = keyed;
+  new_one["asset"] = {{"version", "2.0"}, {"minVersion", "1.0"}, {"extras", {{"version", "1.0"}}}};
+  EXPECT_THAT(refusal(new_one), Not(HasSubstr("glTF 1.0")));
+}
+
+TEST_F(Misread, TexturesWithoutAnIndex) {
+  GltfBuilder b;
+  b.Triangle();
+  const json below = {{"index", -1}}, absent = {{"texCoord", 0}};
+  b.Append("materials", {{"name", "Red"},
+                         {"pbrMetallicRoughness", {{"baseColorTexture", below}, {"metallicRoughnessTexture", absent}}},
+                         {"normalTexture", json::object()},
+                         {"emissiveTexture", below}});
+  b.Append("materials", {{"name", "Sound"}});
+  const auto warnings = [&] { return Load(Write("scene.glb", b.Glb())).warnings; };
+  EXPECT_THAT(warnings(), ElementsAre(AllOf(HasSubstr("textures whose index is missing or below 0 are left out"),
+                                            HasSubstr("first: material 0 'Red', baseColorTexture, 4 in all"))));
+  b.json["materials"][0] = {
+      {"extensions", {{"KHR_materials_pbrSpecularGlossiness", {{"diffuseTexture", {{"index", -2}}}}}}}};
+  EXPECT_THAT(warnings(), ElementsAre(HasSubstr("SpecularGlossiness"), HasSubstr("(material 0, diffuseTexture)")));
+  b.json["materials"][0] = {
+      {"extras", {{"scumble", {{"normal", {{"space", "TANGENT"}, {"strength", 1}, {"texture", {{"index", -1}}}}}}}}}};
+  EXPECT_THAT(warnings(), ::testing::Contains(HasSubstr("(material 0, normal)")));
+}
+
+}  // namespace
+}  // namespace scumble
