@@ -16,13 +16,13 @@ namespace {
 
 constexpr std::uint32_t kNone = ~0u;
 
-glm::dvec3 UnitOrZero(const glm::dvec3& v) {
+glm::dvec3 DirectionOrZero(const glm::dvec3& v) {
   const double length = glm::length(v);
   return length > FLT_MIN && std::isfinite(length) ? v / length : glm::dvec3(0.0);
 }
 
 glm::dvec3 LaidInto(const glm::dvec3& normal, const glm::dvec3& v) {
-  return UnitOrZero(v - normal * glm::dot(normal, v));
+  return DirectionOrZero(v - normal * glm::dot(normal, v));
 }
 
 // −0 and 0 are one value; every other pattern of bits is one of its own, NaN too.
@@ -74,7 +74,7 @@ struct Surface {
       const glm::vec3 &p = mesh.positions[v], &n = mesh.normals[v];
       const float height = exact_v.empty() ? given[v].y : exact_v[v];
       positions.push_back(unstretch * glm::dvec3(p));
-      normals.push_back(UnitOrZero(normal_before * glm::dvec3(n)));
+      normals.push_back(DirectionOrZero(normal_before * glm::dvec3(n)));
       const glm::dvec3 moved = glm::dmat3(uv_transform) * glm::dvec3(given[v], 1.0);
       uvs.push_back(plain ? glm::dvec2(given[v].x, height) : glm::dvec2(moved.x, -moved.y));
       keys.push_back(
@@ -100,7 +100,7 @@ class TangentGroups {
   std::vector<glm::vec4> Tangents() const {
     std::vector<glm::vec4> tangents;
     for (const Group& group : groups_) {
-      const glm::dvec3 tangent = UnitOrZero(group.sum);
+      const glm::dvec3 tangent = DirectionOrZero(group.sum);
       tangents.emplace_back(tangent == glm::dvec3(0.0) ? glm::vec3(1, 0, 0) : glm::vec3(tangent),
                             group.upright ? 1.0f : -1.0f);
     }
@@ -153,7 +153,7 @@ class TangentGroups {
     face.is_line = p1 == zero || p2 == zero || p1 == p2;
     face.shapeless =
         face.is_line || !(std::abs(area) > FLT_MIN && glm::length(along_u) > FLT_MIN && glm::length(along_v) > FLT_MIN);
-    if (!face.shapeless) face.along_u = UnitOrZero(along_u) * (face.upright ? 1.0 : -1.0);
+    if (!face.shapeless) face.along_u = DirectionOrZero(along_u) * (face.upright ? 1.0 : -1.0);
     return face;
   }
 
