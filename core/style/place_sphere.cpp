@@ -47,7 +47,7 @@ std::string WhyNone(const FoundSphere& found) {
              "around the sphere";
     case SphereDoubt::kUnevenGround:
       return "its ground has several colours, as paper that is lit unevenly: cut the sphere out onto transparency, or "
-             "crop the picture to the square around it";
+             "crop the picture to the square around it; or give the guides of the scene that it shows";
     case SphereDoubt::kNone:
     case SphereDoubt::kNoCircle:
       break;
