@@ -27,25 +27,17 @@ from pathlib import Path
 import bpy
 
 sys.dont_write_bytecode = True
-FOLDER = Path(__file__).resolve().parent
-sys.path.insert(0, str(FOLDER))  # Blender does not put a script's own folder there
-try:
-    import blend_check
-    import export_bends
-    import export_flat
-    import export_glb
-    import export_hair
-    import export_lamps
-    import export_materials
-    import export_rest
-    import export_stretch
-    from blend_common import Unsupported, cameras_of, check_version, choose_layer, choose_scene, fail, say
-except ModuleNotFoundError as missing:
-    if not missing.name.startswith(("blend_", "export_", "guide_")):
-        raise
-    print(f"scumble: error: {FOLDER / missing.name}.py is missing: install Scumble again, "
-          "or export the scene to .glb by hand", file=sys.stderr)
-    sys.exit(5)  # as in blend_common.py, which may be what is missing
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+import blend_check  # noqa: E402  (Blender does not put a script's own folder on the path)
+import export_bends  # noqa: E402
+import export_flat  # noqa: E402
+import export_glb  # noqa: E402
+import export_hair  # noqa: E402
+import export_lamps  # noqa: E402
+import export_materials  # noqa: E402
+import export_rest  # noqa: E402
+import export_stretch  # noqa: E402
+from blend_common import Unsupported, cameras_of, check_version, choose_layer, choose_scene, fail, say  # noqa: E402
 
 
 def export(scene, view_layer, output, unsupported):

@@ -32,21 +32,14 @@ from pathlib import Path
 import bpy
 
 sys.dont_write_bytecode = True
-FOLDER = Path(__file__).resolve().parent
-sys.path.insert(0, str(FOLDER))  # Blender does not put a script's own folder there
-try:
-    import blend_check
-    import blend_common
-    import guide_camera
-    import guide_import
-    import guide_instances
-    import guide_materials
-    from blend_common import Unsupported, check_version, fail, say
-except ModuleNotFoundError as missing:
-    if not missing.name.startswith(("blend_", "export_", "guide_")):
-        raise
-    print(f"scumble: error: {FOLDER / missing.name}.py is missing: install Scumble again", file=sys.stderr)
-    sys.exit(5)  # as in blend_common.py, which may be what is missing
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+import blend_check  # noqa: E402  (Blender does not put a script's own folder on the path)
+import blend_common  # noqa: E402
+import guide_camera  # noqa: E402
+import guide_import  # noqa: E402
+import guide_instances  # noqa: E402
+import guide_materials  # noqa: E402
+from blend_common import Unsupported, check_version, fail, say  # noqa: E402
 
 DATA_PASSES = {"normal", "z", "position", "diffuse_color", "glossy_color", "emit", "cryptomatte_object",
                "cryptomatte_material"}

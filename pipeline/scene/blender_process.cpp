@@ -128,6 +128,19 @@ std::string ReasonFrom(const std::vector<std::string>& lines) {
   return reason.empty() ? "it says nothing" : reason;
 }
 
+// The script of ours that another one looked for in vain; empty where none did.
+std::string MissingScript(const std::vector<std::string>& lines) {
+  const std::string mark = "ModuleNotFoundError: No module named '";
+  for (const std::string& line : lines) {
+    if (line.rfind(mark, 0) != 0) continue;
+    const std::string name = line.substr(mark.size(), line.find('\'', mark.size()) - mark.size());
+    for (const char* ours : {"blend_", "export_", "guide_"}) {
+      if (name.rfind(ours, 0) == 0) return name + ".py";
+    }
+  }
+  return "";
+}
+
 // What the user can do without this Blender.
 std::string ByHand(const BlenderTask& task) {
   return task.can_be_exported ? ", or export the scene to .glb by hand" : "";
@@ -238,7 +251,12 @@ Status CheckProgramEnd(const Expected<ProgramEnd>& ended, const BlenderTask& tas
                      : ended->code > 128 && ended->code <= 128 + SIGRTMAX ? ended->code - 128
                                                                           : 0;
   if (signal != 0) return InputError(task.scene + ": " + task.program + SignalText(signal));
-  const std::string reason = ReasonFrom(LinesOf(log));
+  const std::vector<std::string> lines = LinesOf(log);
+  if (const std::string script = MissingScript(lines); !script.empty()) {
+    return UnavailableError(task.scene + ": blender_scripts/" + script + " is missing: install Scumble again" +
+                            ByHand(task));
+  }
+  const std::string reason = ReasonFrom(lines);
   if (ended->code == kExitVersion) return UnavailableError(task.scene + ": " + reason);
   std::error_code failed;
   if (ended->code != 0 || !fs::is_regular_file(product, failed)) {

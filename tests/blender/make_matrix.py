@@ -392,7 +392,8 @@ def hair(shape):
         room(diffuse_set())
         for name in ("Ball", "Box", "Ring", "Small"):
             bpy.data.objects.remove(bpy.data.objects[name])
-        matrix_hair.build([material("diffuse", (0.6, 0.6, 0.6)), material("diffuse", (0.7, 0.5, 0.2))], shape)
+        matrix_hair.build([material("diffuse", (0.6, 0.6, 0.6)), material("diffuse", (0.7, 0.5, 0.2)),
+                           material("diffuse", (1, 1, 1), 0.5, picture("Waves"))], shape)
         lamp("SUN", 4, KEY, angle=0.0)
     return build
 

@@ -6,7 +6,8 @@ import bpy
 
 def emitter(name, place, materials):
     data, shape = bpy.data.meshes.new(name), bmesh.new()
-    bmesh.ops.create_uvsphere(shape, u_segments=24, v_segments=12, radius=0.5)
+    shape.loops.layers.uv.new("UVMap")
+    bmesh.ops.create_uvsphere(shape, u_segments=24, v_segments=12, radius=0.5, calc_uvs=True)
     for face in shape.faces:
         face.smooth = True
     shape.to_mesh(data)
@@ -58,10 +59,10 @@ def made_by_nodes(name, place, material):
 
 
 def build(materials, shape):
-    """`materials`: of the bodies, of the hair."""
+    """`materials`: of the bodies, of the hair, and one with a texture."""
     bpy.context.scene.cycles_curves.shape = shape
-    body, hair = materials
-    grow(emitter("Ball", (-1.2, 0.0, 0.6), [body, hair]))
+    body, hair, textured = materials
+    grow(emitter("Ball", (-1.2, 0.0, 0.6), [body, textured]))
     grow(emitter("Tufts", (0.0, 0.3, 0.6), [body, hair]), count=12, child_type="INTERPOLATED", rendered_child_count=6,
          child_nbr=1, clump_factor=0.3)
     alone = emitter("Alone", (1.2, 0.0, 0.6), [hair])

@@ -213,6 +213,14 @@ def make_gltf():
         return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks
     write("gltf", "small.glb", glb(small))
     write("gltf", "everything.glb", glb(large))
+    strand = accessor(floats(0, 0, 0, 0, 0, 0, 0, 1, 0, 1, 2, 0, 1, 2, 0), 5, "VEC3")
+    hair = {"mode": 0, "indices": accessor(struct.pack("<2H", 0, 1), 2, "SCALAR", 5123),
+            "attributes": {"POSITION": strand, "TEXCOORD_0": accessor(floats(*(0.2, 0.8) * 5), 5, "VEC2"),
+                           "_SCUMBLE_RADIUS": accessor(floats(0.2, 0.2, 0.1, 0, 0), 5, "SCALAR")}}
+    shapes = [{**hair, "extras": {"scumble": {"curves": {"ribbons": ribbons, "pieces": 5}}}} for ribbons in (True, False)]
+    write("gltf", "hair.glb", glb({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+                                   "nodes": [{"mesh": 0}], "meshes": [{"primitives": shapes}],
+                                   "bufferViews": views, "accessors": accessors}))
     write("gltf", "text.gltf", json.dumps({
         "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
         "buffers": [{"byteLength": 36,

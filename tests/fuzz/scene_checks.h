@@ -14,7 +14,10 @@ namespace scumble::fuzz {
 // The contract of guidegen/scene/scene.h for readers of a scene.
 inline void CheckScene(const Scene& scene) {
   for (const Mesh& mesh : scene.meshes) {
-    SCUMBLE_CHECK_EQ(mesh.normals.size(), mesh.positions.size());
+    SCUMBLE_CHECK_EQ(mesh.normals.size(), mesh.IsCurves() ? 0 : mesh.positions.size());
+    SCUMBLE_CHECK(mesh.triangles.empty() || !mesh.IsCurves());
+    SCUMBLE_CHECK_EQ(mesh.curves.radii.size(), mesh.IsCurves() ? mesh.positions.size() : 0);
+    for (const std::uint32_t first : mesh.curves.segments) SCUMBLE_CHECK_LE(first + 4, mesh.positions.size());
     SCUMBLE_CHECK(mesh.tangents.empty() || mesh.tangents.size() == mesh.positions.size());
     for (const glm::uvec3& triangle : mesh.triangles) {
       SCUMBLE_CHECK_LT(std::max({triangle.x, triangle.y, triangle.z}), mesh.positions.size());
@@ -27,7 +30,8 @@ inline void CheckScene(const Scene& scene) {
 inline bool IsSmall(const Scene& scene) {
   std::size_t triangles = 0;
   for (const Instance& instance : scene.instances) {
-    triangles += scene.meshes[std::size_t(instance.mesh)].triangles.size() + 1;
+    const Mesh& mesh = scene.meshes[std::size_t(instance.mesh)];
+    triangles += mesh.triangles.size() + mesh.curves.segments.size() + 1;
   }
   return triangles <= 10'000 && scene.lights.size() <= 100;
 }

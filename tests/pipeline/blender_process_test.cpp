@@ -229,7 +229,7 @@ TEST_F(BlenderProcess, AnInstallationThatLacksAScriptIsNamed) {
   fails((scripts / "export_scene.py").string() + " is missing", true, false);
   fs::copy(SCUMBLE_SOURCE_DIR "/blender_scripts", scripts);
   fs::remove(scripts / "blend_check.py");
-  fails((scripts / "blend_check.py").string() + " is missing", true, true);
+  fails("blender_scripts/blend_check.py is missing", true, true);
   fs::remove(scripts / "render_guides.py");
   fails((scripts / "render_guides.py").string() + " is missing", false, true);
 }

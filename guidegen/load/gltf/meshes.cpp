@@ -59,6 +59,7 @@ class PrimitiveLoader {
   Expected<std::optional<Mesh>> Load() {
     SCUMBLE_ASSIGN(std::optional<Curves> curves, ReadCurvesExtras(primitive_, file_ + ": " + name_));
     if (curves) {
+      if (request_) return InputError(file_ + ": " + name_ + " is hair, which cannot be deformed; export each frame");
       SCUMBLE_ASSIGN(mesh_, LoadCurves(load_, primitive_, name_, *std::move(curves)));
       SCUMBLE_RETURN_IF_ERROR(ChooseMaterial());
       return mesh_.IsCurves() ? std::optional<Mesh>(std::move(mesh_)) : std::nullopt;

@@ -210,6 +210,13 @@ TEST_F(LoadHair, WhatDoesNotFitTogetherIsRefused) {
   GltfBuilder pieces = Hair();
   Primitive(pieces)["extras"]["scumble"]["curves"]["pieces"] = 1000;
   EXPECT_THAT(Refusal(pieces), HasSubstr("pieces"));
+
+  GltfBuilder deformed = Hair();
+  const int moved = deformed.Floats({0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 2, 0, 0, 2, 0}, 3);
+  Primitive(deformed)["targets"] = {{{"POSITION", moved}}};
+  deformed.json["meshes"][0]["weights"] = {0.5};
+  deformed.Animate(0, "weights", {0, 1}, {0, 1});
+  EXPECT_THAT(Refusal(deformed), HasSubstr("deformed"));
 }
 
 }  // namespace
