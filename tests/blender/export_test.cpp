@@ -1,5 +1,5 @@
-// Blender scenes, through the real Blender: the loaded export against Blender's own numbers, and the commands that run
-// the export themselves. tests/blender/make_cases.py makes the scenes.
+// Blender scenes, through the real Blender: the loaded export against Blender's own numbers. export_verbs_test.cpp has
+// the commands that run the export themselves.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -13,10 +13,9 @@
 #include "guidegen/guidegen.h"
 #include "guidegen/load/load_scene.h"
 #include "guidegen/rays/camera_rays.h"
-#include "tests/support/cli_harness.h"
+#include "tests/support/blender_cases.h"
 #include "tests/support/cycles_passes.h"
 #include "tests/support/numbers.h"
-#include "tests/support/scoped_variable.h"
 
 namespace scumble {
 namespace {
@@ -27,53 +26,10 @@ using testing::Contains;
 using testing::HasSubstr;
 using testing::UnorderedElementsAre;
 
-constexpr const char* kBlender = "blender -b -noaudio --factory-startup -Y ";
-
-// The scenes of make_cases.py, made and exported once for all tests.
-class Cases : public testing::Environment {
- public:
-  void SetUp() override {
-    folder_ = new TemporaryFolder;
-    Shell(kBlender + ("-P " + Source("tests/blender/make_cases.py")) + " -- --output " + folder_->path().string());
-    for (const char* name : {"lamps", "materials", "objects", "deformed", "cameras", "rendered", "broken", "bordered"})
-      Export(name, "", name);
-    Export("bordered", " --scene Cropped", "cropped");
-    Export("objects", " --frame 6", "objects6");
-    Export("deformed", " --frame 6", "deformed6");
-    expected_ = nlohmann::json::parse(std::ifstream(*folder_ / "expected.json"), nullptr, false);
-    ASSERT_TRUE(expected_.is_object()) << "make_cases.py wrote no expected.json";
-  }
-  void TearDown() override { delete folder_; }
-
-  // Cycles' data passes through these cameras of the scene, as "Camera:160x90".
-  static void Render(const std::string& scene, const std::string& views) {
-    Shell(kBlender + File(scene + ".blend").string() + " -P " + Source("tests/blender/render_normals.py") +
-          " -- --output " + folder_->path().string() + " --view " + views);
-  }
-
-  static fs::path File(const std::string& name) { return *folder_ / name; }
-  static const nlohmann::json& Expected(const std::string& name) { return expected_[name]; }
-  static std::string Source(const std::string& name) { return std::string(SCUMBLE_SOURCE_DIR) + "/" + name; }
-
- private:
-  static void Shell(const std::string& command) {
-    const std::string log = (*folder_ / "log").string();
-    if (std::system((command + " > " + log + " 2>&1").c_str()) == 0) return;
-    std::ifstream stream(log);
-    FAIL() << command << "\n" << std::string(std::istreambuf_iterator<char>(stream), {});
-  }
-  static void Export(const std::string& scene, const std::string& more, const std::string& name) {
-    Shell(kBlender + File(scene + ".blend").string() + " -P " + Source("blender_scripts/export_scene.py") +
-          " -- --output " + File(name + ".glb").string() + more);
-  }
-
-  inline static TemporaryFolder* folder_ = nullptr;
-  inline static nlohmann::json expected_;
-};
-const testing::Environment* const kCases = testing::AddGlobalTestEnvironment(new Cases);
+const testing::Environment* const kCases = testing::AddGlobalTestEnvironment(new BlenderCases);
 
 Scene Loaded(const std::string& name) {
-  Expected<Scene> scene = LoadScene(Cases::File(name + ".glb"));
+  Expected<Scene> scene = LoadScene(BlenderCases::File(name + ".glb"));
   EXPECT_TRUE(scene) << (scene ? "" : scene.error().message);
   return scene ? std::move(*scene) : Scene();
 }
@@ -400,11 +356,11 @@ void ExpectBoxes(const Scene& scene, const nlohmann::json& expected) {
 }
 
 TEST(BlenderObjects, StandWhereTheRenderHasThem) {
-  ExpectBoxes(Loaded("objects"), Cases::Expected("objects")["1"]);
-  EXPECT_GT(Cases::Expected("objects")["1"].size(), 12u);
+  ExpectBoxes(Loaded("objects"), BlenderCases::Expected("objects")["1"]);
+  EXPECT_GT(BlenderCases::Expected("objects")["1"].size(), 12u);
 }
 
-TEST(BlenderObjects, AtTheFrameAskedFor) { ExpectBoxes(Loaded("objects6"), Cases::Expected("objects")["6"]); }
+TEST(BlenderObjects, AtTheFrameAskedFor) { ExpectBoxes(Loaded("objects6"), BlenderCases::Expected("objects")["6"]); }
 
 TEST(BlenderObjects, InstancesShareTheirMesh) {
   const Scene scene = Loaded("objects");
@@ -452,7 +408,7 @@ TEST(BlenderCameras, TheActiveOneComesFirst) {
 
 TEST(BlenderCameras, ProjectAsBlenderDoesInEveryPicture) {
   const Scene scene = Loaded("cameras");
-  for (const auto& [name, entry] : Cases::Expected("cameras").items()) {
+  for (const auto& [name, entry] : BlenderCases::Expected("cameras").items()) {
     const Camera& camera = Named(scene.cameras, name);
     for (const auto& [size, rows] : entry["projection"].items()) {
       const int width = std::stoi(size), height = std::stoi(size.substr(size.find('x') + 1));
@@ -485,7 +441,7 @@ void ExpectLikeCycles(const GuideSet& ours, const CyclesPasses& theirs, const st
   ASSERT_EQ(ours.width(), theirs.width) << view;
   ASSERT_EQ(ours.height(), theirs.height) << view;
   const glm::dmat3 world_from_view = glm::transpose(glm::dmat3(ours.camera->view_from_world));
-  const nlohmann::json& pass_indices = Cases::Expected("rendered");
+  const nlohmann::json& pass_indices = BlenderCases::Expected("rendered");
   std::vector<double> angles, depths, positions;
   std::size_t wrong_ids = 0, different_coverage = 0;
   for (std::size_t i = 0; i < ours.pixel_count(); ++i) {
@@ -520,7 +476,7 @@ TEST(BlenderRenders, CyclesSeesTheSameSurfaces) {
                                           "Vertical:240x160", "Ortho:200x200", "Ortho:120x200"};
   std::string all;
   for (const std::string& view : views) all += " " + view;
-  Cases::Render("rendered", all);
+  BlenderCases::Render("rendered", all);
   const Scene scene = Loaded("rendered");
   for (const std::string& view : views) {
     const std::size_t colon = view.find(':');
@@ -532,13 +488,13 @@ TEST(BlenderRenders, CyclesSeesTheSameSurfaces) {
     ASSERT_TRUE(ours) << ours.error().message;
     std::string file = view;
     file[colon] = '-';
-    ExpectLikeCycles(ours->guides, ReadCycles(Cases::File(file + ".exr")), view);
+    ExpectLikeCycles(ours->guides, ReadCycles(BlenderCases::File(file + ".exr")), view);
   }
 }
 
 // At 250x170 the border runs from 53.25 to 194.25 and from below from 21.6 to 136.5.
 TEST(BlenderRenders, BordersAreThoseOfItsOwnPictures) {
-  Cases::Render("bordered", "Auto:250x170 Shifted:250x170 Ortho:250x170");
+  BlenderCases::Render("bordered", "Auto:250x170 Shifted:250x170 Ortho:250x170");
   const Scene bordered = Loaded("bordered"), cropped = Loaded("cropped");
   for (const std::string camera : {"Auto", "Shifted", "Ortho"}) {
     const auto cast = [&](const Scene& scene, int width, int height) {
@@ -550,7 +506,7 @@ TEST(BlenderRenders, BordersAreThoseOfItsOwnPictures) {
       return ours->guides;
     };
     const GuideSet frame = cast(bordered, 250, 170);
-    ExpectLikeCycles(frame, ReadCycles(Cases::File("Bordered-" + camera + "-250x170.exr")), camera);
+    ExpectLikeCycles(frame, ReadCycles(BlenderCases::File("Bordered-" + camera + "-250x170.exr")), camera);
     std::set<int> columns, rows;
     for (std::size_t i = 0; i < frame.pixel_count(); ++i) {
       if (frame.Plane(Layer::kCoverage)[i] > 0.0f) columns.insert(int(i) % 250), rows.insert(int(i) / 250);
@@ -561,221 +517,9 @@ TEST(BlenderRenders, BordersAreThoseOfItsOwnPictures) {
     const Camera& crop = Named(cropped.cameras, camera);
     ASSERT_TRUE(crop.border && crop.border->crop);
     EXPECT_EQ(crop.border_size, "141x115");
-    ExpectLikeCycles(cast(cropped, 141, 115), ReadCycles(Cases::File("Cropped-" + camera + "-250x170.exr")),
+    ExpectLikeCycles(cast(cropped, 141, 115), ReadCycles(BlenderCases::File("Cropped-" + camera + "-250x170.exr")),
                      camera + " cropped");
   }
-}
-
-// The program beside its scripts, wherever it was built.
-class BlenderVerbs : public CliTest {
- protected:
-  BlenderVerbs() : settings_(CopyProgram("home/bin")) {
-    fs::create_directory_symlink(Cases::Source("blender_scripts"), At("home/blender_scripts"));
-    fs::create_directory_symlink(Cases::Source("exemplars"), At("home/exemplars"));
-  }
-  CommandResult RunHere(const Arguments& arguments) { return Run(arguments, settings_); }
-  void ExpectErrorHere(const Arguments& arguments, int code, const std::vector<std::string>& parts) {
-    ExpectError(arguments, code, parts, settings_);
-  }
-  void WriteProgram(const std::string& name, const std::string& body) {
-    WriteText(name, "#!/bin/sh\n" + body + "\n");
-    fs::permissions(At(name), fs::perms::owner_all);
-  }
-  static std::string Blend(const std::string& name) { return Cases::File(name + ".blend").string(); }
-
- private:
-  CommandSettings settings_;
-};
-
-TEST_F(BlenderVerbs, GuidegenExportsByItself) {
-  const Arguments tail = {"--size", "96x54", "--view", "20,30", "-o"};
-  fs::create_directory(At("tmp"));
-  const ScopedVariable temporary("TMPDIR", At("tmp").string());
-  const CommandResult run = RunHere(With(With({"guidegen", Blend("objects"), "--frame", "6"}, tail), {"blend.exr"}));
-  ASSERT_EQ(run.code, 0) << run.err;
-  EXPECT_THAT(run.err, AllOf(HasSubstr("objects.blend: blender exports it at frame 6"), HasSubstr("'Smoke'")));
-  RunOk(With(With({"guidegen", Cases::File("objects6.glb").string()}, tail), {"glb.exr"}));
-  const CommandResult compared = Run({"compare", "blend.exr", "glb.exr"});
-  EXPECT_EQ(compared.code, 0) << compared.out;
-  EXPECT_TRUE(fs::is_empty(At("tmp"))) << "a temporary export is left behind";
-}
-
-TEST_F(BlenderVerbs, StylizeToo) {
-  WriteStyle("style");
-  const CommandResult run = RunHere({"stylize", Blend("cameras"), "--style", "style", "--size", "64", "-o", "p.png"});
-  ASSERT_EQ(run.code, 0) << run.err;
-  EXPECT_TRUE(Exists("p.png"));
-}
-
-// A .blend is measured in the frame and view in which it is painted.
-TEST_F(BlenderVerbs, TradeoffAndBudgetTakeAFrame) {
-  WriteStyle("style");
-  const Arguments seen = {"--style", "style", "--size", "64x36", "--view", "20,30", "--frame", "6"};
-  const Arguments stylize = With({"stylize", Blend("objects")}, seen);
-  ASSERT_EQ(RunHere(With(stylize, {"-o", "plain.png"})).code, 0);
-  const CommandResult within = RunHere(With(stylize, {"--budget-ms", "3600000", "--json", "-o", "picked.png"}));
-  ASSERT_EQ(within.code, 0) << within.err;
-  EXPECT_EQ(within.Json().at("budget").at("picked"), "the style");
-  EXPECT_EQ(Bytes("picked.png"), Bytes("plain.png"));
-  const CommandResult trade = RunHere(
-      With(With({"tradeoff", Blend("objects")}, seen), {"--only", "method", "--repeat", "1", "--json", "-o", "out"}));
-  ASSERT_EQ(trade.code, 0) << trade.err;
-  const nlohmann::json ways = trade.Json().at("ways");
-  ASSERT_EQ(ways.size(), 3u);
-  std::istringstream options(ways[0].at("options").get<std::string>());
-  const Arguments words{std::istream_iterator<std::string>(options), {}};
-  ASSERT_EQ(RunHere(With(With({"stylize", Blend("objects")}, words), {"-o", "again.png"})).code, 0);
-  EXPECT_TRUE(Pixels("out/pictures/01-the-style.png") == Pixels("again.png")) << options.str();
-  for (const auto& way : ways) EXPECT_TRUE(way.at("memory_bytes").is_null()) << "Blender would run for each";
-}
-
-// One Blender for the range; more frames than it may be ahead, backwards and with a stop in between.
-TEST_F(BlenderVerbs, ARangeIsItsFramesByteForByte) {
-  const Arguments guidegen = {"guidegen", Blend("objects"), "--size", "64x36", "--view", "20,30"};
-  const CommandResult range = RunHere(With(guidegen, {"--frames", "6-1,-2", "-o", "range.##.exr"}));
-  ASSERT_EQ(range.code, 0) << range.err;
-  EXPECT_THAT(range.err, HasSubstr("objects.blend: blender exports frames 6-1,-2"));
-  EXPECT_EQ(range.err.find("'Smoke'"), range.err.rfind("'Smoke'")) << "a warning is given once\n" << range.err;
-  for (const std::string frame : {"6", "2", "-2"}) {
-    const CommandResult one = RunHere(With(guidegen, {"--frame", frame, "-o", "one.exr"}));
-    ASSERT_EQ(one.code, 0) << one.err;
-    const std::string name = frame == "-2" ? "range.-02.exr" : "range.0" + frame + ".exr";
-    EXPECT_EQ(Bytes(name), Bytes("one.exr")) << frame;
-  }
-  EXPECT_NE(Bytes("range.06.exr"), Bytes("range.02.exr")) << "nothing moves";
-  // With nothing to make there is no Blender to miss.
-  const Arguments again =
-      With(guidegen, {"--frames", "1-6", "-o", "range.##.exr", "--resume", "--blender", "no/blender"});
-  const CommandResult kept = RunHere(again);
-  EXPECT_EQ(kept.code, 0) << kept.err;
-  EXPECT_THAT(kept.out, HasSubstr("0 made, 6 kept"));
-
-  WriteStyle("style");
-  const Arguments stylize = {"stylize", Blend("objects"), "--size", "64x36", "--view", "20,30", "--style", "style"};
-  ASSERT_EQ(RunHere(With(stylize, {"--frames", "5-6", "-o", "p#.png"})).code, 0);
-  RunOk({"transfer", "range.##.exr", "--style", "style", "--frame", "6", "-o", "two.png"});
-  EXPECT_EQ(Bytes("p6.png"), Bytes("two.png"));
-
-  WriteProgram("stops", "echo 'scumble: error: the export stopped' >&2; exit 3");
-  const CommandResult stopped = RunHere(With(guidegen, {"--frames", "1-3", "-o", "s#.exr", "--blender", "./stops"}));
-  EXPECT_EQ(stopped.code, 3);
-  EXPECT_THAT(stopped.Error(), AllOf(HasSubstr("3 of 3 frames were not made: 1-3"), HasSubstr("the export stopped")));
-  ExpectErrorHere(With(guidegen, {"--frames", "1-3", "-o", "s#.exr", "--blender", "no/blender"}), 5, {"no/blender"});
-}
-
-TEST_F(BlenderVerbs, MotionTakesTheNextFrameToo) {
-  const Arguments guidegen = {"guidegen", Blend("objects"), "--size", "64x36", "--view", "20,30", "--layers", "motion"};
-  const CommandResult range = RunHere(With(guidegen, {"--frames", "5-1x-2,2", "-o", "m#.exr"}));
-  ASSERT_EQ(range.code, 0) << range.err;
-  EXPECT_THAT(range.err, HasSubstr("exports frames 5-6,3-4,1-2"));
-  ASSERT_EQ(RunHere(With(guidegen, {"--frame", "3", "-o", "one.exr"})).code, 0);
-  EXPECT_EQ(Bytes("one.exr"), Bytes("m3.exr"));
-  GuideReadOptions read;
-  read.required = AlwaysWritten().Add(Layer::kMotion);
-  const auto guides = ReadGuides(At("m2.exr"), read);
-  ASSERT_TRUE(guides) << guides.error().message;
-  const auto motion = guides->Plane(Layer::kMotion, 0);
-  EXPECT_TRUE(std::any_of(motion.begin(), motion.end(), [](float x) { return x != 0.0f; })) << "nothing moves";
-}
-
-// In objects.blend the object One wants oil, and the material Grey to be left as rendered.
-TEST_F(BlenderVerbs, StylesOfTheFileAreHeeded) {
-  WriteStyle("style");
-  const Arguments stylize = {"stylize", Blend("objects"), "--size", "64x36", "--view", "20,30", "--style", "style"};
-  const auto picture = [&](const Arguments& more) {
-    const CommandResult run = RunHere(With(With(stylize, more), {"-o", "p.png"}));
-    EXPECT_EQ(run.code, 0) << run.err;
-    return Pixels("p.png");
-  };
-  const std::string heeded = picture({}), plain = picture({"--no-scene-styles"});
-  EXPECT_FALSE(heeded == plain);
-  EXPECT_TRUE(picture({"--no-scene-styles", "--assign", "Grey=rendered", "--assign", "One=oil"}) == heeded);
-  EXPECT_TRUE(picture({"--assign", "*=style"}) == plain);
-  ASSERT_EQ(RunHere(With(stylize, {"--frames", "1-2", "-o", "r#.png"})).code, 0);
-  ASSERT_EQ(RunHere(With(stylize, {"--frame", "2", "-o", "p.png"})).code, 0);
-  EXPECT_EQ(Bytes("r2.png"), Bytes("p.png"));
-}
-
-TEST_F(BlenderVerbs, ScenesAndViewLayersAreChosenByName) {
-  const auto objects = [&](const Arguments& more, const std::vector<std::string>& notes) {
-    const CommandResult run = RunHere(With({"info", Blend("layers"), "--json"}, more));
-    EXPECT_EQ(run.code, 0) << run.err;
-    for (const std::string& note : notes) EXPECT_THAT(run.err, HasSubstr(note));
-    EXPECT_EQ(run.err.find("takes another") == std::string::npos, notes.empty()) << run.err;
-    return run.Json();
-  };
-  const auto names = [](std::vector<std::string> list) { return nlohmann::json(list); };
-  EXPECT_EQ(
-      objects({}, {"scene 'Shot', which was open when the file was saved, of 'Bare', 'Other', 'Shot': --scene takes",
-                   "view layer 'Fore', the first of those that are rendered, 'Fore', 'Rear': --view-layer takes"})
-          .at("objects"),
-      names({"Near"}));
-  EXPECT_EQ(objects({"--scene", "Shot", "--view-layer", "Rear"}, {}).at("objects"), names({"Far", "Farther"}));
-  EXPECT_EQ(objects({"--scene", "Other"}, {}).at("objects"), names({"Alone"}));
-  const auto empty = [&](const Arguments& which, const std::string& why) {
-    const auto warnings = objects(which, {}).at("warnings").get<std::vector<std::string>>();
-    EXPECT_THAT(warnings, ::testing::Contains("nothing is left to draw: " + why));
-  };
-  empty({"--scene", "Shot", "--view-layer", "Spare"},
-        "3 meshes are hidden from render in collection 'Car', 2 meshes are in collection 'Back', which view layer "
-        "'Spare' "
-        "excludes, 1 mesh is hidden from render, 1 mesh is in collection 'Front', which view layer 'Spare' excludes");
-  empty({"--scene", "Bare"}, "scene 'Bare' has no mesh; 'Other', 'Shot' of this file has: choose it with --scene");
-  const Arguments tail = {"--size", "32", "-o", "g.exr"};
-  ExpectErrorHere(With({"guidegen", Blend("layers"), "--scene", "Nope"}, tail), 3,
-                  {"there is no scene 'Nope'; there are: 'Bare', 'Other', 'Shot'"});
-  ExpectErrorHere(With({"guidegen", Blend("layers"), "--view-layer=-nope"}, tail), 3,
-                  {"scene 'Shot' has no view layer '-nope'; there are: 'Spare', 'Fore', 'Rear'"});
-}
-
-// The crop's guides are the picture that Blender renders, and a sequence takes the same names.
-TEST_F(BlenderVerbs, BordersAndNamesReachGuidesAndSequences) {
-  const Arguments guidegen = {"guidegen", Blend("bordered"), "--scene", "Cropped", "--size", "141x115"};
-  const CommandResult run = RunHere(With(guidegen, {"-o", "one.exr"}));
-  ASSERT_EQ(run.code, 0) << run.err;
-  EXPECT_THAT(run.err, HasSubstr("to which it is cropped: 141x115 pixels in the file"));
-  ASSERT_EQ(RunHere(With(guidegen, {"--frames", "1-2", "-o", "r#.exr"})).code, 0);
-  EXPECT_EQ(Layers("r1.exr"), Layers("one.exr"));
-  const Arguments other = {"guidegen", Blend("bordered"), "--size", "141x115", "--frames", "1-2", "-o", "r#.exr"};
-  const CommandResult again = RunHere(With(other, {"--resume"}));
-  EXPECT_THAT(again.out, HasSubstr("2 made, 0 kept")) << "another scene is another setting";
-  EXPECT_THAT(again.err, HasSubstr("the rest is background"));
-}
-
-TEST_F(BlenderVerbs, FailuresAreReadable) {
-  const Arguments tail = {"--size", "32", "-o", "g.exr"};
-  WriteText("bad.blend", "no scene at all");
-  ExpectErrorHere(With({"guidegen", "bad.blend"}, tail), 3, {"bad.blend", "File format is not supported"});
-  ExpectErrorHere(With({"guidegen", "lost.blend"}, tail), 3, {"lost.blend", "no such file"});
-  ExpectErrorHere(With({"guidegen", "bad.blend", "--blender", "no/blender"}, tail), 5,
-                  {"no/blender", "--blender PATH"});
-  WriteProgram("newer", "echo 'scumble: error: this is Blender 9.9.9; only 3.4 is supported' >&2; exit 5");
-  ExpectErrorHere(With({"guidegen", "bad.blend", "--blender", "./newer"}, tail), 5, {"Blender 9.9.9"});
-  WriteProgram("silent", "exit 0");
-  ExpectErrorHere(With({"guidegen", "bad.blend", "--blender", "./silent"}, tail), 3, {"./silent", "says nothing"});
-  WriteProgram("crashing", "kill -SEGV $$");
-  ExpectErrorHere(With({"guidegen", "bad.blend", "--blender", "./crashing"}, tail), 3, {"./crashing crashed"});
-  EXPECT_FALSE(Exists("g.exr"));
-}
-
-TEST_F(BlenderVerbs, OptionsForBlenderNeedABlendFile) {
-  WriteText("s.gltf", TriangleGltf(false));
-  ExpectErrorHere({"guidegen", "s.gltf", "--blender", "blender", "-o", "g.exr"}, 2, {"--blender", "s.gltf"});
-  for (const std::string option : {"--scene", "--view-layer"}) {
-    for (const std::string verb : {"guidegen", "stylize", "tradeoff", "info", "crosscheck"}) {
-      Arguments arguments = {verb, "s.gltf", option, "Shot"};
-      if (verb == "stylize" || verb == "tradeoff") arguments = With(arguments, {"--style", "oil"});
-      if (verb == "stylize" || verb == "guidegen") arguments = With(arguments, {"-o", "g.exr"});
-      ExpectErrorHere(arguments, 2, {option + " is for .blend scenes; s.gltf"});
-      arguments[3] = "";
-      ExpectErrorHere(arguments, 2, {option});
-    }
-  }
-}
-
-TEST_F(BlenderVerbs, WithoutTheScriptTheyAreNotBuiltIn) {
-  fs::remove(At("home/blender_scripts"));
-  ExpectErrorHere({"guidegen", Blend("lamps"), "-o", "g.exr"}, 5, {"lamps.blend", "export_scene.py is not found"});
 }
 
 TEST(BlenderExtras, BrokenOnesAreNamed) {

@@ -17,6 +17,9 @@
 namespace scumble {
 namespace {
 
+constexpr const char* kRemedyForOldGltf =
+    "; expected glTF 2.0: convert it, for example with gltf-pipeline, or export it again";
+
 // tinygltf walks and frees extras by recursion; real files nest a dozen levels.
 constexpr int kMaxJsonDepth = 200;
 // Bytes of files that several buffers name. Exporters write one file for each buffer: tinygltf requires a buffer to be
@@ -45,8 +48,7 @@ Expected<std::span<const unsigned char>> GlbJson(const std::string& file, std::s
     return bad("it has only " + std::to_string(bytes.size()) + " bytes");
   }
   if (ReadU32(bytes, 4) != 2) {
-    return InputError(file + " is binary glTF " + std::to_string(ReadU32(bytes, 4)) +
-                      "; expected glTF 2.0: convert it, for example with gltf-pipeline, or export it again");
+    return InputError(file + " is binary glTF " + std::to_string(ReadU32(bytes, 4)) + kRemedyForOldGltf);
   }
   const std::size_t length = ReadU32(bytes, 8);
   if (length > bytes.size()) {
@@ -242,8 +244,7 @@ Status CheckMajorVersion(const std::string& file, const JsonOutline& outline) {
   if (!is_old && !is_keyed) return Ok();
   std::string found = " is glTF " + (is_old ? Excerpt(outline.version, 40) : "1.0");
   if (is_keyed) found += ", whose " + outline.keyed_list + " have names instead of numbers";
-  return InputError(file + found +
-                    "; expected glTF 2.0: convert it, for example with gltf-pipeline, or export it again");
+  return InputError(file + found + kRemedyForOldGltf);
 }
 
 bool KeepEncoded(tinygltf::Image* image, int, std::string* error, std::string*, int, int, const unsigned char* bytes,
