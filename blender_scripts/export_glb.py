@@ -80,7 +80,9 @@ def camera_of(extras):
 
 def style_of(thing):
     style = thing.get("scumble_style")
-    return {"style": style} if isinstance(style, str) else {}
+    if isinstance(style, str):
+        return {"style": style}
+    return {"style": "catcher"} if getattr(thing, "is_shadow_catcher", False) else {}
 
 
 def add_hair(document, binary, flat, by_name, settings):

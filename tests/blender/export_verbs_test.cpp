@@ -145,6 +145,14 @@ TEST_F(BlenderVerbs, StylesOfTheFileAreHeeded) {
   EXPECT_EQ(Bytes("r2.png"), Bytes("p.png"));
 }
 
+TEST_F(BlenderVerbs, AShadowCatcherIsOneHereToo) {
+  const CommandResult run = RunHere({"info", Blend("layers"), "--scene", "Other", "--json"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(run.Json().at("styles"), nlohmann::json({{"Alone", "catcher"}}));
+  EXPECT_THAT(run.Json().at("warnings").dump(),
+              HasSubstr("object 'Alone': is a shadow catcher: pictures leave it out"));
+}
+
 TEST_F(BlenderVerbs, ScenesAndViewLayersAreChosenByName) {
   const auto objects = [&](const Arguments& more, const std::vector<std::string>& notes) {
     const CommandResult run = RunHere(With({"info", Blend("layers"), "--json"}, more));

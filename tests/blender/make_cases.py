@@ -500,7 +500,8 @@ def bordered():
 
 
 def layers():
-    """Two scenes; in the first one three view layers and a collection that is hidden from render."""
+    """Three scenes; in the first one three view layers and a collection that is hidden from render, in the next one a shadow
+    catcher."""
     scene = bpy.context.scene
     scene.name = "Shot"
     grey = new_material("Grey", "ShaderNodeBsdfDiffuse")[0]
@@ -522,7 +523,7 @@ def layers():
     for name, thing in (("Other", "Alone"), ("Bare", None)):
         other = bpy.data.scenes.new(name)
         if thing:
-            cube(thing, (0, 0, 0), grey, other.collection)
+            cube(thing, (0, 0, 0), grey, other.collection).is_shadow_catcher = True
     bpy.context.window.scene = scene
     return None
 

@@ -171,19 +171,18 @@ def diffuse_set():
             "Small": material("diffuse", (0.3, 0.75, 0.35))}
 
 
-def glossy_set(small=0.0):
-    """Roughness 0.1 to 0.8, and a mirror. One wall stays diffuse, as a source of light to mirror. The other surfaces
-    are rough: caustics of caustics would need thousands of samples on both sides."""
-    return {"Floor": material("glossy", (0.7, 0.7, 0.7), 0.8), "Back": material("glossy", (0.7, 0.7, 0.8), 0.7),
-            "Side": material("diffuse", (0.8, 0.2, 0.12)), "Ball": material("glossy", (0.9, 0.8, 0.5), 0.1),
-            "Box": material("glossy", (0.4, 0.6, 0.9), 0.7), "Ring": material("glossy", (0.8, 0.8, 0.8), 0.6),
+def diffuse_and_glossy_set(small=0.0):
+    """Diffuse surfaces, glossy ones of roughness 0.1 to 0.7, and a mirror. The floor and the side, which light meets first,
+    are diffuse: caustics of caustics would need thousands of samples on both sides."""
+    return {**diffuse_set(), "Back": material("glossy", (0.7, 0.7, 0.8), 0.7),
+            "Ball": material("glossy", (0.9, 0.8, 0.5), 0.1), "Ring": material("glossy", (0.8, 0.8, 0.8), 0.6),
             "Small": material("glossy", (0.9, 0.9, 0.9), small)}
 
 
-def glossy_set_for_points():
+def diffuse_and_glossy_set_for_points():
     """A mirror shows no light without extent; made rougher by the filter for glossy paths it makes fireflies of
     them."""
-    return glossy_set(0.3)
+    return diffuse_and_glossy_set(0.3)
 
 
 def textured_set():
@@ -249,8 +248,6 @@ LAMPS = {
     "area_disc": lambda: lamp("AREA", 400, HIGH, shape="DISK", size=1.2),
     "area_ellipse": lambda: lamp("AREA", 400, KEY, shape="ELLIPSE", size=1.8, size_y=0.7),
 }
-SURFACES = {"diffuse": (diffuse_set, ["LDE", "LDDE", "LD12E"], 128), "glossy": (glossy_set, ["LSE"], 128),
-            "textured": (textured_set, ["LDE", "LSE"], 128)}
 
 
 def world(color, strength):
@@ -410,25 +407,27 @@ SCENES = {  # builder, layers, size, samples
     "instances": (instances, DIFFUSE_LAYERS, LANDSCAPE, 64),
     "principled": (principled, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 128),
     "orthographic": (camera_scene(type="ORTHO", ortho_scale=6.0), DIFFUSE_LAYERS, LANDSCAPE, 64),
-    "shifted": (camera_scene(shift_x=0.12, shift_y=-0.08), DIFFUSE_LAYERS, LANDSCAPE, 64),
     "shapes": (shapes, [], "240x135", 0),
 }
-for fit in ("AUTO", "HORIZONTAL", "VERTICAL"):
-    for way, pixels in (("landscape", LANDSCAPE), ("portrait", PORTRAIT)):
-        SCENES[f"fit_{fit.lower()}_{way}"] = (
-            camera_scene(sensor_fit=fit, sensor_height=30.0, shift_x=0.05), [], pixels, 0)
-TEXTURES_UNDER = ("area_square", "sun")  # a texture is read alike under any lamp
+# AUTO is HORIZONTAL in a landscape and VERTICAL in a portrait, but for the sensor's side that it reads.
+for fit, way in (("AUTO", LANDSCAPE), ("AUTO", PORTRAIT), ("HORIZONTAL", PORTRAIT), ("VERTICAL", LANDSCAPE)):
+    SCENES[f"fit_{fit.lower()}_{way}"] = (
+        camera_scene(sensor_fit=fit, sensor_height=30.0, shift_x=0.12, shift_y=-0.08), [], way, 0)
 for lamp_name, add_lamp in LAMPS.items():
-    for surface, (make_set, about, samples) in SURFACES.items():
-        if surface == "textured" and lamp_name not in TEXTURES_UNDER:
-            continue
-        if surface == "glossy" and lamp_name in ("point", "spot"):
-            make_set = glossy_set_for_points
+    def build(make_set=diffuse_and_glossy_set_for_points if lamp_name in ("point", "spot") else diffuse_and_glossy_set,
+              add_lamp=add_lamp):
+        room(make_set())
+        add_lamp()
+    SCENES[lamp_name] = (build, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 128)
 
-        def build(make_set=make_set, add_lamp=add_lamp):
-            room(make_set())
-            add_lamp()
-        SCENES[f"{lamp_name}_{surface}"] = (build, ["full"] + about, LANDSCAPE, samples)
+
+def textured():
+    """A texture is read alike under any lamp."""
+    room(textured_set())
+    LAMPS["area_square"]()
+
+
+SCENES["textured"] = (textured, ["full", "LDE", "LSE"], LANDSCAPE, 128)
 
 
 HAIR = {  # made only where they are named: they have limits of their own

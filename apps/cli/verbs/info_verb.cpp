@@ -130,17 +130,29 @@ Expected<Json> DescribeStyle(const std::string& path, const Globals& globals) {
   return json;
 }
 
+// Names with commas between, the first ones of many: a meadow has thousands.
+std::string FirstNames(const Json& names) {
+  constexpr std::size_t kShown = 40;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(names.size(), kShown); ++i) {
+    text += (i == 0 ? "" : ", ") + names[i].get<std::string>();
+  }
+  if (names.size() > kShown) text += fmt::format(" and {} more: --json lists them all", names.size() - kShown);
+  return text.empty() ? "none" : text;
+}
+
 std::string ToText(const Json& json) {
   std::size_t widest = 0;
   for (const auto& [key, value] : json.items()) widest = std::max(widest, key.size());
   std::string text;
   for (const auto& [key, value] : json.items()) {
     std::string shown;
-    if (value.is_array()) {
-      // Exemplars have more than names: one a line.
-      const std::string between = key == "exemplars" ? "\n" + std::string(widest + 2, ' ') : ", ";
+    if (key == "exemplars" || key == "warnings") {  // sentences, one a line
+      const std::string between = "\n" + std::string(widest + 2, ' ');
       for (const Json& item : value) shown += (shown.empty() ? "" : between) + item.get<std::string>();
       if (shown.empty()) shown = "none";
+    } else if (value.is_array()) {
+      shown = FirstNames(value);
     } else if (value.is_object()) {
       for (const auto& [name, item] : value.items()) {
         shown += (shown.empty() ? "" : ", ") + name + ": " + (item.is_string() ? item.get<std::string>() : item.dump());

@@ -1,4 +1,6 @@
 // The program's commands: their output, their files, and their exit codes.
+#include <gmock/gmock.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <string>
@@ -443,6 +445,17 @@ TEST_F(CliVerbs, SeedsOfGuidesDecideAndRepeat) {
   RunOk(With(With(With({"guidegen"}, scene), rest), {"-o", "g.exr"}));
   RunOk(With(With({"transfer", "g.exr"}, rest), {"-o", "twice.png"}));
   EXPECT_EQ(Bytes("once.png"), Bytes("twice.png"));
+}
+
+// A meadow of thousands does not fill the screen; a program gets all names.
+TEST_F(CliVerbs, InfoTellsTheFirstOfManyNames) {
+  std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  for (int i = 0; i < 50; ++i) obj += "o Blade" + std::to_string(i) + "\nf 1 2 3\n";
+  WriteText("meadow.obj", obj);
+  const std::string text = RunOk({"info", "meadow.obj"}).out;
+  EXPECT_THAT(text, ::testing::HasSubstr("Blade39 and 10 more: --json lists them all\n"));
+  EXPECT_EQ(text.find("Blade40"), std::string::npos);
+  EXPECT_EQ(RunOk({"info", "meadow.obj", "--json"}).Json()["objects"].size(), 50u);
 }
 
 }  // namespace

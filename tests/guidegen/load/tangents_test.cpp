@@ -99,7 +99,7 @@ TEST(Tangents, PartsOfOneSurfaceShareThem) {
   Mesh whole = halves[0];
   whole.triangles.push_back(halves[1].triangles[0]);
   FillTangents(whole, 0, glm::mat3(1.0f));
-  const std::array<TangentPart, 2> parts = {TangentPart{&halves[0]}, TangentPart{&halves[1], false}};
+  const std::array<TangentPart, 2> parts = {TangentPart{&halves[0], true, {}}, TangentPart{&halves[1], false, {}}};
   const auto sources = FillTangents(parts, 0, glm::mat3(1.0f));
   EXPECT_EQ(sources[0].size(), 4u);
   EXPECT_TRUE(sources[1].empty());
