@@ -267,7 +267,8 @@ Expected<PaintedFrame> Workspace::State::Paint(SceneRequest scene, const StyleRe
   SCUMBLE_RETURN_IF_ERROR(CheckArguments(scene, request.frame));
   SCUMBLE_RETURN_IF_ERROR(LoadStyles(style));
   scene.more_memory = [&](const Size& size, const LayerSet& layers, MemoryNeed& need) {
-    AddPicture(WorkOf(*styles, request, size, layers, false, context), request, need);
+    AddPicture(WorkOf(*styles, request, size, layers, FragmentsExpected(size, scene.aa), false, context), request,
+               need);
   };
   const LayersFor layers_for = [&](const SceneStyleRequests& of_scene) -> Expected<LayerSet> {
     const std::size_t opened = styles->opened.size();

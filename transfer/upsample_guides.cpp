@@ -4,13 +4,16 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/filter/edge_test.h"
 #include "core/image/check.h"
+#include "core/image/fragments.h"
 
 namespace scumble {
 namespace {
@@ -74,6 +77,36 @@ class Upsampler {
     }
   }
 
+  // After all rows. Null: none.
+  std::shared_ptr<const Fragments> LargeFragments() const {
+    if (!from_.fragments || from_.fragments->count() == 0) return nullptr;
+    const Fragments& fragments = *from_.fragments;
+    std::vector<Placed> placed;
+    for (std::size_t begin = 0; begin < fragments.count();) {
+      std::size_t end = begin + 1;
+      while (end < fragments.count() && fragments.pixel[end] == fragments.pixel[begin]) ++end;
+      PlaceFragments(begin, end, placed);
+      begin = end;
+    }
+    std::ranges::stable_sort(placed, {}, &Placed::pixel);
+    auto large = std::make_shared<Fragments>();
+    large->values = GuideSet(static_cast<int>(placed.size()), 1);
+    for (const Placed& one : placed) large->pixel.push_back(one.pixel);
+    for (const LayerInfo& info : AllLayers()) {
+      if (!fragments.values.Has(info.layer)) continue;
+      large->values.AddUnset(info.layer);
+      const float scale = info.layer == Layer::kMotion ? static_cast<float>(factor_) : 1.0f;
+      for (int c = 0; c < ChannelCount(info.layer); ++c) {
+        const auto from = fragments.values.Plane(info.layer, c);
+        const auto to = large->values.Plane(info.layer, c);
+        for (std::size_t i = 0; i < placed.size(); ++i) to[i] = from[placed[i].fragment] * scale;
+      }
+    }
+    const auto coverage = large->values.Plane(Layer::kCoverage);
+    for (std::size_t i = 0; i < placed.size(); ++i) coverage[i] = placed[i].coverage;
+    return large;
+  }
+
  private:
   bool SameSurface(std::size_t p, std::size_t q, int dx, int dy) const {
     if (p == q) return true;
@@ -118,11 +151,23 @@ class Upsampler {
     for (int c = 0; c < 3; ++c) to_.Plane(Layer::kNormal, c)[target] /= length;
   }
 
-  // Coverage between the centres of pixels; beyond the picture's edge its values are repeated.
+  // By sample of a block, in rows.
+  using Block = std::array<float, kMaxUpsampling * kMaxUpsampling>;
+
+  std::size_t Target(int x, int y, int k) const {
+    return to_.Index(x * factor_ + k % factor_, y * factor_ + k / factor_);
+  }
+
   float Between(int x, int y, int u, int v) const {
+    return Between(x, y, u, v, [&](std::size_t q) { return coverage_[q]; });
+  }
+
+  // A coverage between the centres of pixels; beyond the picture's edge its values are repeated.
+  template <class ValueOf>
+  float Between(int x, int y, int u, int v, const ValueOf& value_of) const {
     const Side across = sides_[std::size_t(u)], down = sides_[std::size_t(v)];
     const auto at = [&](int qx, int qy) {
-      return coverage_[from_.Index(std::clamp(qx, 0, from_.width() - 1), std::clamp(qy, 0, from_.height() - 1))];
+      return value_of(from_.Index(std::clamp(qx, 0, from_.width() - 1), std::clamp(qy, 0, from_.height() - 1)));
     };
     const float above = (1.0f - across.weight) * at(x, y) + across.weight * at(x + across.step, y);
     const float below =
@@ -130,30 +175,86 @@ class Upsampler {
     return (1.0f - down.weight) * above + down.weight * below;
   }
 
-  // Samples above a threshold are covered, softened over one sample; the threshold is the one that gives the block the
-  // pixel's coverage.
   void Cover(int x, int y) {
     const float share = std::min(coverage_[from_.Index(x, y)], 1.0f);
     const auto out = to_.Plane(Layer::kCoverage);
-    const auto target = [&](int k) { return to_.Index(x * factor_ + k % factor_, y * factor_ + k / factor_); };
-    if (share >= 1.0f) {
-      for (int k = 0; k < factor_ * factor_; ++k) out[target(k)] = 1.0f;
-      return;
+    Block block;
+    if (share < 1.0f) {
+      for (int k = 0; k < factor_ * factor_; ++k) block[std::size_t(k)] = Between(x, y, k % factor_, k / factor_);
+      Spread(share, block);
+    } else {
+      block.fill(1.0f);
     }
-    float contour[kMaxUpsampling * kMaxUpsampling];
+    for (int k = 0; k < factor_ * factor_; ++k) out[Target(x, y, k)] = block[std::size_t(k)];
+  }
+
+  // Turns a contour into coverage whose mean is `share`: samples above a threshold are covered, softened over one
+  // sample.
+  void Spread(double share, Block& block) const {
     const int count = factor_ * factor_;
-    for (int k = 0; k < count; ++k) contour[k] = Between(x, y, k % factor_, k / factor_);
     const auto covered = [&](int k, double threshold) {
-      return std::clamp((contour[k] - threshold) * factor_ + 0.5, 0.0, 1.0);
+      return std::clamp((block[std::size_t(k)] - threshold) * factor_ + 0.5, 0.0, 1.0);
     };
     double low = -1.0, high = 2.0;  // everything is covered, nothing is
     for (int step = 0; step < 40; ++step) {
       const double middle = 0.5 * (low + high);
       double sum = 0.0;
       for (int k = 0; k < count; ++k) sum += covered(k, middle);
-      (sum > static_cast<double>(share) * count ? low : high) = middle;
+      (sum > share * count ? low : high) = middle;
     }
-    for (int k = 0; k < count; ++k) out[target(k)] = static_cast<float>(covered(k, low));
+    for (int k = 0; k < count; ++k) block[std::size_t(k)] = static_cast<float>(covered(k, low));
+  }
+
+  // Whether the surface of fragment `a` is that of `b` of other guides.
+  static bool SameIds(const GuideSet& a_of, std::size_t a, const GuideSet& b_of, std::size_t b) {
+    return std::ranges::all_of(std::array{Layer::kObject, Layer::kMaterial}, [&](Layer layer) {
+      return !a_of.Has(layer) || !b_of.Has(layer) || a_of.Plane(layer)[a] == b_of.Plane(layer)[b];
+    });
+  }
+
+  // How much of pixel q the fragment's surface covers.
+  float CoverageOf(std::size_t fragment, std::size_t q) const {
+    const Fragments& fragments = *from_.fragments;
+    const auto coverage = fragments.values.Plane(Layer::kCoverage);
+    const bool at_centre = SameIds(fragments.values, fragment, from_, q);
+    float left = coverage_[q];
+    for (std::size_t f = fragments.From(q); f < fragments.count() && fragments.pixel[f] == q; ++f) {
+      if (!at_centre && SameIds(fragments.values, fragment, fragments.values, f)) return coverage[f];
+      left -= coverage[f];
+    }
+    return at_centre ? std::max(left, 0.0f) : 0.0f;
+  }
+
+  // A fragment of the large picture: its pixel, the small one whose values it has, and its coverage.
+  struct Placed {
+    std::uint32_t pixel;
+    std::uint32_t fragment;
+    float coverage;
+  };
+
+  // The fragments of one pixel, from `begin` to `end`, in its block.
+  void PlaceFragments(std::size_t begin, std::size_t end, std::vector<Placed>& placed) const {
+    const std::size_t p = from_.fragments->pixel[begin];
+    const int x = static_cast<int>(p) % from_.width(), y = static_cast<int>(p) / from_.width();
+    std::array<Block, Fragments::kMostInPixel> blocks;
+    for (std::size_t f = begin; f < end; ++f) {
+      Block& block = blocks[f - begin];
+      for (int k = 0; k < factor_ * factor_; ++k) {
+        block[std::size_t(k)] =
+            Between(x, y, k % factor_, k / factor_, [&](std::size_t q) { return CoverageOf(f, q); });
+      }
+      Spread(from_.fragments->values.Plane(Layer::kCoverage)[f], block);
+    }
+    for (int k = 0; k < factor_ * factor_; ++k) {
+      const std::size_t target = Target(x, y, k);
+      float sum = 0.0f;
+      for (std::size_t f = begin; f < end; ++f) sum += blocks[f - begin][std::size_t(k)];
+      const float most = to_.Plane(Layer::kCoverage)[target], scale = sum > most ? most / sum : 1.0f;
+      for (std::size_t f = begin; f < end; ++f) {
+        const float coverage = blocks[f - begin][std::size_t(k)] * scale;
+        if (coverage > 0.0f) placed.push_back({std::uint32_t(target), std::uint32_t(f), coverage});
+      }
+    }
   }
 
   const GuideSet& from_;
@@ -189,6 +290,7 @@ Expected<GuideSet> UpsampleGuides(const GuideSet& guides, int factor, int thread
   arena.execute([&] {
     Upsampler upsampler(guides, factor, larger);
     tbb::parallel_for(0, guides.height(), [&](int y) { upsampler.Row(y); });
+    larger.fragments = upsampler.LargeFragments();
   });
   return larger;
 }

@@ -19,8 +19,12 @@ inline constexpr int kMaxUpsampling = 8;
 //     antialiased silhouette becomes smooth and about one pixel wide at most; one that is not antialiased keeps its
 //     steps.
 // Blocks of background are background. Names, camera and attributes are kept.
-// A kUsage error where a side would have more than kMaxImageSide pixels, or all more than 2^28. `threads` 0: all; the
-// bytes do not depend on it.
+//
+// Fragments (core/image/fragments.h) stay smooth borders: in the block of a pixel that has some, each covers the part
+// that follows the bilinear coverage of its surface, as the silhouette does, so that its mean over the block is its
+// coverage; where several surfaces would cover more than a sample, all take less. Their values are the same on the
+// whole block, but for `motion`, as above. A kUsage error where a side would have more than kMaxImageSide pixels, or
+// all more than 2^28. `threads` 0: all; the bytes do not depend on it.
 Expected<GuideSet> UpsampleGuides(const GuideSet& guides, int factor, int threads = 0);
 
 }  // namespace scumble

@@ -39,6 +39,7 @@ constexpr Bytes kExplained = 24;        // planes that --show is drawn from, and
 constexpr Bytes kFoundSphere = 8;       // FindSphere, beside the picture
 constexpr Bytes kTones = 8 * kMega;     // SourceVariation, of an exemplar of any size
 constexpr Bytes kPixelsOfFragment = 8;  // with --aa: objects' borders are rarely denser
+constexpr Bytes kPlacedFragment = 12;   // UpsampleGuides
 constexpr Bytes kCoherence = 9;         // MeasureCoherence, for --json
 
 Bytes PixelsOf(const Size& size) { return Bytes(size.width) * Bytes(size.height); }
@@ -102,11 +103,11 @@ void AddStyle(const Style& style, int height, MemoryNeed& need) {
     const Bytes width = scaled(style.exemplars.front().picture.width);
     const Bytes texels = width * scaled(style.exemplars.front().picture.height);
     read += kPaint * file;
-    if (exemplar.guides) read += kFloat * ChannelsOf(exemplar.guides->layers()) * exemplar.guides->pixel_count();
     if (exemplar.cut) {
       const Bytes pixels = Bytes(exemplar.cut->file_width) * Bytes(exemplar.cut->file_height);
       whole = std::max(whole, (kPaint + kFoundSphere) * pixels);
     }
+    if (exemplar.guides) read += kFloat * ChannelsOf(exemplar.guides->layers()) * exemplar.guides->pixel_count();
     Bytes of_texel = kPaint;
     if (!exemplar.is_sphere) of_texel += 13;  // normals and what is usable
     if (!settings.guide_weights.ArePlain()) of_texel += 3 * kFloat * ChannelsOf(settings.guide_weights.Layers());
@@ -128,8 +129,8 @@ void AddStyle(const Style& style, int height, MemoryNeed& need) {
     const auto fit = [&](int side) { return Bytes(ScaledSize(side, 1.0, settings.reference_height, height)); };
     prepared += kPaint * fit(paper.width) * fit(paper.height);
   }
-  need.Take("styles", read);
   need.TakeTransient("finding a sphere", whole);
+  need.Take("styles", read);
   need.Take("exemplars", prepared);
   need.TakeTransient("preparing exemplars", largest);
 }
@@ -188,7 +189,7 @@ void AddGuides(const Size& size, const LayerSet& layers, const SceneRequest& opt
   if (options.aa > 1) {
     // As found by the threads and as gathered, both in vectors that may have grown to twice their content, and colours.
     const Bytes of_fragment = 2 * kFloat * (ChannelsOf(Made(layers)) + 4) + kPaint;
-    need.Take("fragments", of_fragment * pixels / kPixelsOfFragment);
+    need.Take("fragments", of_fragment * FragmentsExpected(size, options.aa));
   }
   Bytes path_layers = 0;
   for (const LayerInfo& info : AllLayers()) path_layers += layers.Has(info.layer) && PathLayerExpression(info.layer);
@@ -198,6 +199,8 @@ void AddGuides(const Size& size, const LayerSet& layers, const SceneRequest& opt
   const bool open_ended = options.noise > 0.0 || options.time_budget_seconds > 0.0;
   need.TakeTransient("light paths", (2 * kPathPixel + (open_ended ? kSum * path_layers : 0)) * pixels);
 }
+
+std::size_t FragmentsExpected(const Size& size, int aa) { return aa > 1 ? PixelsOf(size) / kPixelsOfFragment : 0; }
 
 void AddGuideFile(const Size& size, const LayerSet& layers, bool cryptomatte, MemoryNeed& need) {
   // Ids of objects and materials and a plane of zeros, and all eight channels in the file.
@@ -214,15 +217,15 @@ void AddGuidesRead(const GuideFileInfo& info, const GuideReadOptions& read, Memo
   const Bytes pixels = Bytes(info.width) * Bytes(info.height);
   LayerSet layers = read.required;
   layers.Add(read.optional);
-  need.Take("guides", kFloat * ChannelsOf(layers) * pixels);
-  const bool plain = !info.from_blender && info.layers.size() == 1 && info.layers.begin()->first.empty();
-  if (plain) return;
   if (info.fragments > 0) {
     layers.Add({Layer::kObject, Layer::kMaterial});
     // As they stand in the file's header, in a copy of it and in memory, with an index each, and their colours.
     const Bytes of_fragment = 3 * kFloat * (ChannelsOf(info.layers.begin()->second) + 1) + kPaint;
     need.Take("fragments", of_fragment * info.fragments);
   }
+  need.Take("guides", kFloat * ChannelsOf(layers) * pixels);
+  const bool plain = !info.from_blender && info.layers.size() == 1 && info.layers.begin()->first.empty();
+  if (plain) return;
   // Another reader: all channels side by side, then by layer.
   Bytes channels = 1;
   for (const auto& [name, found] : info.layers) channels += ChannelsOf(found);
@@ -235,7 +238,13 @@ void AddPicture(const PictureWork& work, const PictureRequest& options, MemoryNe
   const Size size{work.guides.width * options.upsample, work.guides.height * options.upsample};
   const Bytes pixels = PixelsOf(size), encoded = EncodedBytes(options);
   if (work.is_sequence) need.Take("frame that is written", (kPaint + encoded) * pixels);
-  if (options.upsample > 1) need.Take("upsampled guides", kFloat * ChannelsOf(Made(work.layers)) * pixels);
+  if (options.upsample > 1) {
+    const Bytes of_pixel = kFloat * ChannelsOf(Made(work.layers));
+    // A list of them that may have grown to twice its content, their index and colour.
+    const Bytes of_fragment = of_pixel + 2 * kPlacedFragment + kFloat + kPaint;
+    const Bytes fragments = Bytes(work.fragments) * Bytes(options.upsample) * Bytes(options.upsample);
+    need.Take("upsampled guides", of_pixel * pixels + of_fragment * fragments);
+  }
   if (!options.over.empty()) {
     need.Take("picture underneath", kPaint * pixels);
     need.TakeTransient("reading it", 2 * kPaint * pixels + kFormatsModule);

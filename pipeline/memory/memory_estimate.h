@@ -26,6 +26,9 @@ void AddScene(const Scene& scene, const TexturePixels& more, MemoryNeed& need);
 // light paths are followed.
 void AddGuides(const Size& size, const LayerSet& layers, const SceneRequest& options, MemoryNeed& need);
 
+// More fragments (core/image/fragments.h) than guides of that size nearly ever have.
+std::size_t FragmentsExpected(const Size& size, int aa);
+
 // A guide file of these layers, for a moment: it is packed in memory before it is written.
 void AddGuideFile(const Size& size, const LayerSet& layers, bool cryptomatte, MemoryNeed& need);
 
@@ -44,6 +47,7 @@ struct PictureWork {
   bool is_sequence = false;  // one picture is written while the next is made
   bool keeps_field = false;  // PictureRequest::KeepsField
   int threads = 0;
+  std::size_t fragments = 0;  // of the guides
 };
 void AddPicture(const PictureWork& work, const PictureRequest& options, MemoryNeed& need);
 

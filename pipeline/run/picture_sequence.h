@@ -56,9 +56,9 @@ class PictureSequence {
 Expected<RunReport> RunOnePicture(StyleSet& styles, const GuideSet& guides, const GuideSource& source,
                                   const PictureRequest& request, const RunContext& context, const Progress& progress);
 
-// The memory that painting a frame needs besides its guides.
+// The memory that painting a frame needs besides its guides, which have so many fragments.
 PictureWork WorkOf(const StyleSet& styles, const PictureRequest& picture, const Size& guides, const LayerSet& layers,
-                   bool is_sequence, const RunContext& context);
+                   std::size_t fragments, bool is_sequence, const RunContext& context);
 
 // Registers the inputs of styles and picture, and checks the outputs against all inputs.
 Status CheckFiles(RunInputs& files, const PictureRequest& picture, const std::optional<Sequence>& sequence,

@@ -30,11 +30,13 @@ Status ShrinkGuides(StylizeRequest& request) {
   return Ok();
 }
 
-// Refers to both.
-decltype(SceneRequest::more_memory) PaintingOf(const StyleSet& styles, const PictureRequest& picture, bool is_sequence,
+// Refers to styles and context.
+decltype(SceneRequest::more_memory) PaintingOf(const StyleSet& styles, const StylizeRequest& request, bool is_sequence,
                                                const RunContext& context) {
-  return [&styles, picture, is_sequence, &context](const Size& size, const LayerSet& layers, MemoryNeed& need) {
-    AddPicture(WorkOf(styles, picture, size, layers, is_sequence, context), picture, need);
+  return [&styles, picture = request.picture, aa = request.scene.aa, is_sequence, &context](
+             const Size& size, const LayerSet& layers, MemoryNeed& need) {
+    const std::size_t fragments = FragmentsExpected(size, aa);
+    AddPicture(WorkOf(styles, picture, size, layers, fragments, is_sequence, context), picture, need);
   };
 }
 
@@ -111,8 +113,7 @@ Expected<std::optional<BudgetChoice>> ChooseForStylize(StylizeRequest& request, 
                                                        StyleSet& styles, const RunContext& context) {
   SceneRequest scene = request.scene;
   scene.seed = request.picture.seed, scene.fps = request.picture.fps;
-  scene.more_memory =
-      PaintingOf(styles, request.picture, sequence.has_value(), context);  // pictures are painted on trial
+  scene.more_memory = PaintingOf(styles, request, sequence.has_value(), context);  // pictures are painted on trial
   const std::optional<int> frame = sequence ? sequence->frames.front() : request.picture.frame;
   if (!frame && request.explain && request.picture.output.empty())
     scene.animation.clear();  // a plan is the same at any time
@@ -135,7 +136,7 @@ Expected<RunReport> RunStylize(StylizeRequest request, const SequenceListener& l
     SCUMBLE_RETURN_IF_ERROR(CheckSceneRequest(request.scene));
     SCUMBLE_ASSIGN(StyleSet styles, OpenStyles(request.style, context));
     SCUMBLE_RETURN_IF_ERROR(ChooseForStylize(request, std::nullopt, styles, context));
-    request.scene.more_memory = PaintingOf(styles, request.picture, false, context);
+    request.scene.more_memory = PaintingOf(styles, request, false, context);
     return PlanOf(request, styles, context);
   }
   SCUMBLE_RETURN_IF_ERROR(CheckPictureTarget(request.picture.output, {request.picture.bits}));
@@ -153,7 +154,7 @@ Expected<RunReport> RunStylize(StylizeRequest request, const SequenceListener& l
   SCUMBLE_RETURN_IF_ERROR(CheckFiles(files, request.picture, sequence, styles));
   const FilesCheck check_files = CheckOfSceneStyles(files, request.picture, sequence, styles);
   SCUMBLE_ASSIGN(auto choice, ChooseForStylize(request, sequence, styles, context));
-  request.scene.more_memory = PaintingOf(styles, request.picture, sequence.has_value(), context);
+  request.scene.more_memory = PaintingOf(styles, request, sequence.has_value(), context);
   if (sequence) {
     SCUMBLE_ASSIGN(RunReport report, StylizeSequence(request, *sequence, styles, check_files, listener, context));
     report.choice = std::move(choice);

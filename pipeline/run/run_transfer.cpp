@@ -45,7 +45,8 @@ Expected<MemoryNeed> CheckMemoryOfFile(const TransferRequest& request, const std
   AddProgram(context.threads, need);
   if (const Expected<GuideFileInfo> info = InspectGuides(file)) {
     AddGuidesRead(*info, read, need);
-    AddPicture(WorkOf(styles, request.picture, {info->width, info->height}, read.required, is_sequence, context),
+    AddPicture(WorkOf(styles, request.picture, {info->width, info->height}, read.required, info->fragments, is_sequence,
+                      context),
                request.picture, need);
   }
   const std::string fix =

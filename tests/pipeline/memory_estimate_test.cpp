@@ -61,6 +61,20 @@ TEST_F(MemoryNeedTest, NothingTakesMoreThanItSays) {
   ExpectHonest({"sphere", "--size", "500", "-o", "kit"});
 }
 
+// A small sphere in a large file, among many specks: the file is there while the sphere is looked for.
+TEST_F(MemoryNeedTest, FindingASphereTakesNoMoreThanItSays) {
+  Picture sheet(3000, 2200);
+  for (int y = 0; y < sheet.height; ++y) {
+    for (int x = 0; x < sheet.width; ++x) {
+      std::uint16_t* const texel = sheet.At(x, y);
+      const bool is_ball = std::hypot(x - 1500.5, y - 1100.5) < 400.0;
+      texel[0] = texel[1] = texel[2] = is_ball || (x % 90 < 6 && y % 90 < 6) ? 20000 : 65535, texel[3] = 65535;
+    }
+  }
+  ASSERT_TRUE(WritePicture(At("ball.png"), sheet).ok());
+  ExpectHonest({"stylize", Scene("suzanne.glb"), "--size", "200", "--style", "ball.png", "-o", "p.png"});
+}
+
 // A mesh of 8,192 triangles 48 times, and one of two 20,000 times: Embree has corners and a hierarchy for each of them.
 // The estimate has 340 bytes for a triangle and 40 for a vertex, of which triangles may share none, 220 for each
 // further instance of a triangle, and 2300 for an instance.

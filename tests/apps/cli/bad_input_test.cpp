@@ -97,6 +97,29 @@ TEST_F(CliBadFiles, Guides) {
   for (const char* name : {"missing.exr", "empty.exr", "noise.exr"}) ExpectRefused({"info", "IN"}, name);
 }
 
+// The attribute's pixels and values are behind everything that makes the file whole.
+TEST_F(CliBadFiles, FragmentsOfGuides) {
+  WriteStyle("style");
+  RunOk({"guidegen", Scene("toys.glb"), "--size", "48x32", "--aa", "4", "--compression", "none", "-o", "whole.exr"});
+  const std::string whole = Bytes("whole.exr"), type("scumbleFragments", 17);  // with its end
+  const std::size_t header = whole.find(type) + type.size() + 4,
+                    names = whole.find(std::string("A\0normal.X", 10), header);
+  ASSERT_LT(names, whole.size());
+  const auto expect_refused = [&](std::size_t at, char bits, bool by_info, const std::string& what) {
+    std::string damaged = whole;
+    damaged[at] = static_cast<char>(damaged[at] ^ bits);
+    WriteText("damaged.exr", damaged);
+    ExpectError({"transfer", "damaged.exr", "--style", "style", "-o", "out.png"}, 3,
+                {"damaged.exr", what, "make the guides again with scumble guidegen"});
+    if (by_info) ExpectError({"info", "damaged.exr"}, 3, {"damaged.exr", what});
+  };
+  expect_refused(header, 0x40, true, "has version 65");
+  expect_refused(header + 4, 0x40, true, "of a picture of 112×32");
+  expect_refused(header + 12, 0x01, true, "fragments of");
+  expect_refused(whole.find(std::string("material.ID\0", 12), header) + 12 + 3, 0x40, false, "outside the picture");
+  RunOk({"transfer", "whole.exr", "--style", "style", "-o", "out.png"});
+}
+
 TEST_F(CliBadFiles, PicturesUnderneathAndPaper) {
   WriteStyle("style");
   WriteGuideFile("g.exr", Ball(16));

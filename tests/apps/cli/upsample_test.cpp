@@ -23,6 +23,30 @@ TEST_F(Upsample, StylizeIsTheTwoStepsThroughFiles) {
   EXPECT_EQ(Bytes("1.png"), Bytes("full.png"));
 }
 
+// Borders between objects are painted from the fragments of the smaller guides, in memory and from a file, whatever
+// layers the style reads.
+TEST_F(Upsample, BordersBetweenObjectsStaySmooth) {
+  WriteStyle("style");
+  const std::string scene = Scene("toys.glb");
+  for (const Arguments& style :
+       {Arguments{"--style", "style"}, Arguments{"--style", "style", "--set", "transfer.edge_aware=false"}}) {
+    const auto painted = [&](const std::string& size, const std::string& aa, const std::string& factor) {
+      Arguments stylize = With(style, {"--size", size, "--aa", aa, "--upsample", factor, "-o", "one.png"});
+      stylize.insert(stylize.begin(), {"stylize", scene});
+      RunOk(stylize);
+      return Pixels("one.png");
+    };
+    RunOk({"guidegen", scene, "--size", "60x40", "--aa", "4", "-o", "guides.exr"});
+    for (const auto& [factor, size] : {std::pair{"1", "60x40"}, {"2", "120x80"}}) {
+      const auto one = painted(size, "4", factor);
+      Arguments transfer = With(style, {"--upsample", factor, "-o", "two.png"});
+      transfer.insert(transfer.begin(), {"transfer", "guides.exr"});
+      RunOk(transfer);
+      EXPECT_TRUE(one == Pixels("two.png")) << Joined(transfer);
+    }
+  }
+}
+
 // A step takes longer than matching all pixels, so none comes with --upsample unasked.
 TEST_F(Upsample, EveryPixelOfTheLargerPictureIsMatched) {
   WriteStyle("style");

@@ -3,8 +3,11 @@
 
 #include <cmath>
 #include <functional>
+#include <memory>
+#include <utility>
 #include <vector>
 
+#include "core/image/fragments.h"
 #include "tests/support/transfer_fixtures.h"
 
 namespace scumble {
@@ -94,6 +97,120 @@ TEST(UpsampleGuides, AntialiasedSilhouettesComeOutSmooth) {
       EXPECT_LT(error, 0.55 * MeanDifference(blocks, truth)) << factor;
       EXPECT_LT(error, 0.11) << factor;
     }
+  }
+}
+
+// Objects 1, 2 and 3 by a function of the place, the first where the others are not; all layers that may scale.
+GuideSet WithBorders(const std::function<int(double, double)>& object, int width, int height, double scale) {
+  std::vector<std::vector<float>> coverage;
+  for (int id = 1; id <= 3; ++id) {
+    coverage.push_back(CoverageOf([&](double x, double y) { return object(x, y) == id; }, width, height, scale));
+  }
+  GuideSet guides = MakeGuides(width, height, [](int, int) { return glm::vec3(0, 0, 1); });
+  guides.Add(Layer::kMotion);
+  auto fragments = std::make_shared<Fragments>();
+  std::vector<std::pair<int, float>> values;  // object and coverage
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const std::size_t i = guides.Index(x, y);
+      const int centre = object((x + 0.5) / scale, (y + 0.5) / scale);
+      guides.Plane(Layer::kObject)[i] = static_cast<float>(centre);
+      for (int id = 1; id <= 3; ++id) {
+        const float share = coverage[std::size_t(id - 1)][i];
+        if (id == centre || !(share > 0.0f)) continue;
+        fragments->pixel.push_back(static_cast<std::uint32_t>(i)), values.emplace_back(id, share);
+      }
+    }
+  }
+  fragments->values = MakeGuides(static_cast<int>(values.size()), 1, [](int, int) { return glm::vec3(0, 0, 1); });
+  fragments->values.Add(Layer::kMotion);
+  for (std::size_t f = 0; f < values.size(); ++f) {
+    fragments->values.Plane(Layer::kObject)[f] = static_cast<float>(values[f].first);
+    fragments->values.Plane(Layer::kCoverage)[f] = values[f].second;
+    fragments->values.Plane(Layer::kMotion, 1)[f] = static_cast<float>(f);
+  }
+  guides.fragments = std::move(fragments);
+  return guides;
+}
+
+// A plane of one object's coverage, its share of every pixel.
+std::vector<float> CoverageOfObject(const GuideSet& guides, float id) {
+  const Fragments& fragments = *guides.fragments;
+  std::vector<float> share(guides.pixel_count());
+  for (std::size_t i = 0; i < share.size(); ++i) {
+    share[i] = guides.Plane(Layer::kObject)[i] == id ? guides.Plane(Layer::kCoverage)[i] : 0.0f;
+  }
+  for (std::size_t f = 0; f < fragments.count(); ++f) {
+    const float coverage = fragments.values.Plane(Layer::kCoverage)[f];
+    const std::uint32_t pixel = fragments.pixel[f];
+    if (guides.Plane(Layer::kObject)[pixel] == id) share[pixel] -= coverage;
+    if (fragments.values.Plane(Layer::kObject)[f] == id) share[pixel] += coverage;
+  }
+  return share;
+}
+
+TEST(UpsampleGuides, BordersBetweenObjectsComeOutSmooth) {
+  const auto ring = [](double x, double y) {
+    const double r = std::hypot(x - 20.0, y - 15.0);
+    return r < 8.0 ? 1 : r < 11.0 ? 2 : 3;
+  };
+  const GuideSet guides = WithBorders(ring, 40, 30, 1.0);
+  for (const int factor : {2, 3, 4, 8}) {
+    const GuideSet larger = Upsampled(guides, factor);
+    ASSERT_TRUE(larger.fragments);
+    EXPECT_TRUE(larger.Validate("larger").ok());
+    for (int id = 1; id <= 3; ++id) {
+      const std::vector<float> share = CoverageOfObject(larger, static_cast<float>(id));
+      const auto truth =
+          CoverageOf([&](double x, double y) { return ring(x, y) == id; }, 40 * factor, 30 * factor, factor);
+      std::vector<float> steps(share.size());  // as without fragments
+      for (std::size_t i = 0; i < steps.size(); ++i) {
+        steps[i] = larger.Plane(Layer::kObject)[i] == static_cast<float>(id) ? 1.0f : 0.0f;
+      }
+      const double smooth = MeanDifference(share, truth);
+      EXPECT_LT(smooth, 0.12) << factor << ", " << id;
+      EXPECT_LT(smooth, 0.4 * MeanDifference(steps, truth)) << factor << ", " << id;
+    }
+  }
+}
+
+TEST(UpsampleGuides, FragmentsKeepTheirAreaAndValues) {
+  // Fans of the three objects, so that many pixels show all of them.
+  const GuideSet guides = WithBorders(
+      [](double x, double y) { return 1 + static_cast<int>(std::floor(0.9 * x + 0.4 * y * std::sin(x))) % 3; }, 24, 18,
+      1.0);
+  const Fragments& small = *guides.fragments;
+  for (const int factor : {1, 2, 5}) {
+    const GuideSet larger = Upsampled(guides, factor);
+    ASSERT_TRUE(larger.Validate("larger").ok());
+    const Fragments& large = *larger.fragments;
+    EXPECT_EQ(large.values.layers(), small.values.layers());
+    std::vector<double> mean(small.count());
+    for (std::size_t f = 0; f < large.count(); ++f) {
+      const int x = static_cast<int>(large.pixel[f]) % larger.width() / factor;
+      const int y = static_cast<int>(large.pixel[f]) / larger.width() / factor;
+      const std::size_t from = small.From(guides.Index(x, y));
+      std::size_t same = from;
+      while (same < small.count() && small.values.Plane(Layer::kObject)[same] != large.values.Plane(Layer::kObject)[f])
+        ++same;
+      ASSERT_LT(same, small.count());
+      ASSERT_EQ(small.pixel[same], guides.Index(x, y));
+      EXPECT_EQ(large.values.Plane(Layer::kMotion, 1)[f],
+                small.values.Plane(Layer::kMotion, 1)[same] * static_cast<float>(factor));
+      mean[same] += large.values.Plane(Layer::kCoverage)[f] / (factor * factor);
+    }
+    double lost = 0.0, sum = 0.0;
+    for (std::size_t f = 0; f < mean.size(); ++f) {
+      const double coverage = small.values.Plane(Layer::kCoverage)[f];
+      EXPECT_LE(mean[f], coverage + 1e-5) << f;
+      const bool is_alone = (f == 0 || small.pixel[f - 1] != small.pixel[f]) &&
+                            (f + 1 == mean.size() || small.pixel[f + 1] != small.pixel[f]);
+      if (is_alone) {
+        EXPECT_NEAR(mean[f], coverage, 1e-5) << f;
+      }
+      lost += coverage - mean[f], sum += coverage;
+    }
+    EXPECT_LT(lost, 0.02 * sum) << "where several surfaces meet";
   }
 }
 
