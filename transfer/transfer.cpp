@@ -189,12 +189,13 @@ class Run {
   // The style's pixels around are matched, or there are none.
   void PaintFragments(const PreparedStyle& style, int index, const internal::MatchInput& match) {
     if (fragments_.empty()) return;
-    const internal::FragmentStyle settings{match,
-                                           style.settings.method == Method::kLitSphere,
-                                           IsEdgeAware(style),
-                                           internal::EdgeRules::CreaseCosine(style.settings.crease),
-                                           style.base_layers.get(),
-                                           TintOf(style)};
+    const internal::FragmentStyle settings{
+        match,
+        style.settings.method == Method::kLitSphere,
+        IsEdgeAware(style),
+        IsEdgeAware(style) ? internal::EdgeRules::CreaseCosine(style.settings.crease) : -2.0f,
+        style.base_layers.get(),
+        TintOf(style)};
     const internal::VoteInput votes{scratch_.field, scratch_.active, *style.exemplar, style.blend_radius, nullptr, {}};
     constexpr int kRows = 16;
     tbb::parallel_for(tbb::blocked_range<int>(region_.y0, std::max(region_.y0, region_.y1), kRows),

@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <span>
 
 #include "core/image/check.h"
 #include "core/image/color.h"
@@ -13,7 +14,8 @@
 namespace scumble::internal {
 namespace {
 
-constexpr PixelPosition kAround[] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, -1}, {-1, 1}, {1, 1}};
+constexpr PixelPosition kBeside[] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
+constexpr PixelPosition kCorners[] = {{-1, -1}, {1, -1}, {-1, 1}, {1, 1}};
 
 void ReadGuide(const MatchInput& match, const GuideSet& values, std::size_t fragment, PixelGuide& guide) {
   guide.normal = values.Vec3(Layer::kNormal, fragment);
@@ -38,83 +40,88 @@ std::uint16_t FragmentPaint::StyleOf(std::size_t fragment) const {
   return styles.empty() ? frame_.map->style[fragments_->pixel[fragment]] : styles[fragment];
 }
 
-// The pixel beside (x, y) that shows the fragment's surface in this style and has the most similar normal; -1: none.
-std::ptrdiff_t FragmentPaint::MostSimilar(std::size_t fragment, int x, int y, std::uint16_t style) const {
+// Whether pixel q shows the fragment's surface, with a normal within the crease.
+bool FragmentPaint::ShowsSurface(std::size_t q, std::size_t fragment, float crease_cosine) const {
   const GuideSet& guides = frame_.guides;
   const GuideSet& own = fragments_->values;
-  const auto coverage = guides.Plane(Layer::kCoverage);
-  const glm::vec3 normal = own.Vec3(Layer::kNormal, fragment);
-  std::ptrdiff_t found = -1;
-  float least = 0.0f;
-  for (const PixelPosition& step : kAround) {
-    const int u = x + step.x, v = y + step.y;
-    if (u < 0 || v < 0 || u >= guides.width() || v >= guides.height()) continue;
-    const std::size_t q = guides.Index(u, v);
-    if (!(coverage[q] > 0.0f) || (frame_.map && frame_.map->style[q] != style)) continue;
-    const auto differs = [&](Layer layer) {
-      return guides.Has(layer) && guides.Plane(layer)[q] != own.Plane(layer)[fragment];
-    };
-    if (differs(Layer::kObject) || differs(Layer::kMaterial)) continue;
-    const glm::vec3 off = guides.Vec3(Layer::kNormal, q) - normal;
-    const float distance = off.x * off.x + off.y * off.y + off.z * off.z;
-    if (found < 0 || distance < least) found = std::ptrdiff_t(q), least = distance;
-  }
-  return found;
+  const auto differs = [&](Layer layer) {
+    return guides.Has(layer) && guides.Plane(layer)[q] != own.Plane(layer)[fragment];
+  };
+  return !differs(Layer::kObject) && !differs(Layer::kMaterial) && IsWithinCrease(q, fragment, crease_cosine);
 }
 
-FragmentPaint::Texel FragmentPaint::Painted(const FragmentStyle& style, int number, const VoteInput& votes,
-                                            std::size_t fragment, int x, int y) const {
+bool FragmentPaint::IsWithinCrease(std::size_t q, std::size_t fragment, float crease_cosine) const {
+  const glm::vec3 a = frame_.guides.Vec3(Layer::kNormal, q), b = fragments_->values.Vec3(Layer::kNormal, fragment);
+  return a.x * b.x + a.y * b.y + a.z * b.z > crease_cosine;
+}
+
+// Calls vote(exemplar, source) for each vote on the fragment's colour.
+template <class Cast>
+void FragmentPaint::ForEachVote(const FragmentStyle& style, const VoteInput& votes, std::size_t fragment, int x, int y,
+                                const Cast& vote) const {
   const GuideSet& guides = frame_.guides;
-  const GuideSet& own = fragments_->values;
-  const MatchInput& match = style.match;
   const SourceField& field = votes.field;
-  PixelGuide guide;
-  ReadGuide(match, own, fragment, guide);
-
-  Candidate candidate;
-  bool continues = false;
-  const std::ptrdiff_t beside =
-      style.own_sources ? -1 : MostSimilar(fragment, x, y, static_cast<std::uint16_t>(number));
-  if (beside >= 0) {
-    const int u = int(beside % guides.width()), v = int(beside / guides.width());
+  // The pixel's source goes on at (x, y).
+  const auto offer = [&](int u, int v) {
     const std::size_t q = field.Index(u, v);
-    candidate = {{field.x[q] + x - u, field.y[q] + y - v}, field.exemplar[q]};
-    continues = votes.active[q] != 0 && field.level[q] > 0 &&
-                match.exemplar.Usable(candidate.source.x, candidate.source.y) &&
-                match.test.Alike(guide.normal, guides.Vec3(Layer::kNormal, std::size_t(beside)));
-  }
-  if (!continues) candidate = OwnCandidate(match, guide);
-
-  VoteSum paint, base;
-  const auto vote = [&](int exemplar, Source source) {
-    paint.Add(match.exemplar.picture(exemplar).At(source.x, source.y));
-    if (style.base) base.Add(style.base->picture(exemplar).At(source.x, source.y));
+    const Source source{field.x[q] + x - u, field.y[q] + y - v};
+    if (!style.match.exemplar.Usable(source.x, source.y)) return false;
+    vote(int(field.exemplar[q]), source);
+    return true;
   };
-  vote(candidate.exemplar, candidate.source);
+  bool any = false;  // vote yet
+  const auto offer_beside = [&](std::span<const PixelPosition> steps) {
+    for (const PixelPosition& step : steps) {
+      const int u = x + step.x, v = y + step.y;
+      if (u < 0 || v < 0 || u >= guides.width() || v >= guides.height() || !votes.active[field.Index(u, v)]) continue;
+      if (ShowsSurface(guides.Index(u, v), fragment, style.crease_cosine)) any = offer(u, v) || any;
+    }
+  };
+  const bool window_has_surface = style.edge_aware && votes.radius > 0;
+  if (!style.own_sources && !window_has_surface) {
+    offer_beside(kBeside);
+    if (!any) offer_beside(kCorners);
+  }
+  // A window that is not cut may hold other objects alone.
+  const bool shows_surface = any || window_has_surface;
   const int radius = votes.radius;
   for (int v = std::max(0, y - radius); v <= std::min(guides.height() - 1, y + radius); ++v) {
     for (int u = std::max(0, x - radius); u <= std::min(guides.width() - 1, x + radius); ++u) {
-      const std::size_t q = field.Index(u, v), there = guides.Index(u, v);
-      if ((u == x && v == y) || !votes.active[q]) continue;
+      if ((u == x && v == y) || !votes.active[field.Index(u, v)]) continue;
+      const std::size_t q = guides.Index(u, v);
       if (style.edge_aware) {
-        if (guides.Plane(Layer::kObject)[there] != own.Plane(Layer::kObject)[fragment]) continue;
-        const glm::vec3 normal = guides.Vec3(Layer::kNormal, there);
-        const float cosine = normal.x * guide.normal.x + normal.y * guide.normal.y + normal.z * guide.normal.z;
-        if (!(cosine > style.crease_cosine)) continue;
+        if (guides.Plane(Layer::kObject)[q] != fragments_->values.Plane(Layer::kObject)[fragment]) continue;
+        if (!IsWithinCrease(q, fragment, style.crease_cosine)) continue;
       }
-      const Source source{field.x[q] + x - u, field.y[q] + y - v};
-      if (match.exemplar.Usable(source.x, source.y)) vote(field.exemplar[q], source);
+      any = offer(u, v) || any;
     }
   }
+  if (any && shows_surface) return;
+  PixelGuide guide;
+  ReadGuide(style.match, fragments_->values, fragment, guide);
+  const Candidate own = OwnCandidate(style.match, guide);
+  vote(own.exemplar, own.source);
+}
+
+FragmentPaint::Texel FragmentPaint::Painted(const FragmentStyle& style, const VoteInput& votes, std::size_t fragment,
+                                            int x, int y) const {
+  const MatchInput& match = style.match;
+  VoteSum paint, base;
+  ForEachVote(style, votes, fragment, x, y, [&](int exemplar, Source source) {
+    paint.Add(match.exemplar.picture(exemplar).At(source.x, source.y));
+    if (style.base) base.Add(style.base->picture(exemplar).At(source.x, source.y));
+  });
   Texel texel;
   paint.Count(texel.data());
   if (style.base) {
+    PixelGuide guide;
+    ReadGuide(match, fragments_->values, fragment, guide);
     Texel base_vote;
     base.Count(base_vote.data());
     AddBaseLayer({match.exemplar, *style.base, match.illumination, match.space},
                  {guide.normal, guide.light, guide.extra_values}, base_vote.data(), texel.data());
   }
-  if (style.tint.active()) style.tint.Apply(own.Vec3(Layer::kAlbedo, fragment), texel.data());
+  if (style.tint.active()) style.tint.Apply(fragments_->values.Vec3(Layer::kAlbedo, fragment), texel.data());
   return texel;
 }
 
@@ -127,7 +134,7 @@ void FragmentPaint::Paint(const FragmentStyle& style, int number, const VoteInpu
   for (std::size_t i = from; i < to; ++i) {
     const int x = int(fragments_->pixel[i] % width), y = int(fragments_->pixel[i] / width);
     if (x < region.x0 || x >= region.x1 || StyleOf(i) != number) continue;
-    colors_[i] = Painted(style, number, votes, i, x, y);
+    colors_[i] = Painted(style, votes, i, x, y);
   }
 }
 

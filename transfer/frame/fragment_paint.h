@@ -1,17 +1,17 @@
 // Smooth borders between objects: every surface of a pixel is painted by itself, then they are mixed by coverage.
 //
-// A fragment (core/image/fragments.h) continues the chunk of a pixel beside it. Of the eight pixels around that show
-// its surface in its style, the one with the most similar normal is chosen, the nearest of several. If the normals are
-// alike by the style's threshold and the place is usable, the fragment takes that pixel's offset into the exemplar: so
-// a border shows what its surface would show there. Otherwise, and always for Lit Sphere, it takes its own nearest
-// neighbour. The chunks of the pixels in the style's window vote on its colour, as on a pixel's; where votes are cut at
-// edges, pixels of its own object whose normals are within the crease vote.
+// The chunks of the pixels in the style's window vote on the colour of a fragment (core/image/fragments.h), as on a
+// pixel's: so a border shows what its surface would show there. Where votes are cut at edges, pixels of the fragment's
+// own object whose normals are within the crease vote. Without a window, or where votes are not cut, the four pixels
+// beside that show its surface vote, or those at the corners if none does. Where no pixel around shows it, and always
+// for Lit Sphere, the fragment takes its own nearest neighbour.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "core/image/fragments.h"
@@ -28,7 +28,7 @@ struct FragmentStyle {
   const MatchInput& match;   // of the picture's pixels
   bool own_sources = false;  // Lit Sphere: no pixel has a chunk
   bool edge_aware = false;
-  float crease_cosine = -2.0f;             // with edge_aware
+  float crease_cosine = -2.0f;             // with edge_aware; else no normals are too far apart
   const PreparedExemplar* base = nullptr;  // base layers of the hybrid; null: none
   Tint tint;
 };
@@ -59,9 +59,12 @@ class FragmentPaint {
   using Texel = std::array<std::uint16_t, 4>;
 
   std::uint16_t StyleOf(std::size_t fragment) const;
-  std::ptrdiff_t MostSimilar(std::size_t fragment, int x, int y, std::uint16_t style) const;
-  Texel Painted(const FragmentStyle& style, int number, const VoteInput& votes, std::size_t fragment, int x,
-                int y) const;
+  bool ShowsSurface(std::size_t q, std::size_t fragment, float crease_cosine) const;
+  bool IsWithinCrease(std::size_t q, std::size_t fragment, float crease_cosine) const;
+  template <class Cast>
+  void ForEachVote(const FragmentStyle& style, const VoteInput& votes, std::size_t fragment, int x, int y,
+                   const Cast& vote) const;
+  Texel Painted(const FragmentStyle& style, const VoteInput& votes, std::size_t fragment, int x, int y) const;
   template <class Visit>
   void ForAll(const Visit& visit) const;
   void MixPixel(std::size_t first, std::size_t end, std::uint16_t* pixel) const;

@@ -168,7 +168,7 @@ TEST(UpsampleGuides, BordersBetweenObjectsComeOutSmooth) {
         steps[i] = larger.Plane(Layer::kObject)[i] == static_cast<float>(id) ? 1.0f : 0.0f;
       }
       const double smooth = MeanDifference(share, truth);
-      EXPECT_LT(smooth, 0.12) << factor << ", " << id;
+      EXPECT_LT(smooth, factor < 8 ? 0.12 : 0.15) << factor << ", " << id;
       EXPECT_LT(smooth, 0.4 * MeanDifference(steps, truth)) << factor << ", " << id;
     }
   }
@@ -177,8 +177,8 @@ TEST(UpsampleGuides, BordersBetweenObjectsComeOutSmooth) {
 TEST(UpsampleGuides, FragmentsKeepTheirAreaAndValues) {
   // Fans of the three objects, so that many pixels show all of them.
   const GuideSet guides = WithBorders(
-      [](double x, double y) { return 1 + static_cast<int>(std::floor(0.9 * x + 0.4 * y * std::sin(x))) % 3; }, 24, 18,
-      1.0);
+      [](double x, double y) { return 1 + static_cast<int>(std::floor(30.0 + 0.9 * x + 0.4 * y * std::sin(x))) % 3; },
+      24, 18, 1.0);
   const Fragments& small = *guides.fragments;
   for (const int factor : {1, 2, 5}) {
     const GuideSet larger = Upsampled(guides, factor);
