@@ -28,13 +28,15 @@ GuideReadOptions ReadOptions(const TransferRequest& request, const StyleSet& sty
 
 // Adds what the styles read, those included that the scene of a guide file asks for. A file that cannot be read asks
 // for nothing here; reading it is an error later. Layers of names are optional: a render may have one of them.
-Status RequireOfFile(StyleSet& styles, const std::string& file, GuideReadOptions& read) {
+Status RequireOfFile(StyleSet& styles, const std::string& file, int upsample, GuideReadOptions& read) {
   SceneStyleRequests of_scene;
   if (styles.options.scene_styles) {
     if (const Expected<GuideFileInfo> info = InspectGuides(file)) of_scene = SceneStyleRequestsOf(info->header);
   }
   SCUMBLE_ASSIGN(read.required, StyleLayers(styles, of_scene, file));
   read.optional = styles.LayersOfNames(of_scene);
+  // Upsampling looks for edges in them, whatever the style reads, as it does in guides that are made in memory.
+  if (upsample > 1) read.optional.Add({Layer::kDepth, Layer::kObject});
   return Ok();
 }
 
@@ -69,7 +71,7 @@ Expected<RunReport> TransferSequence(const TransferRequest& request, const Seque
     if (guides && file == guides_file) return FrameGuides{&*guides, {file, {}, {}, {}, memory}};
     guides.reset();
     GuideReadOptions one = read;
-    SCUMBLE_RETURN_IF_ERROR(RequireOfFile(styles, file, one));
+    SCUMBLE_RETURN_IF_ERROR(RequireOfFile(styles, file, request.picture.upsample, one));
     SCUMBLE_RETURN_IF_ERROR(check_files());
     one.blender_camera = camera.At(frame);
     SCUMBLE_ASSIGN(memory, CheckMemoryOfFile(request, file, styles, one, true, context));
@@ -123,7 +125,7 @@ Expected<std::optional<BudgetChoice>> ChooseForSequence(TransferRequest& request
   SCUMBLE_ASSIGN(const FrameName name, FrameName::Parse(request.guides));
   SCUMBLE_ASSIGN(const FrameName camera, FrameName::Parse(request.camera));
   const std::string file = name.At(frame);
-  SCUMBLE_RETURN_IF_ERROR(RequireOfFile(styles, file, read));
+  SCUMBLE_RETURN_IF_ERROR(RequireOfFile(styles, file, request.picture.upsample, read));
   read.blender_camera = camera.At(frame);
   SCUMBLE_RETURN_IF_ERROR(CheckMemoryOfFile(request, file, styles, read, true, context));
   SCUMBLE_ASSIGN(const GuideSet guides, ReadGuides(file, read));
@@ -165,7 +167,7 @@ Expected<RunReport> RunTransfer(TransferRequest request, const SequenceListener&
     return report;
   }
   Stopwatch watch;
-  SCUMBLE_RETURN_IF_ERROR(RequireOfFile(styles, request.guides, read));
+  SCUMBLE_RETURN_IF_ERROR(RequireOfFile(styles, request.guides, request.picture.upsample, read));
   SCUMBLE_RETURN_IF_ERROR(check_files());
   SCUMBLE_ASSIGN(const MemoryNeed memory, CheckMemoryOfFile(request, request.guides, styles, read, false, context));
   SCUMBLE_ASSIGN(const GuideSet guides, ReadGuides(request.guides, read));
