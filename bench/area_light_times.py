@@ -3,6 +3,7 @@
 they are from 1,024 samples: the table of docs/performance.md.
 
     /usr/bin/python3 bench/area_light_times.py --program build/scumble [--runs 5] [--write-docs]
+    /usr/bin/python3 bench/area_light_times.py --scene ball --keep FOLDER
 
 The scenes are those of bench/area_light_scenes.py. Contestants take turns; everything runs once before it counts. FLIP is
 that of `scumble compare --flip`, the mean over the picture. Without --write-docs the table goes to standard output.
@@ -32,11 +33,14 @@ def measure(options, folder):
     """Rows of the table: scene, samples, seconds, FLIP."""
     rows = []
     for title, name, make in SCENES:
+        if options.scene and name != options.scene + ".glb":
+            continue
         make(folder / name)
         stylize = [options.program, "stylize", folder / name, "--style", options.style, "--size", options.size, "-q"]
-        truth = folder / "truth.png"
-        say("%s: %d samples" % (title, TRUTH))
-        run([*stylize, "--samples", TRUTH, "-o", truth])
+        truth = folder / (name + ".truth.png")
+        if not truth.exists():
+            say("%s: %d samples" % (title, TRUTH))
+            run([*stylize, "--samples", TRUTH, "-o", truth])
         times = {label: [] for label, _ in SAMPLES}
         flips = {}
         for turn in range(options.runs + 1):
@@ -62,12 +66,16 @@ def main():
     parser.add_argument("--style", default="chiaroscuro")
     parser.add_argument("--size", default="960x540")
     parser.add_argument("--runs", type=int, default=5)
+    parser.add_argument("--scene", choices=["ball", "level"], help="measure one scene alone")
+    parser.add_argument("--keep", type=Path, help="a folder for scenes and pictures of 1,024 samples, used again if there")
     parser.add_argument("--write-docs", action="store_true")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
-        rows = measure(options, Path(folder))
+        if options.keep:
+            options.keep.mkdir(parents=True, exist_ok=True)
+        rows = measure(options, options.keep or Path(folder))
     table = "".join("| %s |\n" % " | ".join(row) for row in
-                    [("scene", "samples of light", "whole process", "FLIP against %d samples" % TRUTH),
+                    [("scene", "samples of light", "whole process", "FLIP against {:,} samples".format(TRUTH)),
                      ("---", "---", "---", "---"), *rows]).replace("| --- | --- | --- | --- |", "|---|---|---|---|")
     if not options.write_docs:
         print(table, end="")
