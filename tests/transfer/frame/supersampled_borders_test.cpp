@@ -23,14 +23,14 @@ namespace {
 
 using namespace testing;
 
-constexpr int kWidth = 320, kHeight = 240;
+constexpr int kBordersWidth = 320, kBordersHeight = 240;
 
 GuideSet StillLifeAt(int scale, int aa, const LayerSet& layers) {
   auto scene = LoadScene(std::string(SCUMBLE_SOURCE_DIR) + "/scenes/stilllife.glb");
   EXPECT_TRUE(scene.ok());
-  const auto view = PrepareView(*scene, "", std::nullopt, double(kWidth) / kHeight, true);
+  const auto view = PrepareView(*scene, "", std::nullopt, double(kBordersWidth) / kBordersHeight, true);
   EXPECT_TRUE(view.ok());
-  GuidegenOptions options = Sized(kWidth * scale, kHeight * scale, layers);
+  GuidegenOptions options = Sized(kBordersWidth * scale, kBordersHeight * scale, layers);
   options.aa = aa;
   return Render(*scene, view->camera, options).guides;
 }
@@ -165,7 +165,7 @@ TEST_P(SupersampledBorders, AreThoseOfThePicture) {
   LayerSet layers = RequiredLayers(*style);
   const GuideSet guides = StillLifeAt(1, kAa, layers), fine = StillLifeAt(kAa, 1, {});
   ASSERT_TRUE(guides.fragments);
-  const PreparedStyle prepared = MustPrepare(*style, kHeight);
+  const PreparedStyle prepared = MustPrepare(*style, kBordersHeight);
   TransferOptions options;
   options.keep_field = true;
   TransferScratch scratch;
