@@ -95,7 +95,7 @@ TEST_F(CyclesMatrixTest, HairAgrees) {
     EXPECT_EQ(Figure(report, "A", "differing"), 0.0);
     EXPECT_EQ(Figure(report, "object", "differing"), 0.0);
     EXPECT_LT(Figure(report, "normal", "99% within"), name == "hair" ? 0.3 : 0.01);
-    EXPECT_LT(Figure(report, "depth", "99.9% within"), 1e-4);
+    EXPECT_LT(Figure(report, "depth", "99.9% within"), 1e-3);  // a strand's radius is 0.01 of its depth
     EXPECT_LT(Figure(report, "albedo", "mean difference"), 0.002);
     EXPECT_LT(Figure(report, "lpe.LDE", "mean difference"), 0.5);
   }
