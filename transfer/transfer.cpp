@@ -193,7 +193,7 @@ class Run {
         match,
         style.settings.method == Method::kLitSphere,
         IsEdgeAware(style),
-        IsEdgeAware(style) ? internal::EdgeRules::CreaseCosine(style.settings.crease) : -2.0f,
+        IsEdgeAware(style) && style.blend_radius > 0 ? internal::EdgeRules::CreaseCosine(style.settings.crease) : -2.0f,
         style.base_layers.get(),
         TintOf(style)};
     const internal::VoteInput votes{scratch_.field, scratch_.active, *style.exemplar, style.blend_radius, nullptr, {}};

@@ -23,6 +23,7 @@ Status Fragments::Validate(const GuideSet& guides, const std::string& name) cons
     return InputError(name + ": its fragments " + what + kRemedyForFragments);
   };
   if (values.pixel_count() != count()) return refuse("have values for another number of surfaces");
+  if (!cells.empty() && cells.size() != count()) return refuse("have cells for another number of surfaces");
   if (count() == 0) return Ok();
   if (!values.layers().Contains(guides.layers())) {
     return refuse("hold " + values.layers().ToString() + ", the guides " + guides.layers().ToString());

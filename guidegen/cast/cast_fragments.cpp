@@ -45,7 +45,7 @@ void FragmentCaster::Add(const PrimaryRays::Beside& beside, FoundFragments& foun
   if (view_.bends_normals) BendShadingNormal(object, ray, point);
   const int x = int(beside.at.x), y = int(beside.at.y);
   found.found.push_back({std::uint32_t(y) * std::uint32_t(width_) + std::uint32_t(x),
-                         glm::vec2(beside.at - glm::dvec2(x + 0.5, y + 0.5)), found.values.size()});
+                         glm::vec2(beside.at - glm::dvec2(x + 0.5, y + 0.5)), beside.cells, found.values.size()});
   const auto put = [&](double value) { found.values.push_back(float(value)); };
   const auto put_all = [&](const auto& values) {
     for (int i = 0; i < values.length(); ++i) put(values[i]);
@@ -111,7 +111,10 @@ std::shared_ptr<const Fragments> GatherFragments(std::span<const FoundFragments*
   });
   auto fragments = std::make_shared<Fragments>();
   fragments->values = GuideSet(int(all.size()), 1);
-  for (const auto& one : all) fragments->pixel.push_back(one.second->pixel);
+  for (const auto& one : all) {
+    fragments->pixel.push_back(one.second->pixel);
+    fragments->cells.push_back(one.second->cells);
+  }
   int channel = 0;
   for (const LayerInfo& info : AllLayers()) {
     if (!guides.Has(info.layer)) continue;

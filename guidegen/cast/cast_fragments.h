@@ -17,6 +17,7 @@ struct FoundFragments {
   struct Found {
     std::uint32_t pixel;
     glm::vec2 at;       // of the subsample, from the pixel's centre
+    std::uint16_t cells;
     std::size_t first;  // of its values
   };
   std::vector<Found> found;

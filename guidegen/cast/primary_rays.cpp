@@ -232,7 +232,9 @@ void PrimaryRays::FindBeside(const Tile& tile, int pixel, const TileHits& hits, 
   struct Share {
     std::uint32_t surface;
     int count;
-    int rank;  // of the nearest subsample
+    glm::dvec2 sum;  // of its subsamples' places
+    Samples samples;
+    std::uint16_t cells;
   };
   const std::size_t per_pixel = offsets_.size();
   const std::uint32_t* const object = seen.object.data() + std::size_t(pixel) * per_pixel;
@@ -247,13 +249,14 @@ void PrimaryRays::FindBeside(const Tile& tile, int pixel, const TileHits& hits, 
       ++own;
       continue;
     }
+    const auto cell = std::uint16_t(1 << (4 * int(4 * offsets_[rank].y) + int(4 * offsets_[rank].x)));
     const auto end = shares.begin() + std::ptrdiff_t(count);
     const auto known = std::find_if(shares.begin(), end, [&](const Share& one) { return one.surface == surface; });
     if (known == end) {
-      shares[count++] = {surface, 1, int(rank)};
-    } else {
-      ++known->count;
+      shares[count++] = {surface, 0, glm::dvec2(0.0), {}, 0};
     }
+    ++known->count, known->sum += glm::dvec2(offsets_[rank].x, offsets_[rank].y), known->samples.set(rank),
+        known->cells |= cell;
   }
   if (count == 0) return;
   std::sort(shares.begin(), shares.begin() + std::ptrdiff_t(count), [](const Share& a, const Share& b) {
@@ -263,12 +266,21 @@ void PrimaryRays::FindBeside(const Tile& tile, int pixel, const TileHits& hits, 
   int kept = std::max(own, 1);
   for (std::size_t i = 0; i < count; ++i) kept += shares[i].count;
   for (std::size_t i = 0; i < count; ++i) {
-    const auto rank = std::size_t(shares[i].rank);
+    const glm::dvec2 mean = shares[i].sum / double(shares[i].count);
+    const auto off = [&](std::size_t sample) {
+      const double dx = offsets_[sample].x - mean.x, dy = offsets_[sample].y - mean.y;
+      return dx * dx + dy * dy;
+    };
+    std::size_t rank = per_pixel;
+    for (std::size_t sample = 0; sample < per_pixel; ++sample) {
+      if (shares[i].samples.test(sample) && (rank == per_pixel || off(sample) < off(rank))) rank = sample;
+    }
     beside.push_back({pixel,
                       {tile.x0 + TileColumn(pixel) + offsets_[rank].x, tile.y0 + TileRow(pixel) + offsets_[rank].y},
                       object[rank],
                       seen.primitive[std::size_t(pixel) * per_pixel + rank],
-                      float(double(coverage) * shares[i].count / kept)});
+                      float(double(coverage) * shares[i].count / kept),
+                      shares[i].cells});
   }
 }
 

@@ -35,10 +35,11 @@ class PrimaryRays {
   // Another surface than that of a pixel's centre, as Fragments has them.
   struct Beside {
     int pixel;
-    glm::dvec2 at;  // the place in the picture of its subsample that is nearest to the centre
+    glm::dvec2 at;  // the place in the picture of its subsample that is nearest to their mean
     std::uint32_t object;
     std::uint32_t primitive;
     float coverage;
+    std::uint16_t cells;  // as in Fragments
   };
   // What the rays through subsamples met, by pixel and rank. Memory for Cover, of one thread.
   struct SubsampleHits {

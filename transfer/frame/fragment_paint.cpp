@@ -4,7 +4,8 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <span>
+#include <bit>
+#include <iterator>
 
 #include "core/image/check.h"
 #include "core/image/color.h"
@@ -14,8 +15,48 @@
 namespace scumble::internal {
 namespace {
 
-constexpr PixelPosition kBeside[] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
-constexpr PixelPosition kCorners[] = {{-1, -1}, {1, -1}, {-1, 1}, {1, 1}};
+constexpr PixelPosition kAround[] = {{-1, -1}, {0, -1}, {1, -1}, {-1, 0}, {1, 0}, {-1, 1}, {0, 1}, {1, 1}};
+constexpr std::size_t kPixelsAround = std::size(kAround);
+
+// The squared distance from the centre of a cell to that of a pixel around, in eighths of a pixel.
+constexpr int Distance(int cell, const PixelPosition& step) {
+  const int dx = 8 * step.x - (2 * (cell % 4) - 3), dy = 8 * step.y - (2 * (cell / 4) - 3);
+  return dx * dx + dy * dy;
+}
+
+// How many of the cells each pixel is the nearest to, of those whose bit in `around` is set.
+std::array<int, kPixelsAround> CountNearest(std::uint16_t cells, unsigned around) {
+  std::array<int, kPixelsAround> count = {};
+  if (around == 0) return count;
+  for (int cell = 0; cell < 16; ++cell) {
+    if (!(cells >> cell & 1)) continue;
+    std::size_t nearest = kPixelsAround;
+    for (std::size_t k = 0; k < kPixelsAround; ++k) {
+      if (!(around >> k & 1)) continue;
+      if (nearest == kPixelsAround || Distance(cell, kAround[k]) < Distance(cell, kAround[nearest])) nearest = k;
+    }
+    ++count[nearest];
+  }
+  return count;
+}
+
+// The mean colour of cells in linear light, as pictures are composited. Otherwise as VoteSum.
+struct CellSum {
+  float color[3] = {0.0f, 0.0f, 0.0f};
+  float alpha = 0.0f;
+  std::uint32_t cells = 0;
+
+  void Add(const std::uint16_t* texel, std::uint32_t count) {
+    const float weight = static_cast<float>(count) * texel[3];
+    for (int c = 0; c < 3; ++c) color[c] += weight * Srgb16ToLinear(texel[c]);
+    alpha += weight;
+    cells += count;
+  }
+  void Count(std::uint16_t* out) const {
+    for (int c = 0; c < 3; ++c) out[c] = alpha > 0.0f ? Srgb16FromLinear(std::min(1.0f, color[c] / alpha)) : 0;
+    out[3] = static_cast<std::uint16_t>(alpha / static_cast<float>(cells) + 0.5f);
+  }
+};
 
 void ReadGuide(const MatchInput& match, const GuideSet& values, std::size_t fragment, PixelGuide& guide) {
   guide.normal = values.Vec3(Layer::kNormal, fragment);
@@ -55,33 +96,40 @@ bool FragmentPaint::IsWithinCrease(std::size_t q, std::size_t fragment, float cr
   return a.x * b.x + a.y * b.y + a.z * b.z > crease_cosine;
 }
 
-// Calls vote(exemplar, source) for each vote on the fragment's colour.
+// Calls vote(exemplar, source, count) for the votes on the fragment's colour.
 template <class Cast>
 void FragmentPaint::ForEachVote(const FragmentStyle& style, const VoteInput& votes, std::size_t fragment, int x, int y,
                                 const Cast& vote) const {
   const GuideSet& guides = frame_.guides;
   const SourceField& field = votes.field;
   // The pixel's source goes on at (x, y).
-  const auto offer = [&](int u, int v) {
+  const auto source_of = [&](int u, int v) {
     const std::size_t q = field.Index(u, v);
-    const Source source{field.x[q] + x - u, field.y[q] + y - v};
-    if (!style.match.exemplar.Usable(source.x, source.y)) return false;
-    vote(int(field.exemplar[q]), source);
-    return true;
+    return Source{field.x[q] + x - u, field.y[q] + y - v};
   };
+  const auto is_usable = [&](const Source& source) { return style.match.exemplar.Usable(source.x, source.y); };
+  const std::uint16_t known = fragments_->cells.empty() ? 0 : fragments_->cells[fragment];
+  const std::uint16_t cells = known ? known : Fragments::kAllCells;
   bool any = false;  // vote yet
-  const auto offer_beside = [&](std::span<const PixelPosition> steps) {
-    for (const PixelPosition& step : steps) {
-      const int u = x + step.x, v = y + step.y;
-      if (u < 0 || v < 0 || u >= guides.width() || v >= guides.height() || !votes.active[field.Index(u, v)]) continue;
-      if (ShowsSurface(guides.Index(u, v), fragment, style.crease_cosine)) any = offer(u, v) || any;
-    }
-  };
   const bool window_has_surface = style.edge_aware && votes.radius > 0;
   if (!style.own_sources && !window_has_surface) {
-    offer_beside(kBeside);
-    if (!any) offer_beside(kCorners);
+    unsigned around = 0;
+    for (std::size_t k = 0; k < kPixelsAround; ++k) {
+      const int u = x + kAround[k].x, v = y + kAround[k].y;
+      if (u < 0 || v < 0 || u >= guides.width() || v >= guides.height() || !votes.active[field.Index(u, v)]) continue;
+      if (ShowsSurface(guides.Index(u, v), fragment, style.crease_cosine)) around |= 1u << k;
+    }
+    const auto count = CountNearest(cells, around);
+    for (std::size_t k = 0; k < kPixelsAround; ++k) {
+      const int u = x + kAround[k].x, v = y + kAround[k].y;
+      if (count[k] == 0) continue;
+      const std::size_t q = field.Index(u, v);
+      const Source on = source_of(u, v);
+      vote(int(field.exemplar[q]), is_usable(on) ? on : Source{field.x[q], field.y[q]}, std::uint32_t(count[k]));
+    }
+    any = around != 0;
   }
+  const auto weight = window_has_surface ? 1u : std::uint32_t(std::popcount(cells));
   // A window that is not cut may hold other objects alone.
   const bool shows_surface = any || window_has_surface;
   const int radius = votes.radius;
@@ -93,23 +141,26 @@ void FragmentPaint::ForEachVote(const FragmentStyle& style, const VoteInput& vot
         if (guides.Plane(Layer::kObject)[q] != fragments_->values.Plane(Layer::kObject)[fragment]) continue;
         if (!IsWithinCrease(q, fragment, style.crease_cosine)) continue;
       }
-      any = offer(u, v) || any;
+      if (!is_usable(source_of(u, v))) continue;
+      vote(int(field.exemplar[field.Index(u, v)]), source_of(u, v), weight);
+      any = true;
     }
   }
   if (any && shows_surface) return;
   PixelGuide guide;
   ReadGuide(style.match, fragments_->values, fragment, guide);
   const Candidate own = OwnCandidate(style.match, guide);
-  vote(own.exemplar, own.source);
+  vote(own.exemplar, own.source, weight);
 }
 
+template <class Sum>
 FragmentPaint::Texel FragmentPaint::Painted(const FragmentStyle& style, const VoteInput& votes, std::size_t fragment,
                                             int x, int y) const {
   const MatchInput& match = style.match;
-  VoteSum paint, base;
-  ForEachVote(style, votes, fragment, x, y, [&](int exemplar, Source source) {
-    paint.Add(match.exemplar.picture(exemplar).At(source.x, source.y));
-    if (style.base) base.Add(style.base->picture(exemplar).At(source.x, source.y));
+  Sum paint, base;
+  ForEachVote(style, votes, fragment, x, y, [&](int exemplar, Source source, std::uint32_t count) {
+    paint.Add(match.exemplar.picture(exemplar).At(source.x, source.y), count);
+    if (style.base) base.Add(style.base->picture(exemplar).At(source.x, source.y), count);
   });
   Texel texel;
   paint.Count(texel.data());
@@ -134,7 +185,7 @@ void FragmentPaint::Paint(const FragmentStyle& style, int number, const VoteInpu
   for (std::size_t i = from; i < to; ++i) {
     const int x = int(fragments_->pixel[i] % width), y = int(fragments_->pixel[i] / width);
     if (x < region.x0 || x >= region.x1 || StyleOf(i) != number) continue;
-    colors_[i] = Painted(style, votes, i, x, y);
+    colors_[i] = votes.radius > 0 ? Painted<VoteSum>(style, votes, i, x, y) : Painted<CellSum>(style, votes, i, x, y);
   }
 }
 

@@ -2,9 +2,10 @@
 //
 // The chunks of the pixels in the style's window vote on the colour of a fragment (core/image/fragments.h), as on a
 // pixel's: so a border shows what its surface would show there. Where votes are cut at edges, pixels of the fragment's
-// own object whose normals are within the crease vote. Without a window, or where votes are not cut, the four pixels
-// beside that show its surface vote, or those at the corners if none does. Where no pixel around shows it, and always
-// for Lit Sphere, the fragment takes its own nearest neighbour.
+// own object whose normals are within the crease vote. Without a window, or where votes are not cut, each of its cells
+// (core/image/fragments.h) takes the nearest of the eight pixels around that shows its surface. Without a window, these
+// are averaged in linear light. Where none shows it, and
+// always for Lit Sphere, the fragment takes its own nearest neighbour.
 #pragma once
 
 #include <array>
@@ -64,6 +65,7 @@ class FragmentPaint {
   template <class Cast>
   void ForEachVote(const FragmentStyle& style, const VoteInput& votes, std::size_t fragment, int x, int y,
                    const Cast& vote) const;
+  template <class Sum>
   Texel Painted(const FragmentStyle& style, const VoteInput& votes, std::size_t fragment, int x, int y) const;
   template <class Visit>
   void ForAll(const Visit& visit) const;

@@ -14,6 +14,7 @@ namespace scumble::internal {
 namespace {
 
 constexpr std::uint32_t kVersion = 1;
+constexpr const char* kCells = "cells";  // whole numbers; may be missing
 
 void Put(std::uint32_t number, std::vector<std::byte>& bytes) {
   for (int shift = 0; shift < 32; shift += 8) bytes.push_back(std::byte(number >> shift & 0xff));
@@ -104,6 +105,10 @@ std::vector<std::byte> EncodeFragments(const GuideSet& guides, bool half) {
       names.push_back(std::byte{0}), ++channels;
     }
   }
+  if (!fragments.cells.empty()) {
+    for (const char* c = kCells; *c != 0; ++c) names.push_back(std::byte(*c));
+    names.push_back(std::byte{0}), ++channels;
+  }
   bytes.reserve(20 + names.size() + 4 * fragments.count() * (1 + channels));
   for (const std::size_t number : {std::size_t(kVersion), std::size_t(guides.width()), std::size_t(guides.height()),
                                    fragments.count(), std::size_t(channels)}) {
@@ -120,6 +125,7 @@ std::vector<std::byte> EncodeFragments(const GuideSet& guides, bool half) {
       }
     }
   }
+  for (const std::uint16_t cells : fragments.cells) Put(std::bit_cast<std::uint32_t>(float(cells)), bytes);
   return bytes;
 }
 
@@ -146,9 +152,17 @@ Expected<std::shared_ptr<const Fragments>> DecodeFragments(std::span<const std::
   for (const std::string& channel_name : header.channels) {
     const auto channel = ChannelOf(channel_name, guides);
     if (channel) missing.erase(*channel);
+    const bool is_cells = channel_name == kCells;
+    if (is_cells) fragments->cells.resize(header.count);
     for (std::size_t i = 0; i < header.count; ++i) {
       const float value = std::bit_cast<float>(*reader.Number());
       if (channel) fragments->values.Plane(channel->first, channel->second)[i] = value;
+      if (!is_cells) continue;
+      if (!(value >= 0.0f && value <= Fragments::kAllCells)) {
+        return InputError(name + ": its attribute " + kFragmentAttribute + " has a value of " + std::to_string(value) +
+                          " in " + kCells + ", expected 0 to 65535" + kRemedyForFragments);
+      }
+      fragments->cells[i] = std::uint16_t(value);
     }
   }
   if (!missing.empty()) {

@@ -32,6 +32,7 @@ GuideSet GuidesWithFragments(int width, int height) {
     }
   }
   fragments->values = GuideSet(int(fragments->count()), 1);
+  for (std::size_t i = 0; i < fragments->count(); ++i) fragments->cells.push_back(std::uint16_t(Hash(7, i) % 65536));
   int number = 0;
   for (GuideSet* const set : {&guides, &fragments->values}) {
     ++number;
@@ -58,6 +59,7 @@ GuideSet GuidesWithFragments(int width, int height) {
 void ExpectSameFragments(const GuideSet& a, const GuideSet& b) {
   ASSERT_TRUE(a.fragments && b.fragments);
   EXPECT_EQ(a.fragments->pixel, b.fragments->pixel);
+  EXPECT_EQ(a.fragments->cells, b.fragments->cells);
   ASSERT_EQ(a.fragments->values.layers(), b.fragments->values.layers());
   for (const LayerInfo& info : AllLayers()) {
     if (!a.fragments->values.Has(info.layer)) continue;
@@ -115,6 +117,16 @@ TEST(FragmentFile, HoldTheLayersThatAreRead) {
   EXPECT_EQ(read->fragments->pixel, guides.fragments->pixel);
 }
 
+TEST(FragmentFile, CellsMayBeUnknown) {
+  GuideSet guides = GuidesWithFragments(20, 11);
+  auto without = std::make_shared<Fragments>(*guides.fragments);
+  without->cells.clear();
+  guides.fragments = without;
+  const auto decoded = internal::DecodeFragments(internal::EncodeFragments(guides, false), guides, "g.exr");
+  ASSERT_TRUE(decoded) << decoded.error().message;
+  EXPECT_TRUE((*decoded)->cells.empty());
+}
+
 TEST(FragmentFile, WithoutThemIsAsBefore) {
   const TemporaryFolder folder;
   GuideSet guides = GuidesWithFragments(20, 11);
@@ -149,6 +161,9 @@ TEST(FragmentFile, WhatIsCutOffOrChangedIsRefused) {
   std::vector<std::byte> later = bytes;
   later[0] = std::byte{2};
   EXPECT_THAT(refusal(later, guides), HasSubstr("has version 2, and this program reads version 1"));
+  std::vector<std::byte> cells = bytes;  // the last four bytes are a fragment's
+  cells.back() = std::byte{0xc0};
+  EXPECT_THAT(refusal(cells, guides), AllOf(HasSubstr(" in cells, expected 0 to 65535"), HasSubstr("guidegen")));
   // Two channels of one name, so that another is missing.
   std::vector<std::byte> twice = bytes;
   const std::string from = "normal.Y", to = "normal.X";
@@ -225,6 +240,7 @@ TEST(Fragments, AreRefusedWhereTheyDoNotFit) {
   EXPECT_NE(refused([](Fragments& f) { f.pixel.back() = 0; }).find("out of order"), std::string::npos);
   EXPECT_NE(refused([](Fragments& f) { std::fill_n(f.pixel.begin(), 4, 0u); }).find("too many"), std::string::npos);
   EXPECT_NE(refused([](Fragments& f) { f.pixel.pop_back(); }).find("another number"), std::string::npos);
+  EXPECT_NE(refused([](Fragments& f) { f.cells.pop_back(); }).find("another number"), std::string::npos);
   EXPECT_NE(refused([](Fragments& f) { f.values.Remove(Layer::kObject); }).find("hold"), std::string::npos);
   EXPECT_NE(refused([](Fragments& f) { f.values.Plane(Layer::kCoverage)[0] = 1.5f; }).find("cover more"),
             std::string::npos);

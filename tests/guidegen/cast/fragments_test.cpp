@@ -69,6 +69,12 @@ TEST(Fragments, AreTheSurfacesOfThePictureOfAllSubsamples) {
         const float coverage = fragments.values.Plane(Layer::kCoverage)[next];
         EXPECT_FLOAT_EQ(coverage, float(found->second.size()) / (kAa * kAa)) << x << ", " << y;
         sum += coverage;
+        unsigned cells = 0;  // with 4 × 4 subsamples, one each
+        for (const std::size_t at : found->second) {
+          const int u = int(at) % (kWidth * kAa) - x * kAa, v = int(at) / (kWidth * kAa) - y * kAa;
+          cells |= 1u << (4 * v + u);
+        }
+        EXPECT_EQ(fragments.cells[next], cells) << x << ", " << y;
         // One of its subsamples has just these values.
         const bool is_one = std::any_of(found->second.begin(), found->second.end(), [&](std::size_t at) {
           const auto near = [&](Layer layer) {
@@ -106,6 +112,7 @@ TEST(Fragments, AreTheSameOnAnyNumberOfThreads) {
   options.threads = 3;
   const GuideSet three = Render(BallsBeforeAWall(), camera, options).guides;
   ASSERT_EQ(one.fragments->pixel, three.fragments->pixel);
+  ASSERT_EQ(one.fragments->cells, three.fragments->cells);
   for (const LayerInfo& info : AllLayers()) {
     if (!one.Has(info.layer)) continue;
     for (int c = 0; c < ChannelCount(info.layer); ++c) {
