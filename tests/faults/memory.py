@@ -66,7 +66,7 @@ def few_addresses(program, failures):
 
 def main():
     path, source = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
-    step = int(sys.argv[3]) if len(sys.argv) > 3 else 9001  # kB; no multiple of a page, so that runs differ
+    step = int(sys.argv[3]) if len(sys.argv) > 3 else 18001  # kB; no multiple of a page, so that runs differ
     failures = common.Failures()
     with common.temporary_folder() as name:
         folder = pathlib.Path(name)

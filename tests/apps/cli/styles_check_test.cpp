@@ -154,18 +154,10 @@ TEST_F(StylesCheck, LightsOfOneStyle) {
   EXPECT_TRUE(Contains(json["faults"][0]["image"], "shade.png"));
 }
 
-TEST_F(StylesCheck, TheBundledStylesAreWithoutAMistake) {
-  Arguments arguments = {"styles", "check", "--strict"};
-  for (const auto& entry : std::filesystem::directory_iterator(std::string(SCUMBLE_SOURCE_DIR) + "/exemplars")) {
-    if (std::filesystem::exists(entry.path() / "style.toml")) arguments.push_back(entry.path().string());
-  }
-  EXPECT_GE(arguments.size(), 9u);
-  CommandSettings settings;
-  settings.patience_seconds = 500;
-  const CommandResult check = Run(arguments, settings);
-  EXPECT_EQ(check.code, 0) << check.err;
-  EXPECT_EQ(check.err, "");
+// That they pass `styles check --strict` is a part of traits_are_current.
+TEST_F(StylesCheck, EveryBundledStyleHasAThumbnail) {
   const auto listed = RunOk({"styles", "--json"}).Json();
+  EXPECT_GE(listed.size(), 20u);
   for (const auto& style : listed) {
     ASSERT_TRUE(style.contains("thumbnail")) << style;
     EXPECT_TRUE(std::filesystem::exists(style["thumbnail"].get<std::string>())) << style;
