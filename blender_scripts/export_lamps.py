@@ -2,10 +2,12 @@
 
 import math
 
+import bpy
 import numpy
 
 from export_materials import constant, previous
 
+SPOTS_HAVE_COSINE = bpy.app.version < (3, 5)  # their light falls off with the cosine from the axis, too
 MOST_BOUNCES = 1024  # of a light: Cycles' default, which limits nothing
 
 
@@ -51,6 +53,7 @@ def describe_lamp(placed, unsupported):
     if lamp.type == "SPOT":
         extras["spot_size"] = lamp.spot_size
         extras["spot_blend"] = lamp.spot_blend
+        extras["cosine"] = SPOTS_HAVE_COSINE
     elif lamp.type == "SUN":
         extras["angle"] = lamp.angle
     elif lamp.type == "AREA":
@@ -63,7 +66,9 @@ def describe_lamp(placed, unsupported):
         if lamp.cycles.is_portal:
             complain("is a portal, which gives no light")
             extras["energy"] = 0.0
-    if not lamp.cycles.cast_shadow:
+    if lamp.type in {"POINT", "SPOT"} and extras["radius"] > 0.0 and not getattr(lamp, "use_soft_falloff", True):
+        complain("is a sphere without Soft Falloff, and is taken for a disc")
+    if not getattr(lamp.cycles, "cast_shadow", lamp.use_shadow):  # the lamp's own from Blender 4.2 on
         complain("casts no shadows, which is ignored")
     for kind in ("diffuse", "glossy"):
         if not getattr(placed.source, "visible_" + kind):

@@ -95,6 +95,7 @@ def open_scene(options, unsupported):
         blend_check.check_file(layer, unsupported)
         guide_instances.name_apart(scene, layer, unsupported)
     else:
+        blend_common.note_version(unsupported)
         guide_import.load(options.scene, options.size, unsupported)
         set_size(bpy.context.scene.render, options.size)
     return bpy.context.scene
@@ -128,7 +129,9 @@ def set_up_cycles(scene):
     cycles.seed, cycles.use_animated_seed, cycles.sample_offset = 0, False, 0
     cycles.use_adaptive_sampling = cycles.use_denoising = cycles.use_fast_gi = cycles.use_guiding = False
     cycles.time_limit = 0.0
-    cycles.sampling_pattern = "PROGRESSIVE_MULTI_JITTER"
+    cycles.sampling_pattern = "PROGRESSIVE_MULTI_JITTER" if bpy.app.version < (3, 5) else "TABULATED_SOBOL"
+    if hasattr(cycles, "use_light_tree"):
+        cycles.use_light_tree = False  # 3.4 has none: each light gets its share of the samples
     cycles.scrambling_distance, cycles.auto_scrambling_distance = 1.0, False  # pixels' noise must not hang together
     cycles.use_layer_samples = "IGNORE"
     cycles.direct_light_sampling_type = "MULTIPLE_IMPORTANCE_SAMPLING"

@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kSupported = "Blender 3.4";
+constexpr const char* kSupported = "Blender (3.4.1 and 4.3.2 are tested)";
 constexpr int kExitVersion = 5;  // of our scripts
 constexpr const char* kErrorMark = "scumble: error: ";
 const std::string kPath = "PATH=";

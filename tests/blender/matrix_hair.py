@@ -2,6 +2,7 @@
 
 import bmesh
 import bpy
+import versions
 
 
 def emitter(name, place, materials):
@@ -40,9 +41,7 @@ def made_by_nodes(name, place, material):
     thing = bpy.data.objects.new(name, data)
     thing.location = place
     bpy.context.scene.collection.objects.link(thing)
-    nodes = bpy.data.node_groups.new(name, "GeometryNodeTree")
-    nodes.inputs.new("NodeSocketGeometry", "Geometry")
-    nodes.outputs.new("NodeSocketGeometry", "Geometry")
+    nodes = versions.geometry_nodes(name)
     last = nodes.nodes.new("NodeGroupOutput")
     spiral, radius = nodes.nodes.new("GeometryNodeCurveSpiral"), nodes.nodes.new("GeometryNodeSetCurveRadius")
     paint = nodes.nodes.new("GeometryNodeSetMaterial")

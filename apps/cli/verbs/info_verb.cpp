@@ -183,7 +183,7 @@ void AddInfoVerb(CLI::App& app, Globals& globals, Action& chosen) {
   auto verb = std::make_shared<InfoVerb>();
   sub->add_option(
          "file", verb->path,
-         "guide file (.exr), scene (.glb, .gltf, .obj, .ply, or .blend, which Blender 3.4 exports first), style, "
+         "guide file (.exr), scene (.glb, .gltf, .obj, .ply, or .blend, which Blender exports first), style, "
          "or picture of a painted sphere")
       ->type_name("FILE")
       ->required();
