@@ -59,7 +59,8 @@ def use_render_modifiers(thing):
         settings = system.settings
         settings.display_percentage = 100
         if settings.child_type != "NONE":
-            settings.child_nbr = settings.rendered_child_count
+            shown = "child_nbr" if hasattr(settings, "child_nbr") else "child_percent"  # from Blender 4.0 on
+            setattr(settings, shown, settings.rendered_child_count)
         settings.display_step = settings.render_step
 
 

@@ -233,7 +233,11 @@ def materials():
         *bent_materials(image),
     ]
     by_name = {material.name: material for material in every}
-    by_name["Sharp"].node_tree.nodes["Glossy BSDF"].distribution = "SHARP"
+    sharp = by_name["Sharp"].node_tree.nodes["Glossy BSDF"]
+    if bpy.app.version < (4, 0):
+        sharp.distribution = "SHARP"
+    else:  # which has roughness 0 in its place
+        sharp.inputs["Roughness"].default_value = 0.0
     by_name["EmissionTextured"].node_tree.nodes["Emission"].inputs["Strength"].default_value = 2.0
     by_name["Plain"].diffuse_color = (0.7, 0.6, 0.5, 1.0)
     by_name["Diffuse"].use_backface_culling = True

@@ -63,7 +63,7 @@ def build(materials, shape):
     body, hair, textured = materials
     grow(emitter("Ball", (-1.2, 0.0, 0.6), [body, textured]))
     grow(emitter("Tufts", (0.0, 0.3, 0.6), [body, hair]), count=12, child_type="INTERPOLATED", rendered_child_count=6,
-         child_nbr=1, clump_factor=0.3)
+         clump_factor=0.3, **{versions.SHOWN_CHILDREN: 1})
     alone = emitter("Alone", (1.2, 0.0, 0.6), [hair])
     alone.scale = (0.8, 0.8, 0.8)
     alone.show_instancer_for_render = False

@@ -9,6 +9,9 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "blender_scripts"))
 from export_nodes import PRINCIPLED_INPUTS  # noqa: E402
 
 
+SHOWN_CHILDREN = "child_nbr" if bpy.app.version < (4, 0) else "child_percent"  # of a particle system, in the viewport
+
+
 def geometry_nodes(name):
     """A node group that takes and gives geometry."""
     tree = bpy.data.node_groups.new(name, "GeometryNodeTree")

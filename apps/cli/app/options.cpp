@@ -94,8 +94,9 @@ std::string RefuseNoSmoothing(const std::string& text) {
 }  // namespace
 
 void AddViewOptions(CLI::App& verb, SceneOptions& options) {
-  verb.add_option("scene", options.request.scene,
-                  "scene file: .glb, .gltf, .obj, .ply, or .blend, which Blender exports first (3.4.1 and 4.3.2 tested)")
+  verb.add_option(
+          "scene", options.request.scene,
+          "scene file: .glb, .gltf, .obj, .ply, or .blend, which Blender exports first (3.4.1 and 4.3.2 tested)")
       ->type_name("FILE")
       ->required();
   verb.add_option("--size", options.size, "pixels of the picture; one number makes a square")
