@@ -77,11 +77,12 @@ def of_metaballs(depsgraph):
 
 
 def uses_corner_normals(mesh):
-    """Blender 4.1 has no Auto Smooth any more: sharp edges, flat faces beside smooth ones and custom normals always
-    count."""
+    """Whether Cycles does. Blender 4.1 has no Auto Smooth any more: sharp edges and custom normals always count. Flat
+    faces beside smooth ones count for the exporter, but not for Cycles."""
     if hasattr(mesh, "use_auto_smooth"):
         return mesh.use_auto_smooth
-    return mesh.normals_domain == "CORNER"
+    return mesh.normals_domain == "CORNER" and (mesh.has_custom_normals or
+                                                numbers(mesh.edges, "use_edge_sharp", bool).any())
 
 
 def match_cycles(mesh, at_vertices=None, changes_shape=False):
@@ -102,7 +103,7 @@ def match_cycles(mesh, at_vertices=None, changes_shape=False):
 def take_normals(mesh, at_vertices):
     smooth = numbers(mesh.polygons, "use_smooth", bool)
     away = np.linalg.norm(vectors(mesh.vertices, "normal") - at_vertices, axis=1)
-    if not smooth.any() or away.max() <= CLOSE:
+    if not smooth.any() or (away.max() <= CLOSE and getattr(mesh, "normals_domain", "POINT") == "POINT"):
         return
     totals = numbers(mesh.polygons, "loop_total")
     wanted = at_vertices[numbers(mesh.loops, "vertex_index")]

@@ -2,6 +2,8 @@
 //
 // - Cycles 3 turns every shading normal that would reflect the eye's ray into the surface, Cycles 4 that of specular
 //   lobes alone (surface/shading_normal.h).
+// - A tangent normal map's strength mixes normals in Cycles 3, and scales the map's value in Cycles 4
+//   (surface/normal_map.h).
 // - Cycles 3 loses the light that bounces on between the facets of a rough diffuse surface, Cycles 4 gives it back
 //   (surface/bsdf.h).
 //
