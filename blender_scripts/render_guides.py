@@ -45,6 +45,7 @@ DATA_PASSES = {"normal", "z", "position", "diffuse_color", "glossy_color", "emit
                "cryptomatte_material"}
 LIGHT_PASSES = {"combined", "emit"} | {f"{lobe}_{part}" for lobe in ("diffuse", "glossy")
                                        for part in ("direct", "indirect", "color")}
+TERMINATOR_OFFSETS = [f"shadow_terminator_{kind}offset" for kind in ("", "normal_", "geometry_", "shading_")]
 BOUNCES = ("max_bounces", "diffuse_bounces", "glossy_bounces", "transmission_bounces", "volume_bounces")
 
 
@@ -144,7 +145,10 @@ def set_up_cycles(scene):
     for lamp in bpy.data.lights:
         lamp.cycles.use_multiple_importance_sampling = True  # without it no mirror shows the light
     for thing in bpy.data.objects:
-        thing.cycles.shadow_terminator_offset = thing.cycles.shadow_terminator_geometry_offset = 0.0
+        for holder in (thing, thing.cycles):  # the object itself in the latest versions
+            for name in TERMINATOR_OFFSETS:
+                if hasattr(holder, name):
+                    setattr(holder, name, 0.0)
 
 
 def set_up_layer(scene, name):
