@@ -4,7 +4,7 @@ import math
 
 import bpy
 
-from export_lamps import SPOTS_HAVE_COSINE
+from export_lamps import AREA_SCALE, SPOTS_HAVE_COSINE
 from guide_import_materials import ours
 from guide_materials import math as math_node
 
@@ -27,6 +27,7 @@ def replace_lamp(old, name, extras, backward):
     elif extras["type"] == "SUN":
         lamp.angle = extras["angle"]
     elif extras["type"] == "AREA":
+        lamp.energy /= AREA_SCALE
         lamp.shape = extras["shape"]
         lamp.size, lamp.size_y = extras["size"], extras["size_y"]
         if extras["shape"] in {"SQUARE", "DISK"} and abs(lamp.size - lamp.size_y) > 1e-7 * lamp.size:
