@@ -271,9 +271,13 @@ def bind(thing, bones, weights_at):
 # ---- Files ----------------------------------------------------------------------------------------------------------
 
 
-def without_colors():
+def options_by_version():
+    """No vertex colours, and the actions in use as one animation."""
     known = bpy.ops.export_scene.gltf.get_rna_type().properties.keys()
-    return {"export_colors": False} if "export_colors" in known else {"export_vertex_color": "NONE"}
+    colors = {"export_colors": False} if "export_colors" in known else {"export_vertex_color": "NONE"}
+    merged = ({"export_animation_mode": "ACTIVE_ACTIONS"} if "export_animation_mode" in known
+              else {"export_nla_strips": False})
+    return {**colors, **merged}
 
 
 def export(path, moving=False):
@@ -283,8 +287,8 @@ def export(path, moving=False):
     bpy.context.view_layer.update()
     bpy.ops.export_scene.gltf(filepath=str(path), export_format="GLB", export_apply=not moving, export_yup=True,
                               export_cameras=True, export_lights=True, export_animations=moving,
-                              export_nla_strips=False, export_skins=moving, export_morph=moving,
-                              export_tangents=False, export_copyright="CC0-1.0", **without_colors())
+                              export_skins=moving, export_morph=moving, export_tangents=False,
+                              export_copyright="CC0-1.0", **options_by_version())
     sharp = {thing.data.name for thing in bpy.data.objects
              if any(modifier.type == "WEIGHTED_NORMAL" for modifier in thing.modifiers)}
     make_repeatable(Path(path), sharp)

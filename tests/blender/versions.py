@@ -11,6 +11,10 @@ from export_nodes import PRINCIPLED_INPUTS  # noqa: E402
 
 SHOWN_CHILDREN = "child_nbr" if bpy.app.version < (4, 0) else "child_percent"  # of a particle system, in the viewport
 
+# The glTF exporter's option for all actions in use as one animation.
+ONE_ANIMATION = ({"export_nla_strips": False} if bpy.app.version < (3, 6)
+                 else {"export_animation_mode": "ACTIVE_ACTIONS"})
+
 
 def geometry_nodes(name):
     """A node group that takes and gives geometry."""
