@@ -102,13 +102,14 @@ def listed(names, most=3):
 
 
 def why_not_opened():
-    """From the head of the .blend among the arguments: "BLENDER-v403", from Blender 5 on "BLENDER17-01v0500"."""
+    """From the head of the .blend among the arguments: "BLENDER-v403", from Blender 5 on "BLENDER17-01v0500". Blender 4
+    leaves it readable in compressed files, too."""
     path = next((argument for argument in sys.argv if argument.lower().endswith(".blend")), None)
     head = b""
     if path is not None and os.path.isfile(path):
         with open(path, "rb") as file:
-            head = file.read(17)
-    match = re.match(rb"BLENDER(?:[-_][vV](\d)(\d\d)|\d\d-\d\d[vV](\d\d)(\d\d))", head)
+            head = file.read(64)
+    match = re.search(rb"BLENDER(?:[-_][vV](\d)(\d\d)|\d\d-\d\d[vV](\d\d)(\d\d))", head)
     version = tuple(int(number) for number in match.groups() if number) if match else bpy.app.version[:2]
     if version > bpy.app.version[:2]:
         return (f"it was saved by Blender {dotted(version)}, and this is the older Blender {bpy.app.version_string}: "

@@ -215,6 +215,15 @@ TEST_F(BlenderVerbs, FailuresAreReadable) {
   ExpectErrorHere(With({"guidegen", "bad.blend", "--blender", "./silent"}, tail), 3, {"./silent", "says nothing"});
   WriteProgram("crashing", "kill -SEGV $$");
   ExpectErrorHere(With({"guidegen", "bad.blend", "--blender", "./crashing"}, tail), 3, {"./crashing crashed"});
+  // Blender may well crash on what a newer one has saved.
+  WriteProgram("older", "echo 'Blender 3.4.1'; kill -SEGV $$");
+  WriteText("newer.blend", "BLENDER-v403RENDH");
+  ExpectErrorHere(With({"guidegen", "newer.blend", "--blender", "./older"}, tail), 3,
+                  {"./older crashed", "saved by Blender 4.3", "the older Blender 3.4.1"});
+  WriteText("newest.blend", "BLENDER17-01v0500");
+  WriteProgram("confused", "echo 'Blender 4.3.2'; echo 'scumble: error: what is this'; exit 3");
+  ExpectErrorHere(With({"guidegen", "newest.blend", "--blender", "./confused"}, tail), 3,
+                  {"what is this", "saved by Blender 5.0", "the older Blender 4.3.2"});
   EXPECT_FALSE(Exists("g.exr"));
 }
 
