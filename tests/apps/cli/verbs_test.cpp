@@ -76,7 +76,7 @@ TEST_F(CliUsage, UnknownOptionsAreNamed) {
 
 TEST_F(CliUsage, MissingArgumentsAreNamed) {
   ExpectError({"sphere"}, 2, {"--output is required"});
-  ExpectError({"guidegen"}, 2, {"scene is required"});
+  ExpectError({"guidegen"}, 2, {"scene_file is required"});
   ExpectError({"guidegen", Scene("suzanne.glb")}, 2, {"-o FILE is required", "--explain"});
   ExpectError({"transfer"}, 2, {"is required"});
   ExpectError({"transfer", "g.exr", "-o", "p.png"}, 2, {"--style is required"});
