@@ -60,6 +60,7 @@ class EmbreeScene {
   RTCScene handle() const { return scene_.get(); }
   RTCScene emitters() const { return emitters_.get(); }   // the objects that emit, under the same ids; null: none
   const std::string& isa() const { return isa_; }         // the one in use, never empty
+  std::string version() const;                            // of the Embree that is loaded, as "4.3.3"
   bool wide_packets() const { return isa_ == "avx512"; }  // whether packets of 16 rays are faster than those of 8
   const std::vector<PlacedObject>& objects() const { return *objects_; }  // by Embree's geometry id
 
