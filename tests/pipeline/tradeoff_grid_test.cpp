@@ -6,7 +6,6 @@
 #include <memory>
 #include <set>
 #include <string>
-#include <string_view>
 #include <utility>
 
 #include "core/image/hash.h"
@@ -53,7 +52,7 @@ std::vector<std::string> ValuesOf(const TradeGrid& grid, const std::string& axis
 
 using Values = std::vector<std::string>;
 
-const Variant& Named(const TradeGrid& grid, std::string_view name) {
+const Variant& Named(const TradeGrid& grid, const std::string& name) {
   static const Variant none;
   const auto found = std::find_if(grid.variants.begin(), grid.variants.end(),
                                   [&](const Variant& variant) { return variant.name == name; });

@@ -167,7 +167,7 @@ TEST_F(ExtremeSurvey, ObjObjectsTooFarApartHaveOriginsOfTheirOwn) {
   for (const glm::vec3& normal : MeshOf(scene, "stone").normals) EXPECT_EQ(normal, glm::vec3(1, 0, 0));
   // At the edge each wall has 90° of a corner: the two directions count alike.
   int at_edge = 0;
-  for (const std::string object : {"wall", "wing"}) {
+  for (const char* object : {"wall", "wing"}) {
     const Mesh& mesh = MeshOf(scene, object);
     for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
       if (mesh.positions[i].x < 1.0f || mesh.positions[i].z < 0.0f) continue;
