@@ -94,7 +94,8 @@ std::string RefuseNoSmoothing(const std::string& text) {
 }  // namespace
 
 void AddViewOptions(CLI::App& verb, SceneOptions& options) {
-  verb.add_option("scene", options.request.scene,
+  // CLI11 2.4 allows no argument of an option's name, --scene.
+  verb.add_option("scene_file", options.request.scene,
                   "scene file: .glb, .gltf, .obj, .ply, or .blend, which Blender 3.4 exports first")
       ->type_name("FILE")
       ->required();
