@@ -6,13 +6,15 @@ import os
 
 import bpy
 
-from blend_common import listed
+from blend_common import listed, note_newer_files, note_version
 
 PICTURES = {"IMAGE", "MULTILAYER", "UV_TEST"}  # not the renders and compositions that other nodes leave behind
 
 
 def check_file(layer, unsupported):
     """Call it at the frame that is rendered: drivers are only known to fail once they have been asked."""
+    note_version(unsupported)
+    note_newer_files(unsupported)
     check_images(unsupported)
     check_libraries(unsupported)
     check_drivers(unsupported)

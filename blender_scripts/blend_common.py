@@ -3,12 +3,16 @@
 Both must choose alike, or a cross-check compares two different pictures. docs/blender.md states the rules.
 """
 
+import os
+import re
 import sys
 
 import bpy
 from mathutils import Matrix
 
-SUPPORTED = (3, 4)  # light formulas, node sockets and the glTF exporter's options are known for this one
+TESTED = "3.4.1 and 4.3.2"
+KNOWN = {(3, 4), (4, 3)}  # their light formulas, node sockets and the glTF exporter's options
+FIRST, BEYOND = (3, 4), (5, 0)
 EXIT_INPUT, EXIT_VERSION = 3, 5
 
 # Blender's axes (+Z up) to glTF's (+Y up): x, z, -y.
@@ -47,12 +51,48 @@ def fail(message, code=EXIT_INPUT):
     sys.exit(code)
 
 
+def dotted(version):
+    return ".".join(str(number) for number in version)
+
+
 def check_version(way_out=""):
     """Ends the program in a Blender that is not supported. `way_out`: the user's alternative."""
-    if bpy.app.version[:2] != SUPPORTED:
-        fail(f"this is Blender {bpy.app.version_string}; only {SUPPORTED[0]}.{SUPPORTED[1]} is supported, because "
-             "lamps shine by other formulas in other versions: name another one with --blender" + way_out,
+    if not FIRST <= bpy.app.version[:2] < BEYOND:
+        fail(f"this is Blender {bpy.app.version_string}; versions from {dotted(FIRST)} up to, but not including, "
+             f"{dotted(BEYOND)} are supported ({TESTED} are tested): name another one with --blender" + way_out,
              EXIT_VERSION)
+
+
+def note_version(unsupported):
+    """Of a supported version that nobody has tested."""
+    if bpy.app.version[:2] not in KNOWN:
+        unsupported.add(f"Blender {bpy.app.version_string} is not tested, Blender {TESTED} are: lamps, materials and "
+                        "normals may mean something else in it")
+
+
+def note_newer_files(unsupported):
+    """A file keeps the version that saved it, but not the last number of it."""
+    running = bpy.app.version[:2]
+    files = [("the file", bpy.data.version)] if bpy.data.filepath else []
+    files += [(f"library '{library.filepath}'", library.version) for library in bpy.data.libraries]
+    for what, version in files:
+        if tuple(version[:2]) > running:
+            unsupported.add(f"{what} was saved by Blender {dotted(version[:2])} and is read by the older Blender "
+                            f"{bpy.app.version_string}, which loses what it does not know: name a newer one with "
+                            "--blender")
+
+
+def action_curves(thing):
+    """The animation curves of a data-block. From Blender 4.4 on an action has slots, each with curves of its own."""
+    data = thing.animation_data
+    action = data.action if data else None
+    if action is None:
+        return []
+    slot = getattr(data, "action_slot", None)
+    if slot is None:
+        return list(getattr(action, "fcurves", []))
+    bags = [strip.channelbag(slot) for layer in action.layers for strip in layer.strips if strip.type == "KEYFRAME"]
+    return [curve for bag in bags if bag is not None for curve in bag.fcurves]
 
 
 def listed(names, most=3):
@@ -61,9 +101,25 @@ def listed(names, most=3):
     return ", ".join(f"'{name}'" for name in names[:most]) + (f" and {more} more" if more > 0 else "")
 
 
+def why_not_opened():
+    """From the head of the .blend among the arguments: "BLENDER-v403", from Blender 5 on "BLENDER17-01v0500". Blender 4
+    leaves it readable in compressed files, too."""
+    path = next((argument for argument in sys.argv if argument.lower().endswith(".blend")), None)
+    head = b""
+    if path is not None and os.path.isfile(path):
+        with open(path, "rb") as file:
+            head = file.read(64)
+    match = re.search(rb"BLENDER(?:[-_][vV](\d)(\d\d)|\d\d-\d\d[vV](\d\d)(\d\d))", head)
+    version = tuple(int(number) for number in match.groups() if number) if match else bpy.app.version[:2]
+    if version > bpy.app.version[:2]:
+        return (f"it was saved by Blender {dotted(version)}, and this is the older Blender {bpy.app.version_string}: "
+                "name a newer one with --blender")
+    return f"it is no .blend file, or one of a newer Blender than this {bpy.app.version_string}"
+
+
 def choose_scene(name):
     if not bpy.data.filepath:
-        fail("Blender did not open the file: it is no .blend file, or one of a newer Blender")
+        fail("Blender did not open the file: " + why_not_opened())
     if name is None:
         return bpy.context.window.scene
     if name not in bpy.data.scenes:

@@ -12,11 +12,11 @@ import bpy
 import numpy as np
 
 from export_flat import material_key
-from export_nodes import clear_links, constant, coordinates_of, image_fault, previous
+from export_nodes import clear_links, constant, coordinates_of, image_fault, previous, principled_input
 
 SPACES = {"TANGENT", "OBJECT", "BLENDER_OBJECT"}
 COAT = "KHR_materials_clearcoat"
-ATTRIBUTE = "scumble_v"  # the exporter makes it upper case and puts a _ before it
+ATTRIBUTE = "_scumble_v"  # as in export_rest.py
 NEUTRAL = (0.5, 0.5, 1.0)  # a Normal Map node's colour that changes nothing
 
 
@@ -138,8 +138,8 @@ def linear_step(node):
     """(input, factor) of a node whose value is that of one input times a factor, plus a constant; else None."""
     if node.type == "RGBTOBW":
         return node.inputs["Color"], 1.0
-    if node.type == "INVERT" and constant(node.inputs["Fac"]) is not None:
-        return node.inputs["Color"], 1.0 - 2.0 * constant(node.inputs["Fac"])
+    if node.type == "INVERT" and constant(node.inputs[0]) is not None:
+        return node.inputs["Color"], 1.0 - 2.0 * constant(node.inputs[0])
     if node.type != "MATH" or node.use_clamp:
         return None
     first, second = node.inputs[0], node.inputs[1]
@@ -162,9 +162,9 @@ def attach(tree, principled, bends):
         tree.links.new(node.outputs["Normal"], principled.inputs["Normal"])
     if bends.height is not None:
         for name in ("Clearcoat", "Clearcoat Roughness", "Clearcoat Normal"):
-            clear_links(tree, principled.inputs[name])
-        principled.inputs["Clearcoat"].default_value = 1.0
-        tree.links.new(bends.height, principled.inputs["Clearcoat Normal"])
+            clear_links(tree, principled_input(principled, name))
+        principled_input(principled, "Clearcoat").default_value = 1.0
+        tree.links.new(bends.height, principled_input(principled, "Clearcoat Normal"))
 
 
 def add_exact_v(flat, materials):

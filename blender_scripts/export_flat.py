@@ -7,7 +7,7 @@ import bpy
 import export_hair
 import export_normals
 import export_rest
-from blend_common import camera_rank, cameras_of, can_be_looked_through, note_crooked_camera
+from blend_common import action_curves, camera_rank, cameras_of, can_be_looked_through, note_crooked_camera
 
 MESH_TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 SHAPE_TYPES = MESH_TYPES | {"CURVES"}
@@ -46,8 +46,7 @@ def material_key(material):
 def mute_visibility(thing):
     """Animation of the viewport's visibility would bring back, at the next evaluation, objects that the render
     hides."""
-    action = thing.animation_data.action if thing.animation_data else None
-    for curve in action.fcurves if action else []:
+    for curve in action_curves(thing):
         curve.mute = curve.mute or curve.data_path == "hide_viewport"
 
 
@@ -60,7 +59,8 @@ def use_render_modifiers(thing):
         settings = system.settings
         settings.display_percentage = 100
         if settings.child_type != "NONE":
-            settings.child_nbr = settings.rendered_child_count
+            shown = "child_nbr" if hasattr(settings, "child_nbr") else "child_percent"  # from Blender 4.0 on
+            setattr(settings, shown, settings.rendered_child_count)
         settings.display_step = settings.render_step
 
 

@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import re
 import struct
 
 import export_bends
@@ -142,6 +143,10 @@ def complete(document, binary, flat, materials, lamps, cameras, curves):
         scene.pop("nodes")
         document.pop("nodes")
     entries = {entry["exported"]: entry for entry in materials.values()}
+    for mesh in document.get("meshes", []):
+        for primitive in mesh["primitives"]:  # Blender 3.4 puts a _ before names that begin with one
+            primitive["attributes"] = {re.sub("^__", "_", name): value
+                                       for name, value in primitive["attributes"].items()}
     for material in document.get("materials", []):
         entry = entries[material["name"]]
         material["name"] = entry["name"]

@@ -2,10 +2,14 @@
 
 import math
 
+import bpy
 import numpy
 
 from export_materials import constant, previous
 
+SPOTS_HAVE_COSINE = bpy.app.version < (3, 5)  # their light falls off with the cosine from the axis, too
+# An area lamp of P watts has the radiance P/(4A) up to Blender 3.6, and P/(πA) from 4.0 on. The extras say the first.
+AREA_SCALE = 4.0 / math.pi if bpy.app.version >= (4, 0) else 1.0
 MOST_BOUNCES = 1024  # of a light: Cycles' default, which limits nothing
 
 
@@ -33,6 +37,11 @@ def emission_of(lamp, complain):
     return color, strength if isinstance(strength, float) else sum(strength) / 3
 
 
+def has_soft_falloff(lamp):
+    """Lamps with a radius are discs up to Blender 3.6, spheres in 4.0, and either from 4.1 on."""
+    return getattr(lamp, "use_soft_falloff", bpy.app.version[:2] != (4, 0))
+
+
 def describe_lamp(placed, unsupported):
     """The extras of one light. An area light's size includes its object's scale, as in Cycles; other kinds ignore
     it."""
@@ -51,10 +60,12 @@ def describe_lamp(placed, unsupported):
     if lamp.type == "SPOT":
         extras["spot_size"] = lamp.spot_size
         extras["spot_blend"] = lamp.spot_blend
+        extras["cosine"] = SPOTS_HAVE_COSINE
     elif lamp.type == "SUN":
         extras["angle"] = lamp.angle
     elif lamp.type == "AREA":
         width, height = (placed.matrix.col[axis].to_3d().length for axis in (0, 1))
+        extras["energy"] *= AREA_SCALE
         extras["shape"] = lamp.shape
         extras["size"] = lamp.size * width
         extras["size_y"] = (lamp.size_y if lamp.shape in {"RECTANGLE", "ELLIPSE"} else lamp.size) * height
@@ -63,7 +74,9 @@ def describe_lamp(placed, unsupported):
         if lamp.cycles.is_portal:
             complain("is a portal, which gives no light")
             extras["energy"] = 0.0
-    if not lamp.cycles.cast_shadow:
+    if lamp.type in {"POINT", "SPOT"} and extras["radius"] > 0.0 and not has_soft_falloff(lamp):
+        complain("is a sphere without Soft Falloff, and is taken for a disc")
+    if not getattr(lamp.cycles, "cast_shadow", lamp.use_shadow):  # the lamp's own from Blender 4.2 on
         complain("casts no shadows, which is ignored")
     for kind in ("diffuse", "glossy"):
         if not getattr(placed.source, "visible_" + kind):

@@ -8,7 +8,7 @@ becomes a Diffuse surface in the material's viewport colour.
 import bpy
 
 import export_bends
-from export_nodes import clear_links, constant, image_fault, previous
+from export_nodes import clear_links, constant, image_fault, previous, principled_input
 
 PLAIN = {"BSDF_DIFFUSE": "DIFFUSE", "BSDF_GLOSSY": "GLOSSY", "EMISSION": "EMISSION", "BSDF_PRINCIPLED": "PRINCIPLED"}
 CYCLES_DEFAULT = (0.8, 0.8, 0.8)  # Cycles' material of faces without one
@@ -16,7 +16,9 @@ GGX = {"GGX", "MULTI_GGX"}
 
 # Inputs of the Principled node that nothing here can express, and the value at which they do nothing.
 IGNORED = {"Subsurface": 0.0, "Specular": 0.5, "Specular Tint": 0.0, "Anisotropic": 0.0, "Sheen": 0.0, "Clearcoat": 0.0,
-           "Transmission": 0.0}
+           "Transmission": 0.0, "Diffuse Roughness": 0.0, "Thin Film Thickness": 0.0}
+DEFAULT_INDEX, CLOSE_INDEX = 1.5, 0.06  # 1.45 was the default of 4.0 and 4.1: F0 is 0.034 instead of 0.04
+WHITE = (1.0, 1.0, 1.0)  # of Specular Tint from Blender 4.0 on, where it is a colour
 
 
 class Reader:
@@ -103,26 +105,47 @@ def keep_or_cut(tree, reader, node, name):
     return value
 
 
+def drop_ignored(tree, node, reader):
+    for name, nothing in IGNORED.items():
+        socket = principled_input(node, name)
+        if socket is None:
+            continue
+        value = socket.default_value
+        if not isinstance(value, float):
+            value, nothing = tuple(value)[:3], WHITE
+        if previous(socket) is None and value == nothing:
+            continue
+        reader.complain(f"Principled {socket.name} is ignored")
+        clear_links(tree, socket)
+        socket.default_value = nothing if isinstance(nothing, float) else (*nothing, 1.0)
+    # From Blender 4.0 on the index is that of the reflection, too.
+    index = node.inputs["IOR"]
+    if "Specular IOR Level" in node.inputs:
+        if previous(index) is not None or abs(index.default_value - DEFAULT_INDEX) > CLOSE_INDEX:
+            reader.complain(f"Principled IOR is taken for {DEFAULT_INDEX}")
+        clear_links(tree, index)
+        index.default_value = DEFAULT_INDEX
+
+
 def read_principled(tree, node, reader):
     """Everything of the Principled node that glTF has no place for is cut off its copy, so that nothing half-understood
     is exported."""
     color, source = reader.color(node.inputs["Base Color"])
-    emission, emission_source = reader.color(node.inputs["Emission"])
+    emits = principled_input(node, "Emission")
+    emission, emission_source = reader.color(emits)
     strength = reader.number(node.inputs["Emission Strength"])
     if isinstance(emission_source, tuple):
         reader.complain("a colour attribute feeds Emission, which keeps its own colour instead")
-        emission, emission_source = tuple(node.inputs["Emission"].default_value)[:3], None
+        emission, emission_source = tuple(emits.default_value)[:3], None
     if emission_source is None:
-        clear_links(tree, node.inputs["Emission"])
-        node.inputs["Emission"].default_value = (*emission, 1.0)
+        clear_links(tree, emits)
+        emits.default_value = (*emission, 1.0)
     bsdf = {"type": "PRINCIPLED", "color": list(color), "texture": is_texture(source),
             "roughness": keep_or_cut(tree, reader, node, "Roughness"),
             "metallic": keep_or_cut(tree, reader, node, "Metallic"),
             "emission": [strength * c for c in emission] if emission_source is None else None,
             "strength": strength, "distribution": node.distribution}
-    for name, nothing in IGNORED.items():
-        if previous(node.inputs[name]) is not None or node.inputs[name].default_value != nothing:
-            reader.complain(f"Principled {name} is ignored")
+    drop_ignored(tree, node, reader)
     alpha = previous(node.inputs["Alpha"])
     if alpha is not None and alpha.node.type != "TEX_IMAGE":
         reader.number(node.inputs["Alpha"])
@@ -138,12 +161,12 @@ def rebuild(copy, bsdf, source, bends, surface, output):
     carrier.inputs["Metallic"].default_value = 1.0 if bsdf["type"] == "GLOSSY" else 0.0
     carrier.inputs["Roughness"].default_value = bsdf.get("roughness", 1.0) if bsdf["type"] == "GLOSSY" else 1.0
     if bsdf["type"] == "EMISSION":
-        carrier.inputs["Emission"].default_value = carrier.inputs["Base Color"].default_value
+        principled_input(carrier, "Emission").default_value = carrier.inputs["Base Color"].default_value
         carrier.inputs["Emission Strength"].default_value = bsdf["strength"]
     if isinstance(source, bpy.types.NodeSocket):
         tree.links.new(source, carrier.inputs["Base Color"])
         if bsdf["type"] == "EMISSION":
-            tree.links.new(source, carrier.inputs["Emission"])
+            tree.links.new(source, principled_input(carrier, "Emission"))
     export_bends.attach(tree, carrier, bends)
     if surface:
         tree.nodes.remove(surface.node)

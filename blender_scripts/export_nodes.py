@@ -1,6 +1,18 @@
 """What feeds the input of a node, and which images glTF can keep: shared by export_materials.py and export_bends.py."""
 
 
+# Inputs of the Principled node by their names up to Blender 3.6, and from 4.0 on.
+PRINCIPLED_INPUTS = {"Subsurface": "Subsurface Weight", "Specular": "Specular IOR Level", "Sheen": "Sheen Weight",
+                     "Clearcoat": "Coat Weight", "Clearcoat Roughness": "Coat Roughness",
+                     "Clearcoat Normal": "Coat Normal", "Transmission": "Transmission Weight",
+                     "Emission": "Emission Color"}
+
+
+def principled_input(node, name):
+    """The input of that older name; None where this Blender's node has none."""
+    return node.inputs.get(PRINCIPLED_INPUTS.get(name, name)) or node.inputs.get(name)
+
+
 def previous(socket):
     """The socket that feeds this one, past reroutes; None where nothing does."""
     while socket is not None and socket.is_linked:
@@ -55,7 +67,7 @@ def image_fault(node, spaces):
     is_colour = space == "sRGB"
     known = {"colour": is_colour and not is_float, "data": not is_colour and keeps_its_depth(node.image),
              "any": (is_colour and not is_float) or
-                    (space in {"Non-Color", "Raw", "Linear"} and keeps_its_depth(node.image))}
+                    (space in {"Non-Color", "Raw", "Linear", "Linear Rec.709"} and keeps_its_depth(node.image))}
     if not known[spaces]:
         return f"node '{node.name}' with an image in {space}{', float' if is_float else ''}"
     return coordinates_of(node.inputs["Vector"])[1]

@@ -2,8 +2,8 @@
 
 Without Auto Smooth, Cycles takes the evaluated mesh's own normals at vertices of smooth faces, and the triangle's at flat
 ones. The exporter makes both anew from the faces of a copy. That differs for metaballs, whose normals come from their
-field, and for flat polygons that are bent, of which each triangle has a normal of its own. With Auto Smooth both take the
-mesh's corner normals.
+field, and for flat polygons that are bent, of which each triangle has a normal of its own. With Auto Smooth, and from
+Blender 4.1 on where a mesh has corner normals, both take those.
 """
 
 import bmesh
@@ -76,10 +76,19 @@ def of_metaballs(depsgraph):
     return found
 
 
+def uses_corner_normals(mesh):
+    """Whether Cycles does. Blender 4.1 has no Auto Smooth any more: sharp edges and custom normals always count. Flat
+    faces beside smooth ones count for the exporter, but not for Cycles."""
+    if hasattr(mesh, "use_auto_smooth"):
+        return mesh.use_auto_smooth
+    return mesh.normals_domain == "CORNER" and (mesh.has_custom_normals or
+                                                numbers(mesh.edges, "use_edge_sharp", bool).any())
+
+
 def match_cycles(mesh, at_vertices=None, changes_shape=False):
     """Gives the export's own copy of a mesh the normals of the evaluated one: `at_vertices`, or those that it has.
     Returns false where `at_vertices` are not those of its vertices, and are not used."""
-    if mesh.use_auto_smooth or not mesh.polygons:
+    if not mesh.polygons or uses_corner_normals(mesh):
         return True
     fits = at_vertices is None or len(at_vertices) == len(mesh.vertices)
     if at_vertices is None or not fits:
@@ -94,11 +103,12 @@ def match_cycles(mesh, at_vertices=None, changes_shape=False):
 def take_normals(mesh, at_vertices):
     smooth = numbers(mesh.polygons, "use_smooth", bool)
     away = np.linalg.norm(vectors(mesh.vertices, "normal") - at_vertices, axis=1)
-    if not smooth.any() or away.max() <= CLOSE:
+    if not smooth.any() or (away.max() <= CLOSE and getattr(mesh, "normals_domain", "POINT") == "POINT"):
         return
     totals = numbers(mesh.polygons, "loop_total")
     wanted = at_vertices[numbers(mesh.loops, "vertex_index")]
     is_flat = np.repeat(~smooth, totals)
     wanted[is_flat] = np.repeat(vectors(mesh.polygons, "normal"), totals, axis=0)[is_flat]
-    mesh.use_auto_smooth, mesh.auto_smooth_angle = True, np.pi
+    if hasattr(mesh, "use_auto_smooth"):
+        mesh.use_auto_smooth, mesh.auto_smooth_angle = True, np.pi
     mesh.normals_split_custom_set(wanted)

@@ -7,7 +7,9 @@ gets its place at rest as the attribute `_SCUMBLE_REST`, in the axes of glTF.
 
 import numpy as np
 
-ATTRIBUTE = "scumble_rest"  # the exporter makes it upper case and puts a _ before it
+ATTRIBUTE = "_scumble_rest"  # the exporter makes it upper case; export_glb.py takes away the _ that 3.4 puts before
+# Attributes of newer Blenders that are no longer kept beside them: materials, flat faces, sharp edges, normals.
+SHAPE = {"material_index", "sharp_face", "sharp_edge", "custom_normal"}
 DEFORMERS = {"ARMATURE", "CAST", "CLOTH", "CORRECTIVE_SMOOTH", "CURVE", "DISPLACE", "HOOK", "LAPLACIANDEFORM",
              "LAPLACIANSMOOTH", "LATTICE", "MESH_CACHE", "MESH_DEFORM", "MESH_SEQUENCE_CACHE", "SHRINKWRAP",
              "SIMPLE_DEFORM", "SMOOTH", "SOFT_BODY", "SURFACE_DEFORM", "VOLUME_DISPLACE", "WARP", "WAVE"}
@@ -39,9 +41,9 @@ def relax(thing):
 def drop_other_attributes(mesh, ours):
     """The exporter is to write ours, and would write every other one as well. The materials of faces are one, too,
     which it reads and does not write."""
-    colors = {attribute.name for attribute in mesh.color_attributes}
-    for name in [attribute.name for attribute in mesh.attributes]:
-        if name in colors or name in ours or name == "material_index":
+    kept = {layer.name for layers in (mesh.color_attributes, mesh.uv_layers) for layer in layers} | ours | SHAPE
+    for name in [attribute.name for attribute in mesh.attributes if not getattr(attribute, "is_required", False)]:
+        if name in kept or name.startswith("."):
             continue
         try:
             mesh.attributes.remove(mesh.attributes[name])

@@ -37,7 +37,15 @@ import export_lamps  # noqa: E402
 import export_materials  # noqa: E402
 import export_rest  # noqa: E402
 import export_stretch  # noqa: E402
-from blend_common import Unsupported, cameras_of, check_version, choose_layer, choose_scene, fail, say  # noqa: E402
+from blend_common import (Unsupported, action_curves, cameras_of, check_version, choose_layer,  # noqa: E402
+                          choose_scene, fail, say)
+
+
+def export_colors():
+    """The exporter's option for the one colour attribute that is left of a mesh; its name depends on the version."""
+    known = bpy.ops.export_scene.gltf.get_rna_type().properties.keys()
+    return {"export_colors": True} if "export_colors" in known else {"export_vertex_color": "ACTIVE",
+                                                                      "export_all_vertex_colors": False}
 
 
 def export(scene, view_layer, output, unsupported):
@@ -62,8 +70,8 @@ def export(scene, view_layer, output, unsupported):
         bpy.ops.export_scene.gltf(
             filepath=str(raw), export_format="GLB", use_active_scene=True, export_yup=True, export_apply=False,
             export_cameras=False, export_lights=False, export_animations=False, export_skins=False, export_morph=False,
-            export_colors=True, export_tangents=False, export_extras=False, export_attributes=has_rest or has_heights,
-            export_image_format="AUTO")
+            export_tangents=False, export_extras=False, export_attributes=has_rest or has_heights,
+            export_image_format="AUTO", **export_colors())
         document, binary = export_glb.read(raw)
     curves = export_hair.curve_settings(scene)
     binary = export_glb.complete(document, binary, flat, materials, lamps, cameras, curves)
@@ -119,8 +127,7 @@ def export_frame(arguments, frame, output, unsupported):
 def is_surely_lit(scene):
     """Whether some light is in the render of every frame, by its own settings."""
     def blinks(thing):
-        action = thing.animation_data.action if thing.animation_data else None
-        return any(curve.data_path == "hide_render" for curve in (action.fcurves if action else []))
+        return any(curve.data_path == "hide_render" for curve in action_curves(thing))
     return any(thing.type == "LIGHT" and not thing.hide_render and not blinks(thing) for thing in scene.objects)
 
 

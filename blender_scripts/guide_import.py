@@ -105,7 +105,7 @@ def complete_node(gltf, index, world, aspect, cameras, unsupported):
         cameras.append(things["CAMERA"])
     lamp = things.get("LIGHT")
     if "lamp" in extras:
-        lamp = replace_lamp(lamp, node.name or "Lamp", extras["lamp"])
+        lamp = replace_lamp(lamp, node.name or "Lamp", extras["lamp"], guide_camera.rigid(place).col[2].to_3d())
     elif lamp is not None:
         light = gltf.data.extensions["KHR_lights_punctual"]["lights"][node.extensions["KHR_lights_punctual"]["light"]]
         lamp.data = lamp.data.copy()

@@ -4,14 +4,15 @@ import math
 
 import bpy
 
+from export_lamps import AREA_SCALE, SPOTS_HAVE_COSINE
 from guide_import_materials import ours
 from guide_materials import math as math_node
 
 LUMENS_PER_WATT = 683.0
 
 
-def replace_lamp(old, name, extras):
-    """The lamp that export_scene.py described; area lamps come as empties."""
+def replace_lamp(old, name, extras, backward):
+    """The lamp that export_scene.py described; area lamps come as empties. `backward` is against its direction."""
     lamp = bpy.data.lights.new(name, extras["type"])
     most = max(max(extras["color"]), 1.0)
     lamp.color = [value / most for value in extras["color"]]
@@ -20,9 +21,13 @@ def replace_lamp(old, name, extras):
         lamp.shadow_soft_size = extras["radius"]
     if extras["type"] == "SPOT":
         lamp.spot_size, lamp.spot_blend = extras["spot_size"], extras["spot_blend"]
+        if extras.get("cosine", True) != SPOTS_HAVE_COSINE:
+            tree, cosine = cosine_from_axis(lamp, backward)
+            emit(tree, math_node(tree, "DIVIDE" if SPOTS_HAVE_COSINE else "MULTIPLY", 1.0, cosine))
     elif extras["type"] == "SUN":
         lamp.angle = extras["angle"]
     elif extras["type"] == "AREA":
+        lamp.energy /= AREA_SCALE
         lamp.shape = extras["shape"]
         lamp.size, lamp.size_y = extras["size"], extras["size_y"]
         if extras["shape"] in {"SQUARE", "DISK"} and abs(lamp.size - lamp.size_y) > 1e-7 * lamp.size:
@@ -49,6 +54,16 @@ def use_punctual(lamp, light, backward):
     inner = math.cos(cone.get("innerConeAngle", 0.0))
     outer = math.cos(cone.get("outerConeAngle", math.pi / 4))
     lamp.type = "POINT"
+    tree, cosine = cosine_from_axis(lamp, backward)
+    scale = 1.0 / max(0.001, inner - outer)
+    linear = math_node(tree, "MULTIPLY_ADD", cosine, scale)
+    linear.node.inputs[2].default_value = -outer * scale
+    linear.node.use_clamp = True
+    emit(tree, math_node(tree, "MULTIPLY", linear, linear))
+
+
+def cosine_from_axis(lamp, backward):
+    """The lamp's emptied node tree, and a socket in it: the cosine between the lamp's direction and what it lights."""
     lamp.use_nodes = True
     tree = lamp.node_tree
     tree.nodes.clear()
@@ -57,12 +72,12 @@ def use_punctual(lamp, light, backward):
     dot.operation = "DOT_PRODUCT"
     tree.links.new(geometry.outputs["Incoming"], dot.inputs[0])
     dot.inputs[1].default_value = -backward  # Incoming points from the lamp to what it lights
-    scale = 1.0 / max(0.001, inner - outer)
-    linear = math_node(tree, "MULTIPLY_ADD", dot.outputs["Value"], scale)
-    linear.node.inputs[2].default_value = -outer * scale
-    linear.node.use_clamp = True
+    return tree, dot.outputs["Value"]
+
+
+def emit(tree, strength):
     emission = tree.nodes.new("ShaderNodeEmission")
-    tree.links.new(math_node(tree, "MULTIPLY", linear, linear), emission.inputs["Strength"])
+    tree.links.new(strength, emission.inputs["Strength"])
     output = tree.nodes.new("ShaderNodeOutputLight")
     tree.links.new(emission.outputs[0], output.inputs["Surface"])
 

@@ -2,6 +2,7 @@
 
 import bpy
 
+from export_nodes import principled_input
 from guide_materials import feed, math as math_node, take_over
 
 IGNORED_MATERIALS = {"KHR_materials_unlit", "KHR_materials_pbrSpecularGlossiness", "KHR_materials_sheen"}
@@ -47,7 +48,7 @@ def tint(tree, socket, color):
         return
     factor = tree.nodes.new("ShaderNodeMixRGB")
     factor.blend_type = "MULTIPLY"
-    factor.inputs["Fac"].default_value = 1.0
+    factor.inputs[0].default_value = 1.0
     tree.links.new(source, factor.inputs["Color1"])
     factor.inputs["Color2"].default_value = (*color, 1.0)
     tree.links.new(factor.outputs[0], socket)
@@ -59,8 +60,9 @@ def apply_bsdf(tree, principled, bsdf):
         for key, name in (("roughness", "Roughness"), ("metallic", "Metallic")):
             if bsdf.get(key) is not None and not principled.inputs[name].is_linked:
                 principled.inputs[name].default_value = bsdf[key]
-        if bsdf.get("emission") is not None and not principled.inputs["Emission"].is_linked:
-            principled.inputs["Emission"].default_value = (*bsdf["emission"], 1.0)
+        emission = principled_input(principled, "Emission")
+        if bsdf.get("emission") is not None and not emission.is_linked:
+            emission.default_value = (*bsdf["emission"], 1.0)
             principled.inputs["Emission Strength"].default_value = 1.0
         return
     kind = {"DIFFUSE": "ShaderNodeBsdfDiffuse", "GLOSSY": "ShaderNodeBsdfGlossy", "EMISSION": "ShaderNodeEmission"}

@@ -103,8 +103,12 @@ def own_geometry():
     if name in bpy.data.node_groups:
         return bpy.data.node_groups[name]
     tree = bpy.data.node_groups.new(name, "GeometryNodeTree")
-    tree.inputs.new("NodeSocketGeometry", "Geometry")
-    tree.outputs.new("NodeSocketGeometry", "Geometry")
+    if hasattr(tree, "interface"):  # from Blender 4.0 on
+        for way in ("INPUT", "OUTPUT"):
+            tree.interface.new_socket("Geometry", in_out=way, socket_type="NodeSocketGeometry")
+    else:
+        tree.inputs.new("NodeSocketGeometry", "Geometry")
+        tree.outputs.new("NodeSocketGeometry", "Geometry")
     source, target = tree.nodes.new("NodeGroupInput"), tree.nodes.new("NodeGroupOutput")
     parts, joined = tree.nodes.new("GeometryNodeSeparateComponents"), tree.nodes.new("GeometryNodeJoinGeometry")
     tree.links.new(source.outputs[0], parts.inputs[0])

@@ -2,7 +2,7 @@
 
 import bpy
 
-from export_nodes import constant
+from export_nodes import constant, principled_input
 
 SPECULAR = {"BSDF_GLOSSY", "BSDF_ANISOTROPIC", "BSDF_GLASS", "BSDF_REFRACTION"}
 
@@ -77,7 +77,7 @@ def purify_node(tree, node, cutoff):
     if node.inputs["Normal"].is_linked:
         feed(tree, shader.inputs["Normal"], node.inputs["Normal"])
     surface = shader.outputs[0]
-    strength, color = node.inputs["Emission Strength"], node.inputs["Emission"]
+    strength, color = node.inputs["Emission Strength"], principled_input(node, "Emission")
     dark = not color.is_linked and max(color.default_value[:3]) == 0.0
     if not dark and (strength.is_linked or strength.default_value != 0.0):
         emission = tree.nodes.new("ShaderNodeEmission")
@@ -131,11 +131,11 @@ def blacken_principled(tree, node, second, elsewhere):
         darken = tree.nodes.new("ShaderNodeMixRGB")
         darken.blend_type = "MIX"
         darken.inputs["Color2"].default_value = (0.0, 0.0, 0.0, 1.0)
-        tree.links.new(share, darken.inputs["Fac"])
+        tree.links.new(share, darken.inputs[0])
         feed(tree, darken.inputs["Color1"], node.inputs["Base Color"])
         tree.links.new(darken.outputs[0], node.inputs["Base Color"])
     for name in ("Metallic", "Specular", "Clearcoat", "Transmission", "Sheen"):
-        dim(tree, node.inputs[name], elsewhere)
+        dim(tree, principled_input(node, name), elsewhere)
 
 
 def blacken_second_surface():

@@ -19,6 +19,7 @@ from mathutils import Euler, Matrix, Vector
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(Path(__file__).resolve().parent))
+from export_nodes import principled_input  # noqa: E402
 import scene_kit as kit  # noqa: E402  (Blender does not put a script's own folder on the path)
 from scene_kit import Shape, spline  # noqa: E402
 
@@ -455,7 +456,7 @@ def ball():
     Shape().grid(wall).place("Wall", kit.material("Wall", (0.46, 0.50, 0.54), 1.0), closed=False)
     shining = kit.material("Lamp", (0.0, 0.0, 0.0))
     shader = shining.node_tree.nodes["Principled BSDF"]
-    shader.inputs["Emission"].default_value = (1.0, 0.97, 0.92, 1.0)
+    principled_input(shader, "Emission").default_value = (1.0, 0.97, 0.92, 1.0)
     shader.inputs["Emission Strength"].default_value = 30.0
     at, target, half = Vector((-2.95, -3.52, 4.86)), Vector((0.0, 0.0, 1.0)), 0.8
     lamp = Shape().grid([[(-half, -half, 0), (half, -half, 0)], [(-half, half, 0), (half, half, 0)]], flip=True).place(

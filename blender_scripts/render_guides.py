@@ -45,6 +45,7 @@ DATA_PASSES = {"normal", "z", "position", "diffuse_color", "glossy_color", "emit
                "cryptomatte_material"}
 LIGHT_PASSES = {"combined", "emit"} | {f"{lobe}_{part}" for lobe in ("diffuse", "glossy")
                                        for part in ("direct", "indirect", "color")}
+TERMINATOR_OFFSETS = [f"shadow_terminator_{kind}offset" for kind in ("", "normal_", "geometry_", "shading_")]
 BOUNCES = ("max_bounces", "diffuse_bounces", "glossy_bounces", "transmission_bounces", "volume_bounces")
 
 
@@ -95,6 +96,7 @@ def open_scene(options, unsupported):
         blend_check.check_file(layer, unsupported)
         guide_instances.name_apart(scene, layer, unsupported)
     else:
+        blend_common.note_version(unsupported)
         guide_import.load(options.scene, options.size, unsupported)
         set_size(bpy.context.scene.render, options.size)
     return bpy.context.scene
@@ -128,7 +130,9 @@ def set_up_cycles(scene):
     cycles.seed, cycles.use_animated_seed, cycles.sample_offset = 0, False, 0
     cycles.use_adaptive_sampling = cycles.use_denoising = cycles.use_fast_gi = cycles.use_guiding = False
     cycles.time_limit = 0.0
-    cycles.sampling_pattern = "PROGRESSIVE_MULTI_JITTER"
+    cycles.sampling_pattern = "PROGRESSIVE_MULTI_JITTER" if bpy.app.version < (3, 5) else "TABULATED_SOBOL"
+    if hasattr(cycles, "use_light_tree"):
+        cycles.use_light_tree = False  # 3.4 has none: each light gets its share of the samples
     cycles.scrambling_distance, cycles.auto_scrambling_distance = 1.0, False  # pixels' noise must not hang together
     cycles.use_layer_samples = "IGNORE"
     cycles.direct_light_sampling_type = "MULTIPLE_IMPORTANCE_SAMPLING"
@@ -141,7 +145,10 @@ def set_up_cycles(scene):
     for lamp in bpy.data.lights:
         lamp.cycles.use_multiple_importance_sampling = True  # without it no mirror shows the light
     for thing in bpy.data.objects:
-        thing.cycles.shadow_terminator_offset = thing.cycles.shadow_terminator_geometry_offset = 0.0
+        for holder in (thing, thing.cycles):  # the object itself in the latest versions
+            for name in TERMINATOR_OFFSETS:
+                if hasattr(holder, name):
+                    setattr(holder, name, 0.0)
 
 
 def set_up_layer(scene, name):

@@ -179,8 +179,9 @@ class Shape:
 def soften_edges(target, width):
     for polygon in target.data.polygons:
         polygon.use_smooth = True
-    target.data.use_auto_smooth = True
-    target.data.auto_smooth_angle = math.radians(60)
+    if hasattr(target.data, "use_auto_smooth"):  # no longer needed for the modifier's normals from Blender 4.1 on
+        target.data.use_auto_smooth = True
+        target.data.auto_smooth_angle = math.radians(60)
     modifier = target.modifiers.new("Bevel", "BEVEL")
     modifier.width = width
     modifier.segments = 4
@@ -270,6 +271,15 @@ def bind(thing, bones, weights_at):
 # ---- Files ----------------------------------------------------------------------------------------------------------
 
 
+def options_by_version():
+    """No vertex colours, and the actions in use as one animation."""
+    known = bpy.ops.export_scene.gltf.get_rna_type().properties.keys()
+    colors = {"export_colors": False} if "export_colors" in known else {"export_vertex_color": "NONE"}
+    merged = ({"export_animation_mode": "ACTIVE_ACTIONS"} if "export_animation_mode" in known
+              else {"export_nla_strips": False})
+    return {**colors, **merged}
+
+
 def export(path, moving=False):
     """Writes the scene as .glb, the same bytes every time. In a moving one modifiers are not applied, because the
     exporter would drop the shape keys."""
@@ -277,9 +287,10 @@ def export(path, moving=False):
     bpy.context.view_layer.update()
     bpy.ops.export_scene.gltf(filepath=str(path), export_format="GLB", export_apply=not moving, export_yup=True,
                               export_cameras=True, export_lights=True, export_animations=moving,
-                              export_nla_strips=False, export_skins=moving, export_morph=moving, export_colors=False,
-                              export_tangents=False, export_copyright="CC0-1.0")
-    sharp = {thing.data.name for thing in bpy.data.objects if thing.type == "MESH" and thing.data.use_auto_smooth}
+                              export_skins=moving, export_morph=moving, export_tangents=False,
+                              export_copyright="CC0-1.0", **options_by_version())
+    sharp = {thing.data.name for thing in bpy.data.objects
+             if any(modifier.type == "WEIGHTED_NORMAL" for modifier in thing.modifiers)}
     make_repeatable(Path(path), sharp)
 
 

@@ -49,6 +49,7 @@ Status PlaceCone(const Light& light, const std::string& who, PlacedLight& placed
   placed.cone_scale = 1.0 / std::max(0.001, cos_inner - cos_outer);
   placed.cone_offset = -cos_outer * placed.cone_scale;
   placed.cycles_spot = light.cycles_spot;
+  placed.spot_cosine = light.spot_cosine;
   placed.cone_cosine = cos_outer;
   placed.cone_blend = (1.0 - cos_outer) * std::clamp(light.spot_blend, 0.0, 1.0);
   return Ok();
@@ -124,7 +125,7 @@ double SpotAttenuation(const PlacedLight& light, const glm::dvec3& from_light) {
     if (!(along > light.cone_cosine)) return 0.0;
     const double inside = along - light.cone_cosine;
     const double t = inside < light.cone_blend ? inside / light.cone_blend : 1.0;
-    return std::max(along, 0.0) * t * t * (3.0 - 2.0 * t);
+    return (light.spot_cosine ? std::max(along, 0.0) : 1.0) * t * t * (3.0 - 2.0 * t);
   }
   const double attenuation = std::clamp(along * light.cone_scale + light.cone_offset, 0.0, 1.0);
   return attenuation * attenuation;

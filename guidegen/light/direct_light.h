@@ -22,6 +22,7 @@ struct PlacedLight {
   double cone_scale = 0.0;          // spot: attenuation is clamp(cosine · scale + offset)²
   double cone_offset = 1.0;
   bool cycles_spot = false;  // spot: cosine · smoothstep((cosine − cone_cosine) / cone_blend) instead
+  bool spot_cosine = true;   // false: without the first cosine
   double cone_cosine = 0.0;
   double cone_blend = 0.0;
   double radius = 0.0;      // point, spot

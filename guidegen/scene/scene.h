@@ -67,6 +67,7 @@ struct Material {
   // kDiffuse only: Oren and Nayar's, in [0, 1]; 0 is Lambert. A field of its own, because a metallic-roughness material
   // that becomes kDiffuse becomes Lambert.
   float diffuse_roughness = 0.0f;
+  bool cycles4 = false;  // shaded as by Cycles 4 instead of 3, where they differ: guidegen/scene/cycles_version.h
   TextureUse metallic_roughness_texture;  // linear: G multiplies the roughness, B the metalness
   glm::vec3 emission{0.0f};               // radiance, linear, from both sides
   TextureUse emission_texture;
@@ -159,7 +160,8 @@ struct Light {
   // Sun: full angular diameter. As in Cycles 3.4, its directions are spread evenly over a flat disc, so that a surface
   // which faces a wide sun receives 2 (1/cos α − 1) / tan² α of its intensity, α half the angle: 0.998 at 10°.
   double angle_degrees = 0.0;
-  bool cycles_spot = false;  // spot: Cycles' cosθ · smoothstep falloff instead of KHR_lights_punctual's
+  bool cycles_spot = false;  // spot: Cycles' smoothstep falloff instead of KHR_lights_punctual's
+  bool spot_cosine = true;   // with cycles_spot: times cosθ, as in Cycles 3.4
   double spot_blend = 0.0;   // with cycles_spot: Blender's blend; outer_cone_degrees is the half angle
   bool ellipse = false;      // area: an ellipse, or a rectangle
   // Area: m in the world, whatever the matrix's scale; the full extents along the light's own x and y. One-sided.

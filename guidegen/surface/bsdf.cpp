@@ -41,6 +41,9 @@ double GgxD(double cosine, double alpha) {
   return a2 / (pi * d * d);
 }
 
+// 1 / a of the header.
+double RoughDiffuseScale(double roughness) { return pi + (pi / 2.0 - 2.0 / 3.0) * roughness; }
+
 glm::dvec3 NotNegative(const glm::dvec3& c) {
   glm::dvec3 result;
   for (int i = 0; i < 3; ++i) result[i] = c[i] > 0.0 && std::isfinite(c[i]) ? c[i] : 0.0;
@@ -80,6 +83,13 @@ SurfaceBsdf::SurfaceBsdf(const PlacedObject& object, std::uint32_t primitive, co
   if (material.bsdf == Bsdf::kDiffuse) {
     diffuse_ = base;
     diffuse_roughness_ = std::clamp(double(material.diffuse_roughness), 0.0, 1.0);
+    cycles4_ = material.cycles4;
+    if (cycles4_ && diffuse_roughness_ > 0.0) {
+      const double mean = (pi + diffuse_roughness_ * (2.0 * pi - 5.6) / 3.0) / RoughDiffuseScale(diffuse_roughness_);
+      const glm::dvec3 color = glm::min(base, 1.0);
+      const double eye = std::max(glm::dot(normal_, to_eye), 0.0);
+      many_bounces_ = color * color * (mean / (1.0 - mean)) / (1.0 - color * (1.0 - mean)) * (1.0 - BounceOnce(eye));
+    }
     return;
   }
   double roughness = material.roughness;
@@ -92,8 +102,12 @@ SurfaceBsdf::SurfaceBsdf(const PlacedObject& object, std::uint32_t primitive, co
   metallic = std::clamp(metallic, 0.0, 1.0);
   alpha_ = std::max(roughness * roughness, least_alpha);
   mirror_ = !(alpha_ >= kSmoothestAlpha);
-  const double eye = glm::dot(normal_, to_eye);
-  if (eye < kLowestEye) specular_normal_ = glm::normalize(normal_ + to_eye * (2.0 * kLowestEye - eye));
+  double eye = glm::dot(normal_, to_eye);
+  if (material.cycles4 && material.bsdf == Bsdf::kMetallicRoughness) {
+    specular_normal_ = BentNormal(facing_, to_eye, normal_);
+    eye = glm::dot(specular_normal_, to_eye);
+  }
+  if (eye < kLowestEye) specular_normal_ = glm::normalize(specular_normal_ + to_eye * (2.0 * kLowestEye - eye));
   if (material.bsdf == Bsdf::kGlossy) {
     f0_ = base;
     return;
@@ -115,14 +129,26 @@ double SurfaceBsdf::Coupling(double cosine) const {
   return passes(eye) * passes(cosine) / (1.0 - kMeanFresnel);
 }
 
+// The share of light from one direction that a rough white surface returns by a single bounce: E of the header.
+double SurfaceBsdf::BounceOnce(double cosine) const {
+  const double sine = std::sqrt(std::max(1.0 - cosine * cosine, 0.0));
+  const double angle = std::acos(std::clamp(cosine, -1.0, 1.0));
+  // The tangent's term goes to 0 with the cosine: 1 − sin³ ≈ 1.5 cos².
+  const double tangent = cosine > 1e-6 ? sine / cosine * (1.0 - sine * sine * sine) : 0.0;
+  const double g = sine * (angle - 2.0 / 3.0 - sine * cosine) + 2.0 / 3.0 * tangent;
+  return (pi + diffuse_roughness_ * g) / RoughDiffuseScale(diffuse_roughness_);
+}
+
 // What the diffuse lobe reflects, over what Lambert's does.
-double SurfaceBsdf::DiffuseWeight(const glm::dvec3& to_light, double cosine) const {
+glm::dvec3 SurfaceBsdf::DiffuseWeight(const glm::dvec3& to_light, double cosine) const {
   const double share = ShadingNormalShadow(normal_, smooth_normal_, to_light);
-  if (!(diffuse_roughness_ > 0.0)) return share * Coupling(cosine);
+  if (!(diffuse_roughness_ > 0.0)) return glm::dvec3(share * Coupling(cosine));
   const double eye = std::max(glm::dot(normal_, to_eye_), 0.0);
   double slant = glm::dot(to_light, to_eye_) - cosine * eye;
   if (slant > 0.0) slant /= std::max(cosine, eye);
-  return share * pi * (1.0 + diffuse_roughness_ * slant) / (pi + (pi / 2.0 - 2.0 / 3.0) * diffuse_roughness_);
+  const double once = share * pi * (1.0 + diffuse_roughness_ * slant) / RoughDiffuseScale(diffuse_roughness_);
+  if (!cycles4_) return glm::dvec3(once);
+  return once + many_bounces_ * (share * (1.0 - BounceOnce(cosine)));
 }
 
 double SurfaceBsdf::DiffuseShare() const {
@@ -164,8 +190,8 @@ SurfaceBsdf::Bounce SurfaceBsdf::SampleDiffuse(double u, double v) const {
   if (!(cosine > 0.0) || !(glm::dot(facing_, bounce.direction) > 0.0)) return bounce;
   bounce.weight = diffuse_ * DiffuseWeight(bounce.direction, cosine);
   bounce.density = cosine / pi;
-  // Cycles samples a rough diffuse lobe evenly, which is noisier.
-  bounce.blur_density = diffuse_roughness_ > 0.0 ? 0.5 / pi : bounce.density;
+  // Cycles 3 samples a rough diffuse lobe evenly, which is noisier.
+  bounce.blur_density = diffuse_roughness_ > 0.0 && !cycles4_ ? 0.5 / pi : bounce.density;
   return bounce;
 }
 

@@ -4,6 +4,10 @@
 // improvement of Oren-Nayar reflectance model", 2012, as in Cycles 3.4: color · (a + b·t), where
 //   a = 1 / (π + (π/2 − 2/3) σ),  b = σ·a,  s = l·v − (n·l)(n·v),  t = s for s ≤ 0, else s / max(n·l, n·v).
 // White returns πa of the light to an eye that faces it (0.78 at σ = 1), and all of it to a grazing eye, never more.
+// Cycles 4 adds what bounces on between the facets, as OpenPBR has it: c²/π · Ē/(1 − Ē) / (1 − c(1 − Ē)) times
+// (1 − E(n·l)) (1 − E(n·v)), where c is the colour, at most 1, E(x) = πa + b·G(x) the share that one bounce returns, Ē
+// = πa + b(2π − 5.6)/3 its mean, and G(cos θ) = sin θ (θ − 2/3 − sin θ cos θ) + 2/3 tan θ (1 − sin³ θ). White then
+// returns all of the light.
 // Shading normals that differ from the interpolated ones take some of it away: ShadingNormalShadow.
 //
 // Walter et al., "Microfacet models for refraction", EGSR 2007; Heitz, "Sampling the GGX distribution of visible
@@ -56,7 +60,8 @@ class SurfaceBsdf {
   Bounce SampleSpecular(double u, double v) const;
 
  private:
-  double DiffuseWeight(const glm::dvec3& to_light, double cosine) const;
+  glm::dvec3 DiffuseWeight(const glm::dvec3& to_light, double cosine) const;
+  double BounceOnce(double cosine) const;
   double Coupling(double cosine) const;
   glm::dvec3 Fresnel(double cosine) const;
 
@@ -71,6 +76,8 @@ class SurfaceBsdf {
       false;  // f0 grows to 1 at grazing angles, and the diffuse lobe gets the light that the coat transmits
   bool mirror_ = false;
   double diffuse_roughness_ = 0.0;
+  glm::dvec3 many_bounces_{0.0};  // π times the part of what bounces on that does not depend on the light's direction
+  bool cycles4_ = false;
   double alpha_ = 1.0;
 };
 

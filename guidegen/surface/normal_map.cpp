@@ -26,6 +26,11 @@ double HeightAt(const PlacedObject& object, const glm::uvec3& corners, const glm
   return glm::dot(glm::dvec3(texel), glm::dvec3(0.2126, 0.7152, 0.0722));
 }
 
+// Cycles 4 applies a tangent map's strength to the map's value, Cycles 3 to the normal that results.
+bool IsOfCycles4(const Material& material) {
+  return material.cycles4 && material.normal_rule == NormalMapRule::kTangent;
+}
+
 }  // namespace
 
 bool HasNormalMap(const PlacedObject& object) {
@@ -51,7 +56,11 @@ glm::dvec3 MappedNormal(const PlacedObject& object, const glm::uvec3& corners, c
   if (material.normal_rule == NormalMapRule::kBlenderObject) {
     return in_mesh(OfBlendersAxes({bend.x, -bend.y, -bend.z}));
   }
+  const double strength = std::max(material.normal_scale, 0.0f);
   if (material.normal_rule == NormalMapRule::kGltf) bend *= glm::dvec3(material.normal_scale, material.normal_scale, 1);
+  if (IsOfCycles4(material)) {
+    bend = {bend.x * strength, bend.y * strength, glm::mix(1.0, bend.z, std::min(strength, 1.0))};
+  }
   const auto normal_at = [&](std::uint32_t corner) {
     const glm::dvec3 normal(mesh.normals[corner]);
     return stretched ? glm::normalize(glm::transpose(mesh.stretch) * normal) : normal;
@@ -65,7 +74,8 @@ glm::dvec3 MappedNormal(const PlacedObject& object, const glm::uvec3& corners, c
 
 glm::dvec3 MixedNormal(const PlacedObject& object, const glm::dvec3& mapped, const glm::dvec3& smooth) {
   const double strength = std::max(object.material->normal_scale, 0.0f);
-  if (object.material->normal_rule == NormalMapRule::kGltf || strength == 1.0) return mapped;
+  if (object.material->normal_rule == NormalMapRule::kGltf || IsOfCycles4(*object.material)) return mapped;
+  if (strength == 1.0) return mapped;
   glm::dvec3 mixed = smooth + (mapped - smooth) * strength;
   return MakeUnit(mixed) ? mixed : smooth;
 }

@@ -2,7 +2,9 @@
 //
 // A normal map's value m = 2c − 1 is taken in the frame of the interpolated normal n, the interpolated tangent t and
 // w n × t, none of which is made unit before: MikkTSpace's definition. By glTF's rule its x and y are multiplied by the
-// scale. By Cycles' rule the unit mapped normal M is mixed with the unit interpolated one N, N + (M − N) · strength.
+// scale. By Cycles' rule the unit mapped normal M is mixed with the unit interpolated one N, N + (M − N) · strength. By
+// that of Cycles 4 (Material::cycles4) m is (s·x, s·y, 1 + (z − 1) · min(s, 1)), where s is the strength; maps in
+// object space keep the other rule.
 //
 // A bump measures a height h at three places, the point itself and two at the distance of a pixel's footprint in the
 // triangle's plane, dx and dy, at right angles. From the normal n, mapped or interpolated,
@@ -25,7 +27,7 @@ bool HasBump(const PlacedObject& object);
 // Whether the shading normal is more than the corners' normals, interpolated.
 inline bool ChangesNormals(const PlacedObject& object) { return HasNormalMap(object) || HasBump(object); }
 
-// The normal of the map's texel in the mesh's space, not unit and without Cycles' strength.
+// The normal of the map's texel in the mesh's space, not unit and without the strength that MixedNormal applies.
 glm::dvec3 MappedNormal(const PlacedObject& object, const glm::uvec3& corners, const glm::dvec2& barycentric);
 
 // The map's strength by Cycles' rules; `mapped` and `smooth` are unit vectors in one space.

@@ -11,8 +11,9 @@ constexpr double kLeastReflection = 1e-5;
 // Cycles takes a mirrored ray of this height for one above the surface.
 constexpr double kLeastHeight = 1e-5;
 
-// Textures are not read.
-bool HasClosure(const Material& material) {
+// Whether Cycles turns the normal of all closures alike. Textures are not read.
+bool BendsNormals(const Material& material) {
+  if (material.cycles4 && material.bsdf != Bsdf::kGlossy) return false;
   if (material.bsdf == Bsdf::kMetallicRoughness) return true;
   const glm::dvec3 color(material.base_color);
   return material.bsdf != Bsdf::kEmission && color.r + color.g + color.b >= 3.0 * kLeastReflection;
@@ -44,7 +45,7 @@ glm::dvec3 BentNormal(const glm::dvec3& facing, const glm::dvec3& to_eye, const 
 }
 
 void BendShadingNormal(const PlacedObject& object, const ViewRay& ray, SurfacePoint& point) {
-  if (!HasClosure(*object.material)) return;
+  if (!BendsNormals(*object.material)) return;
   const glm::dvec3 bent = BentNormal(point.facing, glm::normalize(-ray.direction), point.normal);
   if (bent == point.normal) return;
   if (point.smooth_normal == glm::dvec3(0.0)) point.smooth_normal = point.normal;

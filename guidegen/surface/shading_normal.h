@@ -13,7 +13,8 @@
 //
 // Only surfaces that reflect have closures: a black one, and one that emits only, keep their normals. The Normal pass
 // is the mean of the closures' normals, and so the turned one. All this was measured with Blender 3.4.1, closure by
-// closure.
+// closure. In Cycles 4 diffuse closures keep N (Material::cycles4). Where a metallic-roughness surface has both lobes,
+// N stays for the Normal layer and the diffuse lobe, and SurfaceBsdf turns it for the specular one.
 #pragma once
 
 #include <glm/glm.hpp>

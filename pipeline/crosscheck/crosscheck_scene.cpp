@@ -8,6 +8,7 @@
 
 #include "core/io/guide_file.h"
 #include "guidegen/light/path_layers.h"
+#include "guidegen/scene/cycles_version.h"
 #include "guidegen/scene/pure_materials.h"
 #include "pipeline/crosscheck/cycles_reference.h"
 #include "pipeline/scene/scene_guides.h"
@@ -39,9 +40,7 @@ void AddUnknown(const std::string& line, std::vector<std::string>& lines) {
   if (std::find(lines.begin(), lines.end(), line) == lines.end()) lines.push_back(line);
 }
 
-// Our guides: data as authored, light with pure materials.
-Status MakeOurs(const CrosscheckRequest& request, const std::string& path, const std::vector<int>& counts,
-                const RunContext& context, const Progress& progress, BothSides& sides) {
+SceneRequest OurRequest(const CrosscheckRequest& request, const std::string& path) {
   SceneRequest options;
   options.scene = path;
   options.size = request.size;
@@ -50,27 +49,34 @@ Status MakeOurs(const CrosscheckRequest& request, const std::string& path, const
   if (IsBlenderScene(path)) {
     options.blender = {request.blender, request.frame, false, request.blender_scene, request.view_layer};
   }
-  SCUMBLE_ASSIGN(Scene scene, OpenScene(options, context));
-  for (Camera& camera : scene.cameras) camera.border.reset();
-  sides.unsupported = scene.warnings;
-  SCUMBLE_ASSIGN(SceneGuides data, MakeGuidesOf(scene, options, {Layer::kPosition, Layer::kAlbedo}, context,
-                                                Within(progress, 0.0, 0.02), false));
+  return options;
+}
+
+// Our data layers, as authored.
+Status MakeOurData(Scene& scene, const SceneRequest& options, const RunContext& context, const Progress& progress,
+                   BothSides& sides) {
+  SCUMBLE_ASSIGN(SceneGuides data,
+                 MakeGuidesOf(scene, options, {Layer::kPosition, Layer::kAlbedo}, context, progress, false));
   sides.ours = std::move(data.guides);
-  if (counts.empty()) return Ok();
+  return Ok();
+}
+
+// Our light, with pure materials.
+Status MakeOurLight(const CrosscheckRequest& request, Scene& scene, SceneRequest options,
+                    const std::vector<int>& counts, const RunContext& context, const Progress& progress,
+                    BothSides& sides) {
   if (const std::vector<std::string> replaced = UsePureMaterials(scene); !replaced.empty()) {
     sides.warnings.push_back(
         "light is compared with pure materials on both sides, Lambert or GGX without Fresnel, instead of: " +
         fmt::format("{}", fmt::join(replaced, ", ")));
   }
-  const RunContext silent = context.WithoutNotes();  // the camera has been noted
-  double begin = 0.02;
-  constexpr double kOursEnd = 0.3;
+  double begin = 0.0;
   for (const int count : counts) {
     options.samples = count, options.samples_given = true;
     options.max_bounces = request.max_bounces;
-    const double end = count == counts.back() ? kOursEnd : begin + 0.03;
+    const double end = count == counts.back() ? 1.0 : begin + 0.1;
     SCUMBLE_ASSIGN(SceneGuides light,
-                   MakeGuidesOf(scene, options, PathLayers(), silent, Within(progress, begin, end), false));
+                   MakeGuidesOf(scene, options, PathLayers(), context, Within(progress, begin, end), false));
     sides.ours_light.push_back(std::move(light.guides));
     begin = end;
   }
@@ -81,13 +87,26 @@ Expected<BothSides> MakeBothSides(const CrosscheckRequest& request, const std::s
                                   const std::vector<int>& counts, const RunContext& context) {
   BothSides sides;
   const Progress progress = context.StartProgress("crosscheck");
-  SCUMBLE_RETURN_IF_ERROR(MakeOurs(request, path, counts, context, progress, sides));
+  const SceneRequest ours = OurRequest(request, path);
+  SCUMBLE_ASSIGN(Scene scene, OpenScene(ours, context));
+  for (Camera& camera : scene.cameras) camera.border.reset();
+  sides.unsupported = scene.warnings;
+  SCUMBLE_RETURN_IF_ERROR(MakeOurData(scene, ours, context, Within(progress, 0.0, 0.02), sides));
   ReferenceOptions options{request.blender, path,   request.size.width, request.size.height, request.camera,
                            request.frame,   counts, request.max_bounces};
   options.blender_scene = request.blender_scene, options.view_layer = request.view_layer;
   SCUMBLE_ASSIGN(sides.reference,
-                 RenderReference(options, context, Within(progress, counts.empty() ? 0.02 : 0.3, 1.0)));
+                 RenderReference(options, context, Within(progress, 0.02, counts.empty() ? 1.0 : 0.7)));
   for (const std::string& line : sides.reference.unsupported) AddUnknown(line, sides.unsupported);
+  const RunContext silent = context.WithoutNotes();  // the camera has been noted
+  // A .glb is compared with the Cycles that runs, whichever it was made with.
+  if (!sides.reference.version.empty() && ShadeAsCycles(sides.reference.version, scene)) {
+    SCUMBLE_RETURN_IF_ERROR(MakeOurData(scene, ours, silent, {}, sides));
+  }
+  if (!counts.empty()) {
+    const Progress rest = Within(progress, 0.7, 1.0);
+    SCUMBLE_RETURN_IF_ERROR(MakeOurLight(request, scene, ours, counts, silent, rest, sides));
+  }
   return sides;
 }
 

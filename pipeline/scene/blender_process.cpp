@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "pipeline/process_guard.h"
+#include "pipeline/scene/blender_file.h"
 
 namespace scumble {
 
@@ -25,7 +26,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kSupported = "Blender 3.4";
+constexpr const char* kSupported = "Blender (3.4.1 and 4.3.2 are tested)";
 constexpr int kExitVersion = 5;  // of our scripts
 constexpr const char* kErrorMark = "scumble: error: ";
 const std::string kPath = "PATH=";
@@ -250,8 +251,11 @@ Status CheckProgramEnd(const Expected<ProgramEnd>& ended, const BlenderTask& tas
   const int signal = ended->signal != 0                                   ? ended->signal
                      : ended->code > 128 && ended->code <= 128 + SIGRTMAX ? ended->code - 128
                                                                           : 0;
-  if (signal != 0) return InputError(task.scene + ": " + task.program + SignalText(signal));
   const std::vector<std::string> lines = LinesOf(log);
+  const std::string newer = NewerThanBlender(task.scene, lines);
+  if (signal != 0) {
+    return InputError(task.scene + ": " + task.program + SignalText(signal) + (newer.empty() ? "" : "; " + newer));
+  }
   if (const std::string script = MissingScript(lines); !script.empty()) {
     return UnavailableError(task.scene + ": blender_scripts/" + script + " is missing: install Scumble again" +
                             ByHand(task));
@@ -260,7 +264,8 @@ Status CheckProgramEnd(const Expected<ProgramEnd>& ended, const BlenderTask& tas
   if (ended->code == kExitVersion) return UnavailableError(task.scene + ": " + reason);
   std::error_code failed;
   if (ended->code != 0 || !fs::is_regular_file(product, failed)) {
-    return InputError(task.scene + ": " + task.failure + ": " + reason);
+    const bool said = newer.empty() || reason.find("saved by Blender") != std::string::npos;
+    return InputError(task.scene + ": " + task.failure + ": " + reason + (said ? "" : "; " + newer));
   }
   return Ok();
 }

@@ -14,6 +14,7 @@
 #include "guidegen/load/load_scene.h"
 #include "guidegen/rays/camera_rays.h"
 #include "tests/support/blender_cases.h"
+#include "tests/support/blender_version.h"
 #include "tests/support/cycles_passes.h"
 #include "tests/support/numbers.h"
 
@@ -154,6 +155,8 @@ TEST(BlenderLamps, PointsAndSpots) {
   const Light& spot = Named(scene.lights, "Spot");
   EXPECT_EQ(spot.type, LightType::kSpot);
   EXPECT_TRUE(spot.cycles_spot);
+  EXPECT_EQ(spot.spot_cosine, !IsBlender4());
+  for (const Material& material : scene.materials) EXPECT_EQ(material.cycles4, IsBlender4());
   ExpectClose(spot.intensity, 60.0 / (4 * kPi), "spot");
   ExpectClose(spot.outer_cone_degrees, 25.0, "half angle");
   ExpectClose(spot.spot_blend, 0.4, "blend");
@@ -189,7 +192,7 @@ TEST(BlenderLamps, AreasOfEveryShape) {
     EXPECT_EQ(light.ellipse, c.ellipse) << c.name;
     ExpectClose(light.size_x, c.x, c.name);
     ExpectClose(light.size_y, c.y, c.name);
-    ExpectClose(light.intensity, 10.0 / (4.0 * c.area), c.name);
+    ExpectClose(light.intensity, 10.0 / ((IsBlender4() ? kPi : 4.0) * c.area), c.name);
   }
 }
 

@@ -203,15 +203,27 @@ TEST_F(BlenderVerbs, FailuresAreReadable) {
   const Arguments tail = {"--size", "32", "-o", "g.exr"};
   WriteText("bad.blend", "no scene at all");
   ExpectErrorHere(With({"guidegen", "bad.blend"}, tail), 3, {"bad.blend", "File format is not supported"});
+  WriteText("newer.blend", "BLENDER-v999RENDH");
+  ExpectErrorHere(With({"guidegen", "newer.blend"}, tail), 3,
+                  {"newer.blend", "saved by Blender 9.99", "the older Blender"});
   ExpectErrorHere(With({"guidegen", "lost.blend"}, tail), 3, {"lost.blend", "no such file"});
   ExpectErrorHere(With({"guidegen", "bad.blend", "--blender", "no/blender"}, tail), 5,
                   {"no/blender", "--blender PATH"});
-  WriteProgram("newer", "echo 'scumble: error: this is Blender 9.9.9; only 3.4 is supported' >&2; exit 5");
+  WriteProgram("newer", "echo 'scumble: error: this is Blender 9.9.9; versions from 3.4' >&2; exit 5");
   ExpectErrorHere(With({"guidegen", "bad.blend", "--blender", "./newer"}, tail), 5, {"Blender 9.9.9"});
   WriteProgram("silent", "exit 0");
   ExpectErrorHere(With({"guidegen", "bad.blend", "--blender", "./silent"}, tail), 3, {"./silent", "says nothing"});
   WriteProgram("crashing", "kill -SEGV $$");
   ExpectErrorHere(With({"guidegen", "bad.blend", "--blender", "./crashing"}, tail), 3, {"./crashing crashed"});
+  // Blender may well crash on what a newer one has saved.
+  WriteProgram("older", "echo 'Blender 3.4.1'; kill -SEGV $$");
+  WriteText("newer.blend", "BLENDER-v403RENDH");
+  ExpectErrorHere(With({"guidegen", "newer.blend", "--blender", "./older"}, tail), 3,
+                  {"./older crashed", "saved by Blender 4.3", "the older Blender 3.4.1"});
+  WriteText("newest.blend", "BLENDER17-01v0500");
+  WriteProgram("confused", "echo 'Blender 4.3.2'; echo 'scumble: error: what is this'; exit 3");
+  ExpectErrorHere(With({"guidegen", "newest.blend", "--blender", "./confused"}, tail), 3,
+                  {"what is this", "saved by Blender 5.0", "the older Blender 4.3.2"});
   EXPECT_FALSE(Exists("g.exr"));
 }
 

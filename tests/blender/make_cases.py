@@ -14,6 +14,10 @@ import bmesh
 import bpy
 from mathutils import Euler, Matrix, Vector
 
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+import versions  # noqa: E402  (Blender does not put a script's own folder on the path)
+
 PICTURES = [(160, 90), (90, 160), (100, 100)]  # in which cameras are looked through
 
 
@@ -109,7 +113,7 @@ def new_material(name, node_type, **inputs):
     node = tree.nodes.new(node_type)
     tree.links.new(node.outputs[0], output.inputs["Surface"])
     for key, value in inputs.items():
-        node.inputs[key.replace("_", " ")].default_value = value
+        versions.input_of(node, key.replace("_", " ")).default_value = value
     return material, node
 
 
@@ -229,7 +233,11 @@ def materials():
         *bent_materials(image),
     ]
     by_name = {material.name: material for material in every}
-    by_name["Sharp"].node_tree.nodes["Glossy BSDF"].distribution = "SHARP"
+    sharp = by_name["Sharp"].node_tree.nodes["Glossy BSDF"]
+    if bpy.app.version < (4, 0):
+        sharp.distribution = "SHARP"
+    else:  # which has roughness 0 in its place
+        sharp.inputs["Roughness"].default_value = 0.0
     by_name["EmissionTextured"].node_tree.nodes["Emission"].inputs["Strength"].default_value = 2.0
     by_name["Plain"].diffuse_color = (0.7, 0.6, 0.5, 1.0)
     by_name["Diffuse"].use_backface_culling = True

@@ -11,6 +11,10 @@ import bmesh
 import bpy
 from mathutils import Euler
 
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+import versions  # noqa: E402  (Blender does not put a script's own folder on the path)
+
 
 def material(name, kind, color, roughness=0.0):
     made = bpy.data.materials.new(name)
@@ -86,9 +90,7 @@ def collection_of(name, *things):
 def cubes_on_points(name, instance, generated):
     """Geometry nodes that put an object, or a cube that they make up themselves, on each of a mesh's corners, and keep
     the mesh."""
-    tree = bpy.data.node_groups.new(name, "GeometryNodeTree")
-    tree.inputs.new("NodeSocketGeometry", "Geometry")
-    tree.outputs.new("NodeSocketGeometry", "Geometry")
+    tree = versions.geometry_nodes(name)
     source, target = tree.nodes.new("NodeGroupInput"), tree.nodes.new("NodeGroupOutput")
     points, joined = tree.nodes.new("GeometryNodeInstanceOnPoints"), tree.nodes.new("GeometryNodeJoinGeometry")
     if generated is None:

@@ -2,6 +2,7 @@
 
 import bmesh
 import bpy
+import versions
 
 
 def emitter(name, place, materials):
@@ -40,9 +41,7 @@ def made_by_nodes(name, place, material):
     thing = bpy.data.objects.new(name, data)
     thing.location = place
     bpy.context.scene.collection.objects.link(thing)
-    nodes = bpy.data.node_groups.new(name, "GeometryNodeTree")
-    nodes.inputs.new("NodeSocketGeometry", "Geometry")
-    nodes.outputs.new("NodeSocketGeometry", "Geometry")
+    nodes = versions.geometry_nodes(name)
     last = nodes.nodes.new("NodeGroupOutput")
     spiral, radius = nodes.nodes.new("GeometryNodeCurveSpiral"), nodes.nodes.new("GeometryNodeSetCurveRadius")
     paint = nodes.nodes.new("GeometryNodeSetMaterial")
@@ -64,7 +63,7 @@ def build(materials, shape):
     body, hair, textured = materials
     grow(emitter("Ball", (-1.2, 0.0, 0.6), [body, textured]))
     grow(emitter("Tufts", (0.0, 0.3, 0.6), [body, hair]), count=12, child_type="INTERPOLATED", rendered_child_count=6,
-         child_nbr=1, clump_factor=0.3)
+         clump_factor=0.3, **{versions.SHOWN_CHILDREN: 1})
     alone = emitter("Alone", (1.2, 0.0, 0.6), [hair])
     alone.scale = (0.8, 0.8, 0.8)
     alone.show_instancer_for_render = False

@@ -5,6 +5,7 @@ import math
 
 import bmesh
 import bpy
+import versions
 from mathutils import Euler, Vector
 
 COLUMNS, APART = 5, 1.5
@@ -120,7 +121,7 @@ def can(shape):
 
 def add_auto_smooth(name, material):
     thing = add_mesh(name, can, material, True)
-    thing.data.use_auto_smooth, thing.data.auto_smooth_angle = True, 0.7
+    versions.smooth_by_angle(thing.data, 0.7)
     return thing
 
 

@@ -181,10 +181,9 @@ Expected<Json> Describe(const InfoVerb& verb, const Globals& globals) {
 void AddInfoVerb(CLI::App& app, Globals& globals, Action& chosen) {
   CLI::App* sub = app.add_subcommand("info", "what is in a guide file, a scene or a style");
   auto verb = std::make_shared<InfoVerb>();
-  sub->add_option(
-         "file", verb->path,
-         "guide file (.exr), scene (.glb, .gltf, .obj, .ply, or .blend, which Blender 3.4 exports first), style, "
-         "or picture of a painted sphere")
+  sub->add_option("file", verb->path,
+                  "guide file (.exr), scene (.glb, .gltf, .obj, .ply, or .blend, which Blender exports first), style, "
+                  "or picture of a painted sphere")
       ->type_name("FILE")
       ->required();
   AddBlenderOptions(*sub, verb->blender);

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "guidegen/load/loader_util.h"
+#include "guidegen/scene/cycles_version.h"
 
 namespace scumble {
 namespace {
@@ -82,6 +83,7 @@ constexpr double kLargest = 1e30;  // finite as a float after every formula here
 void ReadSpot(Fields& fields, Light& light) {
   light.cycles_spot = true;
   light.spot_blend = fields.Number("spot_blend", 0.0, 1.0);
+  if (fields.Has("cosine")) light.spot_cosine = fields.IsTrue("cosine");
   light.outer_cone_degrees = fields.Number("spot_size", 0.0, pi + 1e-6) / 2.0 * kDegreesPerRadian;
   light.inner_cone_degrees = light.outer_cone_degrees * (1.0 - light.spot_blend);
 }
@@ -220,6 +222,9 @@ Status ReadSceneExtras(const tinygltf::Model& model, int scene_index, const std:
     Fields fields(extras.Get("scumble"), file + ": scene " + std::to_string(scene_index));
     scene.world_radiance = fields.Color("world");
     SCUMBLE_RETURN_IF_ERROR(fields.Verdict());
+  }
+  if (const tinygltf::Value* version = Find(extras, "blender"); version && version->IsString()) {
+    ShadeAsCycles(version->Get<std::string>(), scene);
   }
   const tinygltf::Value* unsupported = Find(extras, "unsupported");
   if (!unsupported || !unsupported->IsArray()) return Ok();

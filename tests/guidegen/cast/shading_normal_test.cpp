@@ -8,6 +8,7 @@
 #include <random>
 
 #include "guidegen/rays/camera_rays.h"
+#include "guidegen/scene/cycles_version.h"
 #include "tests/support/light_path_scenes.h"
 
 namespace scumble::testing {
@@ -195,6 +196,24 @@ TEST(BentNormals, WhatReflectsNothingKeepsItsNormals) {
       same += std::equal(one.begin(), one.end(), other.begin());
     }
     EXPECT_EQ(same == 3, scene.materials[0].base_color.r != 1e-4f);
+  }
+}
+
+TEST(BentNormals, Cycles4BendsThoseOfSpecularLobesAlone) {
+  const Camera camera = LookingAt({0, 0.5, 6}, {0, 0, 0}, 40.0);
+  for (const Bsdf bsdf : {Bsdf::kDiffuse, Bsdf::kGlossy, Bsdf::kMetallicRoughness}) {
+    Scene scene = Tube(bsdf);
+    EXPECT_TRUE(ShadeAsCycles("4.3.2", scene));
+    EXPECT_FALSE(ShadeAsCycles("4.3.2 LTS", scene)) << "it is already";
+    GuidegenOptions options = Paths(64, {});
+    const auto bent = Render(scene, camera, options);
+    options.raw_normals = true;
+    const auto raw = Render(scene, camera, options);
+    const BendCounts counts = CountBent(bent, raw, camera);
+    EXPECT_EQ(counts.bent > 0, bsdf == Bsdf::kGlossy);
+    EXPECT_TRUE(ShadeAsCycles("3.4.1", scene));
+    options.raw_normals = false;
+    EXPECT_GT(CountBent(Render(scene, camera, options), raw, camera).bent, 0);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "guidegen/scene/cycles_version.h"
 #include "tests/support/light_path_scenes.h"
 
 namespace scumble::testing {
@@ -253,6 +254,29 @@ TEST(MaterialLobes, AWorldAndAPanelOnRoughDiffuseGiveTheIntegral) {
   scene.lights = {panel};
   const auto lit = Render(scene, LookingAt({0, -0.01, 0.01}, {0, 0, 0}, 1e-4), Paths(4, {Layer::kLpeLDE}, 1024));
   EXPECT_NEAR(Mean(lit, Layer::kLpeLDE), expected, 6e-3);
+}
+
+// What Cycles 4 adds is what bounces on between the facets: white then returns all that it receives, at every angle.
+TEST(MaterialLobes, RoughDiffuseOfCycles4LosesNothing) {
+  Scene scene = Floor(Painted(Bsdf::kDiffuse, 1.0f));
+  ShadeAsCycles("4.3.2", scene);
+  scene.world_radiance = glm::vec3(1.0f);
+  for (const float roughness : {0.25f, 1.0f}) {
+    for (const double height : {0.3, 3.0}) {
+      scene.materials[0].diffuse_roughness = roughness;
+      const Camera eye = LookingAt({0, -3, height}, {0, 0, 0}, 1e-4);
+      EXPECT_NEAR(Mean(Render(scene, eye, Paths(4, {Layer::kLpeFull}, 1024)), Layer::kLpeFull), 1.0, 3e-3);
+    }
+  }
+  // A dark one gains little: a = 1 / (π + π/2 − 2/3) of an eye and a sun that face it, and 0.04% by more bounces.
+  scene.world_radiance = glm::vec3(0.0f);
+  scene.materials[0].base_color = {0.04f, 0.04f, 0.04f, 1.0f};
+  scene.lights = {SlantedSun(0.0)};
+  const double once = 0.04 / (1.5 * kPi - 2.0 / 3.0);
+  const Camera above = LookingAt({0, -0.001, 2}, {0, 0, 0}, 1e-4);
+  const double lit = Center(Render(scene, above, Paths(1, {Layer::kLpeLDE})), Layer::kLpeLDE);
+  EXPECT_GT(lit, once);
+  EXPECT_LT(lit, 1.001 * once);
 }
 
 // G multiplies the roughness and B the metalness, as numbers; R and the sRGB curve have no part in it.

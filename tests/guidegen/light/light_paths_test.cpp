@@ -89,6 +89,9 @@ TEST(DirectLight, DeltaLampsAreExactWithoutChance) {
     const double t = (cosine - 0.5) / 0.5;
     const double expected = albedo / kPi * 8.0 / 4.0 * cosine * t * t * (3.0 - 2.0 * t);
     EXPECT_NEAR(Center(Render(scene, Spot(), Paths(1, {Layer::kLpeLDE}, samples)), Layer::kLpeLDE), expected, 1e-6);
+    scene.lights[0].spot_cosine = false;  // as in later versions of Cycles
+    EXPECT_NEAR(Center(Render(scene, Spot(), Paths(1, {Layer::kLpeLDE}, samples)), Layer::kLpeLDE), expected / cosine,
+                1e-6);
   }
 }
 

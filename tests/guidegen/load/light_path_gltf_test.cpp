@@ -50,6 +50,29 @@ TEST_F(GltfLight, DiffuseRoughnessOfABlendFileIsRead) {
   EXPECT_NE(load(broken).error().message.find("'roughness' is 1.5"), std::string::npos) << load(broken).error().message;
 }
 
+TEST_F(GltfLight, TheVersionOfBlenderSaysWhatSurfacesAndSpotsMean) {
+  const auto load = [&](const nlohmann::json& extras, const nlohmann::json& cosine) {
+    GltfBuilder gltf;
+    gltf.Triangle();
+    gltf.Append("materials", {{"name", "Clay"}});
+    nlohmann::json lamp = {{"type", "SPOT"}, {"color", {1, 1, 1}}, {"energy", 10.0},
+                           {"radius", 0.0},  {"spot_size", 1.0},   {"spot_blend", 0.5}};
+    if (!cosine.is_null()) lamp["cosine"] = cosine;
+    gltf.Root({{"name", "Lamp"}, {"extras", {{"scumble", {{"lamp", lamp}}}}}});
+    gltf.json["scenes"][0]["extras"] = extras;
+    auto scene = LoadScene(Write("a.glb", gltf.Glb()));
+    EXPECT_TRUE(scene) << scene.error().message;
+    return scene ? *scene : Scene();
+  };
+  const Scene old = load({{"scumble", {{"blender", "3.4.1"}}}}, nullptr);
+  EXPECT_FALSE(old.materials.at(0).cycles4);
+  EXPECT_TRUE(old.lights.at(0).spot_cosine);
+  const Scene recent = load({{"scumble", {{"blender", "4.3.2"}}}}, false);
+  EXPECT_TRUE(recent.materials.at(0).cycles4);
+  EXPECT_FALSE(recent.lights.at(0).spot_cosine);
+  EXPECT_FALSE(load({{"scumble", {{"blender", "of mine"}}}}, true).materials.at(0).cycles4);
+}
+
 TEST_F(GltfLight, ValuesOutOfRangeAreRefusedByName) {
   const auto refuse = [&](const nlohmann::json& material, const std::string& what) {
     GltfBuilder gltf;
