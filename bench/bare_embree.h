@@ -2,7 +2,6 @@
 // that it has. Only the hits' distances are kept.
 #pragma once
 
-#include <embree3/rtcore.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 
@@ -12,16 +11,16 @@
 #include <limits>
 #include <vector>
 
+#include "guidegen/rays/embree.h"
 #include "guidegen/scene/scene.h"
 
 namespace scumble::testing {
 
-enum class BareKind { kSingle, kPacket4, kPacket8, kPacket16, kStream64 };
-inline constexpr std::array<BareKind, 5> kBareKinds = {BareKind::kSingle, BareKind::kPacket4, BareKind::kPacket8,
-                                                       BareKind::kPacket16, BareKind::kStream64};
+enum class BareKind { kSingle, kPacket4, kPacket8, kPacket16 };
+inline constexpr std::array<BareKind, 4> kBareKinds = {BareKind::kSingle, BareKind::kPacket4, BareKind::kPacket8,
+                                                       BareKind::kPacket16};
 inline const char* NameOf(BareKind kind) {
-  constexpr const char* kNames[] = {"rtcIntersect1", "rtcIntersect4", "rtcIntersect8", "rtcIntersect16",
-                                    "rtcIntersectNM of 64"};
+  constexpr const char* kNames[] = {"rtcIntersect1", "rtcIntersect4", "rtcIntersect8", "rtcIntersect16"};
   return kNames[int(kind)];
 }
 
@@ -59,12 +58,10 @@ class BareEmbree {
  private:
   static constexpr int kSide = 16;
 
-  // N rays of a Packet in blocks of `Width` columns; `intersect(valid, context, packet)`.
+  // N rays of a Packet in blocks of `Width` columns; `intersect(valid, query, packet)`.
   template <int N, int Width, class Packet, class Intersect>
   void CastBlocks(int x0, int y0, float* depth, const Intersect& intersect) const {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    RayQuery query(RayOrder::kCoherent);
     alignas(64) Packet packet = {};
     alignas(64) std::array<int, N> valid;
     valid.fill(-1);
@@ -78,7 +75,7 @@ class BareEmbree {
           packet.ray.tfar[lane] = std::numeric_limits<float>::infinity();
           packet.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
         }
-        intersect(valid.data(), &context, packet);
+        intersect(valid.data(), query, packet);
         for (int lane = 0; lane < N; ++lane) {
           const int column = x + lane % Width;
           const int row = y + lane / Width;
@@ -88,37 +85,33 @@ class BareEmbree {
     }
   }
 
+  template <int N, int Width, class Packet>
+  void CastPackets(int x0, int y0, float* depth) const {
+    CastBlocks<N, Width, Packet>(x0, y0, depth, [&](const int* valid, RayQuery& query, Packet& packet) {
+      Intersect(valid, scene_, query, packet);
+    });
+  }
+
   void CastTile(BareKind kind, int x0, int y0, float* depth) const {
     switch (kind) {
       case BareKind::kSingle:
-        return CastBlocks<1, 1, RTCRayHitNt<1>>(x0, y0, depth,
-                                                [&](const int*, RTCIntersectContext* context, auto& ray) {
-                                                  RTCRayHit one = {};
-                                                  one.ray.dir_x = ray.ray.dir_x[0];
-                                                  one.ray.dir_y = ray.ray.dir_y[0];
-                                                  one.ray.dir_z = -1.0f;
-                                                  one.ray.mask = ~0u;
-                                                  one.ray.tfar = ray.ray.tfar[0];
-                                                  one.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-                                                  rtcIntersect1(scene_, context, &one);
-                                                  ray.ray.tfar[0] = one.ray.tfar;
-                                                });
+        return CastBlocks<1, 1, RTCRayHitNt<1>>(x0, y0, depth, [&](const int*, RayQuery& query, auto& ray) {
+          RTCRayHit one = {};
+          one.ray.dir_x = ray.ray.dir_x[0];
+          one.ray.dir_y = ray.ray.dir_y[0];
+          one.ray.dir_z = -1.0f;
+          one.ray.mask = ~0u;
+          one.ray.tfar = ray.ray.tfar[0];
+          one.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+          Intersect(scene_, query, one);
+          ray.ray.tfar[0] = one.ray.tfar;
+        });
       case BareKind::kPacket4:
-        return CastBlocks<4, 2, RTCRayHit4>(x0, y0, depth, [&](const int* valid, auto* context, auto& packet) {
-          rtcIntersect4(valid, scene_, context, &packet);
-        });
+        return CastPackets<4, 2, RTCRayHit4>(x0, y0, depth);
       case BareKind::kPacket8:
-        return CastBlocks<8, 4, RTCRayHit8>(x0, y0, depth, [&](const int* valid, auto* context, auto& packet) {
-          rtcIntersect8(valid, scene_, context, &packet);
-        });
+        return CastPackets<8, 4, RTCRayHit8>(x0, y0, depth);
       case BareKind::kPacket16:
-        return CastBlocks<16, 4, RTCRayHit16>(x0, y0, depth, [&](const int* valid, auto* context, auto& packet) {
-          rtcIntersect16(valid, scene_, context, &packet);
-        });
-      case BareKind::kStream64:
-        return CastBlocks<64, 8, RTCRayHitNt<64>>(x0, y0, depth, [&](const int*, auto* context, auto& packet) {
-          rtcIntersectNM(scene_, context, reinterpret_cast<RTCRayHitN*>(&packet), 64, 1, sizeof packet);
-        });
+        return CastPackets<16, 4, RTCRayHit16>(x0, y0, depth);
     }
   }
 

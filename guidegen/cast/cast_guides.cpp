@@ -163,6 +163,7 @@ Expected<GuidegenResult> CastInArena(LazyScene& objects, const View& view, const
   result.guides.camera = view.camera.ToGuideCamera();
   result.guides.attributes["scumble:generator"] = "guidegen " SCUMBLE_VERSION;
   result.guides.attributes["scumble:isa"] = scene.isa();
+  result.guides.attributes["scumble:embree"] = scene.version();
   if (options.raw_normals) result.guides.attributes["scumble:raw_normals"] = "true";
   if (!options.robust) result.guides.attributes["scumble:robust"] = "false";
   if (result.samples > 0) result.guides.attributes["scumble:samples"] = std::to_string(result.samples);

@@ -14,13 +14,6 @@ namespace {
 template <class Packet>
 constexpr int kRaysIn = sizeof(Packet::hit.geomID) / sizeof(unsigned);
 
-void CastPacket(const int* valid, RTCScene scene, RTCIntersectContext* context, RTCRayHit8& packet) {
-  rtcIntersect8(valid, scene, context, &packet);
-}
-void CastPacket(const int* valid, RTCScene scene, RTCIntersectContext* context, RTCRayHit16& packet) {
-  rtcIntersect16(valid, scene, context, &packet);
-}
-
 }  // namespace
 
 PrimaryRays::PrimaryRays(const EmbreeScene& scene, const CameraRays& camera, int width, int height, int aa)
@@ -83,7 +76,7 @@ void PrimaryRays::FindClear(const Packet& packet, const int* valid, CastContext&
       shorter.ray.tfar[lane] = std::nextafter(packet.ray.tfar[lane], 0.0f);
       shorter.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
     }
-    CastPacket(again, scene_.handle(), &context.embree, shorter);
+    Intersect(again, scene_.handle(), context.query, shorter);
   }
   for (int lane = 0; lane < kRays; ++lane) {
     const float last = passed[lane].farthest, met = packet.ray.tfar[lane];
@@ -128,7 +121,7 @@ void PrimaryRays::CastPackets(const Tile& tile, const TileRays& rays, bool find_
         valid[lane] = column + lane % kSquareSide < tile.width && row + lane / kSquareSide < tile.height ? -1 : 0;
       }
       if (context.passed) passed.fill({});
-      CastPacket(valid, scene_.handle(), &context.embree, packet);
+      Intersect(valid, scene_.handle(), context.query, packet);
       const std::size_t first = std::size_t(TilePixel(column, row));
       std::copy_n(packet.hit.geomID, kRays, hits.object.data() + first);
       std::copy_n(packet.hit.primID, kRays, hits.primitive.data() + first);
@@ -203,7 +196,7 @@ std::array<PrimaryRays::Samples, kTilePixels> PrimaryRays::FindSubsamples(const 
       valid[lane] = lane < count ? -1 : 0;
       packet.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
     }
-    CastPacket(valid, scene_.handle(), &context.embree, packet);
+    Intersect(valid, scene_.handle(), context.query, packet);
     for (int lane = 0; lane < count; ++lane) {
       const auto [pixel, rank] = tags[std::size_t(lane)];
       const std::size_t place = std::size_t(pixel) * per_pixel + std::size_t(rank);
@@ -301,7 +294,7 @@ std::size_t PrimaryRays::CastMissed(const Tile& tile, Samples samples, int pixel
     CastContext context(true);
     std::array<BacksPassed, kPacket> passed;
     context.passed = passed.data();
-    CastPacket(valid, scene_.handle(), &context.embree, packet);
+    Intersect(valid, scene_.handle(), context.query, packet);
     if (packet.hit.geomID[0] == RTC_INVALID_GEOMETRY_ID) continue;
     hits.object[pixel] = packet.hit.geomID[0];
     hits.primitive[pixel] = packet.hit.primID[0];

@@ -249,6 +249,14 @@ Expected<EmbreeScene> EmbreeScene::Build(std::vector<PlacedObject> objects, cons
   return scene;
 }
 
+std::string EmbreeScene::version() const {
+  const auto part = [&](RTCDeviceProperty property) {
+    return std::to_string(rtcGetDeviceProperty(device_.get(), property));
+  };
+  return part(RTC_DEVICE_PROPERTY_VERSION_MAJOR) + "." + part(RTC_DEVICE_PROPERTY_VERSION_MINOR) + "." +
+         part(RTC_DEVICE_PROPERTY_VERSION_PATCH);
+}
+
 Status EmbreeScene::OpenDevice(const std::string& isa) {
   rtcGetDeviceError(nullptr);  // an earlier device's error on this thread
   bool known = isa.empty();

@@ -1,8 +1,6 @@
 // Embree's device and committed scene, relative to the camera. Only tile_caster.cpp and single_ray.cpp cast into it.
 #pragma once
 
-#include <embree3/rtcore.h>
-
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -11,6 +9,7 @@
 
 #include "core/image/progress.h"
 #include "core/image/status.h"
+#include "guidegen/rays/embree.h"
 #include "guidegen/surface/surface.h"
 
 namespace scumble {
@@ -34,11 +33,9 @@ struct BacksPassed {
 // The context that Embree passes to filter functions. Camera rays do not hit the back of single-sided surfaces. Shadow
 // rays do, because a wall keeps its shadow when it is cut away for the viewer.
 struct CastContext {
-  explicit CastContext(bool for_camera_rays) : camera_rays(for_camera_rays) {
-    rtcInitIntersectContext(&embree);
-    embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  }
-  RTCIntersectContext embree;  // first: Embree passes its address on
+  explicit CastContext(bool for_camera_rays, RayOrder order = RayOrder::kCoherent)
+      : query(order), camera_rays(for_camera_rays) {}
+  RayQuery query;  // first: Embree passes its address on
   bool camera_rays;
   ShadowTarget target;
   BacksPassed* passed = nullptr;  // by a ray's id; null: not recorded
@@ -63,6 +60,7 @@ class EmbreeScene {
   RTCScene handle() const { return scene_.get(); }
   RTCScene emitters() const { return emitters_.get(); }   // the objects that emit, under the same ids; null: none
   const std::string& isa() const { return isa_; }         // the one in use, never empty
+  std::string version() const;                            // of the Embree that is loaded, as "4.3.3"
   bool wide_packets() const { return isa_ == "avx512"; }  // whether packets of 16 rays are faster than those of 8
   const std::vector<PlacedObject>& objects() const { return *objects_; }  // by Embree's geometry id
 

@@ -53,7 +53,7 @@ class OcclusionBatch {
     if (count_ == 0) return;
     alignas(32) int valid[kPacket];
     for (int lane = 0; lane < kPacket; ++lane) valid[lane] = lane < count_ ? -1 : 0;
-    rtcOccluded8(valid, scene_, &context_.embree, &packet_);
+    Occlude(valid, scene_, context_.query, packet_);
     const int count = std::exchange(count_, 0);
     for (int lane = 0; lane < count; ++lane) report(tags_[lane], packet_.tfar[lane] < 0.0f);
   }

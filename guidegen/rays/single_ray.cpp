@@ -16,25 +16,19 @@ RTCRay MakeRay(const LightRay& from) {
   return ray;
 }
 
-CastContext SingleRays() {
-  CastContext context(false);
-  context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-  return context;
-}
-
 bool Occluded(RTCScene scene, const LightRay& light_ray, const ShadowTarget& target) {
-  CastContext context = SingleRays();
+  CastContext context(false, RayOrder::kIncoherent);
   context.target = target;
   RTCRay ray = MakeRay(light_ray);
-  rtcOccluded1(scene, &context.embree, &ray);
+  Occlude(scene, context.query, ray);
   return ray.tfar < 0.0f;
 }
 
 RTCRayHit Cast(RTCScene scene, const glm::dvec3& origin, const glm::dvec3& direction) {
-  CastContext context = SingleRays();
+  CastContext context(false, RayOrder::kIncoherent);
   RTCRayHit hit = {MakeRay(EndlessLightRay(origin, direction)), {}};
   hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  if (scene) rtcIntersect1(scene, &context.embree, &hit);
+  if (scene) Intersect(scene, context.query, hit);
   return hit;
 }
 

@@ -42,7 +42,7 @@ enum class NormalMapRule { kGltf, kTangent, kObject, kBlenderObject };
 
 // A height over the surface that bends the normal, as Cycles' Bump node. The height is the texel's luminance.
 struct Bump {
-  TextureUse height_texture;
+  TextureUse height_texture = {};
   bool srgb = false;      // the texels are colours, and their luminance is that of the decoded ones
   float distance = 1.0f;  // m, that the surface rises from height 0 to 1; negative: it sinks
   float strength = 1.0f;  // 0 or more; 1: the normal of the risen surface, 0: no bump

@@ -13,7 +13,7 @@ constexpr const char* kHead =
     "transfer_ms_median,transfer_ms_lower_quartile,transfer_ms_upper_quartile,"
     "total_ms_median,total_ms_lower_quartile,total_ms_upper_quartile,prepare_ms,memory_bytes,"
     "both,both_standard_error,energy,energy_standard_error,missing,missing_standard_error,"
-    "guide_degrees,coherence,chunk_area_pixels,seam_excess,repetition,guide_rms,guide_flip,picture";
+    "texture,guide_degrees,coherence,chunk_area_pixels,seam_excess,repetition,guide_rms,guide_flip,picture";
 
 std::string Quoted(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
@@ -52,8 +52,8 @@ std::string TradeCsv(const TradeReport& report) {
     csv += Number(internal::Taken(variant.prepare_ms)) + ",";
     csv += variant.memory_bytes > 0 ? fmt::format("{},", variant.memory_bytes) : ",";
     for (const Estimate& estimate : {variant.both, variant.energy, variant.missing}) csv += Figure(estimate) + ",";
-    for (const auto& value : {variant.guide_degrees, variant.coherence, variant.chunk_area, variant.seam_excess,
-                              variant.repetition, variant.guide_rms, variant.guide_flip}) {
+    for (const auto& value : {variant.texture, variant.guide_degrees, variant.coherence, variant.chunk_area,
+                              variant.seam_excess, variant.repetition, variant.guide_rms, variant.guide_flip}) {
       csv += Number(value) + ",";
     }
     csv += (variant.picture_png.empty() ? "" : TradePictureName(report, i)) + "\r\n";

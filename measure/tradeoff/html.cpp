@@ -126,12 +126,12 @@ struct Column {
   bool number;
 };
 
-constexpr Column kColumns[] = {{"front", "", false},     {"way", "", false},        {"changes", "", false},
-                               {"time", "ms", true},     {"guides", "ms", true},    {"transfer", "ms", true},
-                               {"prepare", "ms", true},  {"memory", "MB", true},    {"both", "", true},
-                               {"energy", "", true},     {"missing", "", true},     {"off by", "°", true},
-                               {"coherence", "%", true}, {"chunk", "px", true},     {"seam excess", "", true},
-                               {"repetition", "", true}, {"guides' RMS", "", true}, {"guides' FLIP", "", true}};
+constexpr Column kColumns[] = {
+    {"front", "", false},     {"way", "", false},        {"changes", "", false},    {"time", "ms", true},
+    {"guides", "ms", true},   {"transfer", "ms", true},  {"prepare", "ms", true},   {"memory", "MB", true},
+    {"both", "", true},       {"energy", "", true},      {"missing", "", true},     {"texture", "", true},
+    {"off by", "°", true},    {"coherence", "%", true},  {"chunk", "px", true},     {"seam excess", "", true},
+    {"repetition", "", true}, {"guides' RMS", "", true}, {"guides' FLIP", "", true}};
 
 std::string Cell(const std::optional<double>& value, const std::string& shown) {
   return fmt::format("<td class=\"number\" data-v=\"{}\">{}</td>", value ? fmt::format("{}", *value) : "", shown);
@@ -154,7 +154,8 @@ std::string VariantRow(const TradeReport& report, std::size_t i, bool front) {
   html +=
       Cell(internal::Taken(static_cast<double>(variant.memory_bytes)), internal::ShortMegabytes(variant.memory_bytes));
   html += EstimateCell(variant.both) + EstimateCell(variant.energy) + EstimateCell(variant.missing);
-  html += FigureCell(variant.guide_degrees) + Cell(variant.coherence, internal::ShortPercent(variant.coherence));
+  html += FigureCell(variant.texture) + FigureCell(variant.guide_degrees) +
+          Cell(variant.coherence, internal::ShortPercent(variant.coherence));
   for (const auto& value :
        {variant.chunk_area, variant.seam_excess, variant.repetition, variant.guide_rms, variant.guide_flip}) {
     html += FigureCell(value);

@@ -36,6 +36,7 @@ Json VariantJson(const TradeReport& report, std::size_t i, bool front) {
   json["both"] = EstimateJson(variant.both);
   json["energy"] = EstimateJson(variant.energy);
   json["missing"] = EstimateJson(variant.missing);
+  json["texture"] = NumberJson(variant.texture);
   json["guide_degrees"] = NumberJson(variant.guide_degrees);
   json["coherence"] = NumberJson(variant.coherence);
   json["chunk_area_pixels"] = NumberJson(variant.chunk_area);

@@ -32,6 +32,7 @@ struct TradeMeasure {
   double prepare_ms = 0.0;              // the style, once, with empty caches: tables, trees, exemplars at this size
   std::size_t memory_bytes = 0;         // the peak
   Estimate both, energy, missing;       // measure/energy/energy.h; `both` ranks
+  std::optional<double> texture;        // measure/texture/guided_texture.h
   std::optional<double> guide_degrees;  // mean angle between a pixel's normal and that of its source, exact guides
   std::optional<double> coherence;      // 0 … 1
   std::optional<double> chunk_area;     // mean, pixels

@@ -12,8 +12,8 @@ namespace {
 
 using internal::ShortFigure;
 
-constexpr std::size_t kColumns = 12, kMostWidth = 120;
-using Row = std::array<std::string, kColumns>;
+constexpr std::size_t kTableCells = 13, kMostWidth = 120;
+using Row = std::array<std::string, kTableCells>;
 
 constexpr std::size_t kName = 1;
 
@@ -50,6 +50,7 @@ Row RowOf(const TradeMeasure& variant, bool front) {
           Narrow(variant.both),
           Narrow(variant.energy),
           Narrow(variant.missing),
+          ShortFigure(variant.texture),
           ShortFigure(variant.guide_degrees),
           internal::ShortPercent(variant.coherence),
           ShortFigure(variant.chunk_area),
@@ -57,13 +58,13 @@ Row RowOf(const TradeMeasure& variant, bool front) {
           ShortFigure(variant.repetition)};
 }
 
-const Row kHeadAbove = {"", "", "time, ms", "memory", "", "", "", "off by", "coher.", "chunk", "seam", "repe-"};
-const Row kHeadBelow = {"",        "way", "(quartiles)", "MB", "both",   "energy",
-                        "missing", "°",   "%",           "px", "excess", "tition"};
+const Row kHeadAbove = {"", "", "time, ms", "memory", "", "", "", "tex-", "off by", "coher.", "chunk", "seam", "repe-"};
+const Row kHeadBelow = {"",     "way", "(quartiles)", "MB", "both",   "energy", "missing",
+                        "ture", "°",   "%",           "px", "excess", "tition"};
 
-std::string Line(const Row& row, const std::array<std::size_t, kColumns>& widths) {
+std::string Line(const Row& row, const std::array<std::size_t, kTableCells>& widths) {
   std::string line;
-  for (std::size_t column = 0; column < kColumns; ++column) {
+  for (std::size_t column = 0; column < kTableCells; ++column) {
     const std::string cell = CutTo(row[column], std::max<std::size_t>(widths[column], 1));
     const std::string space(widths[column] - std::min(widths[column], WidthOf(cell)), ' ');
     if (column > 0) line += ' ';
@@ -73,15 +74,15 @@ std::string Line(const Row& row, const std::array<std::size_t, kColumns>& widths
   return line + "\n";
 }
 
-std::array<std::size_t, kColumns> WidthsOf(const std::vector<Row>& rows) {
-  std::array<std::size_t, kColumns> widths{};
+std::array<std::size_t, kTableCells> WidthsOf(const std::vector<Row>& rows) {
+  std::array<std::size_t, kTableCells> widths{};
   for (const Row& row : rows) {
-    for (std::size_t column = 0; column < kColumns; ++column) {
+    for (std::size_t column = 0; column < kTableCells; ++column) {
       widths[column] = std::max(widths[column], WidthOf(row[column]));
     }
   }
-  std::size_t others = kColumns - 1;
-  for (std::size_t column = 0; column < kColumns; ++column) others += column == kName ? 0 : widths[column];
+  std::size_t others = kTableCells - 1;
+  for (std::size_t column = 0; column < kTableCells; ++column) others += column == kName ? 0 : widths[column];
   constexpr std::size_t kLeastName = 8;
   widths[kName] = std::min(widths[kName], std::max(kLeastName, kMostWidth - std::min(others, kMostWidth)));
   return widths;

@@ -9,6 +9,7 @@
 #include "core/io/file/atomic_file.h"
 #include "core/io/guide_file.h"
 #include "pipeline/memory/memory_estimate.h"
+#include "pipeline/run/guide_casters.h"
 #include "pipeline/run/run_requests.h"
 #include "pipeline/scene/run_inputs.h"
 #include "pipeline/scene/scene_sequence.h"
@@ -37,17 +38,21 @@ Expected<RunReport> GuidegenSequence(const GuidegenRequest& request, const Seque
   const Size& size = request.scene.size;
   SceneFrames scene(request.scene, layers_for, motion, context);
   const std::string settings = GuideSettings(request.scene);
+  GuideCasters casters(context);
   SequenceWork work;
   // What the scene asks for is in the file as well, so that nothing is loaded where nothing is left to make.
-  work.check = [&](int, const std::string& output) -> Status {
+  work.check = [&](int frame, const std::string& output) -> Status {
     const Expected<GuideFileInfo> info = InspectGuides(output);
     SCUMBLE_ASSIGN(LayerSet layers, layers_for(info ? SceneStyleRequestsOf(info->header) : SceneStyleRequests()));
-    return CheckWholeGuides(output, {size.width, size.height, layers.Add(AlwaysWritten()), request.scene.half, settings,
-                                     request.write.cryptomatte});
+    SCUMBLE_RETURN_IF_ERROR(CheckWholeGuides(output, {size.width, size.height, layers.Add(AlwaysWritten()),
+                                                      request.scene.half, settings, request.write.cryptomatte}));
+    if (info) casters.Add(frame, info->header.attributes);
+    return Ok();
   };
   work.begin = [&](std::span<const int> frames, const Progress& progress) { return scene.Start(frames, progress); };
   work.make = [&](int frame, const std::string& output, const Progress& progress) -> Expected<FrameWrite> {
     SCUMBLE_ASSIGN(const SceneGuides* const guides, scene.At(frame, progress));
+    casters.Add(frame, guides->guides.attributes);
     SceneGuides report;  // all but the pixels
     report.times = guides->times, report.plan = guides->plan, report.cost = guides->cost;
     report.memory = guides->memory;

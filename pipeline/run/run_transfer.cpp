@@ -9,6 +9,7 @@
 #include "core/io/guide_file.h"
 #include "core/io/picture_file.h"
 #include "pipeline/memory/memory_estimate.h"
+#include "pipeline/run/guide_casters.h"
 #include "pipeline/run/picture_sequence.h"
 #include "pipeline/run/run_requests.h"
 #include "pipeline/scene/scene_sequence.h"
@@ -66,6 +67,7 @@ Expected<RunReport> TransferSequence(const TransferRequest& request, const Seque
   std::optional<GuideSet> guides;
   std::string guides_file;  // that `guides` are from
   MemoryNeed memory;        // with them
+  GuideCasters casters(context);
   const GuidesAt guides_at = [&](int frame, const Progress&) -> Expected<FrameGuides> {
     const std::string file = guides_name.At(frame);
     if (guides && file == guides_file) return FrameGuides{&*guides, {file, {}, {}, {}, memory}};
@@ -79,6 +81,7 @@ Expected<RunReport> TransferSequence(const TransferRequest& request, const Seque
     SCUMBLE_ASSIGN(guides, ReadGuides(file, one));
     context.EndStage("read");
     guides_file = file;
+    casters.Add(frame, guides->attributes);
     return FrameGuides{&*guides, {file, {{"read", watch.Lap()}}, {}, {}, memory}};
   };
   SequenceWork work;
@@ -86,6 +89,7 @@ Expected<RunReport> TransferSequence(const TransferRequest& request, const Seque
     // Guides that are gone do not tell the size of their picture, nor its rate.
     const auto info = InspectGuides(guides_name.At(frame));
     if (!info) return pictures.Check(frame, output, 0, 0, {}, {});
+    casters.Add(frame, info->header.attributes);
     const FrameRate fps = RateOf(request.picture.fps, info->header);
     const int factor = request.picture.upsample;
     return pictures.Check(frame, output, info->width * factor, info->height * factor, fps,

@@ -386,10 +386,16 @@ class Trade {
     if (!is_new) {
       const TradeMeasure& same = report_.variants[known->second];
       measure.both = same.both, measure.energy = same.energy, measure.missing = same.missing;
+      measure.texture = same.texture;
       measure.same_as = known->second;
       AddNote(measure, "the same picture as " + same.name);
       return Ok();
     }
+    if (!texture_) {
+      SCUMBLE_ASSIGN(GuidedTexture texture, reference_->Texture());
+      texture_.emplace(std::move(texture));
+    }
+    SCUMBLE_RETURN_IF_ERROR(reference_->MeasureTexture(*texture_, picture, measure));
     EnergyOptions options;
     options.seed = setup_.scene.seed;
     return reference_->MeasurePaint(picture, painter.field(), options, measure);
@@ -408,6 +414,7 @@ class Trade {
   std::map<std::string, std::vector<double>> guides_ms_;
   std::shared_ptr<const VariantGuides> exact_guides_, style_guides_;
   std::optional<TradeReference> reference_;
+  std::optional<GuidedTexture> texture_;         // of the reference's exemplars
   std::map<std::size_t, std::size_t> pictures_;  // of variants, by a hash of 64 bits
   double style_first_ms_ = 0.0;                  // of the style as it is, the first variant
   std::vector<double> style_ms_;                 // all its transfers

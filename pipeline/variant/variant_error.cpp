@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/glm.hpp>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "core/image/exact_math.h"
@@ -168,6 +169,15 @@ Status TradeReference::MeasurePaint(const Picture& picture, const SourceField* f
   if (field) mosaic.emplace(*field), options.sources = &mosaic->planes;
   SCUMBLE_ASSIGN(const EnergyReport report, MeasureEnergy(Target(picture), Exemplars(), options));
   measure.both = report.both, measure.energy = report.energy, measure.missing = report.missing;
+  return Ok();
+}
+
+Status TradeReference::MeasureTexture(const GuidedTexture& exemplars, const Picture& picture,
+                                      TradeMeasure& measure) const {
+  const std::vector<float> one(guides_->Has(Layer::kObject) ? 0 : guides_->pixel_count());
+  const std::span<const float> surface = one.empty() ? guides_->Plane(Layer::kObject) : std::span(one);
+  SCUMBLE_ASSIGN(const GuidedTextureReport report, exemplars.Measure(Target(picture), surface, threads_));
+  if (report.measured > 0) measure.texture = report.distance;
   return Ok();
 }
 

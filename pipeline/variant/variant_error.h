@@ -9,6 +9,7 @@
 
 #include "core/image/guides.h"
 #include "measure/energy/energy.h"
+#include "measure/texture/guided_texture.h"
 #include "measure/tradeoff/report.h"
 #include "transfer/transfer.h"
 
@@ -31,6 +32,10 @@ class TradeReference {
   // take less. `options` as they are but for `sources` and `threads`.
   Status MeasurePaint(const Picture& picture, const SourceField* field, EnergyOptions options,
                       TradeMeasure& measure) const;
+  // The exemplars as MeasureTexture takes them.
+  Expected<GuidedTexture> Texture() const { return GuidedTexture::Of(Exemplars(), threads_); }
+  // Fills in the distance of the picture's texture from that of the exemplars, which are this reference's.
+  Status MeasureTexture(const GuidedTexture& exemplars, const Picture& picture, TradeMeasure& measure) const;
   // Fills in what the field shows of the mosaic.
   Status MeasureMosaic(const Picture& picture, const SourceField& field, TradeMeasure& measure) const;
 

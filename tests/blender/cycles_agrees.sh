@@ -8,7 +8,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
 "$program" crosscheck "$source"/scenes/*.glb --size 320x180 --samples 64 -o "$work/report.html" --quiet \
-    > "$work/verdicts"
+    > "$work/verdicts" || { cat "$work/verdicts"; exit 1; }
 cat "$work/verdicts"
 test "$(grep -c '^  verdict: agrees$' "$work/verdicts")" = "$(ls "$source"/scenes/*.glb | wc -l)"
 

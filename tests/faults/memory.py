@@ -108,9 +108,9 @@ def main():
             whole = told_by_no_clock(common.contents(folder / "out"))
             well = 0
             # Memory that a thread's heap takes at once makes more of it fail where less went well: the end is where
-            # sixteen runs have gone well, and half as much again is allowed.
+            # eight runs have gone well, and half as much again is allowed.
             kilobytes = least
-            while well < 16 and kilobytes < 3000 * MB:
+            while well < 8 and kilobytes < 3000 * MB:
                 common.clean(folder / "out")
                 tried = ["--max-memory", "1T"] if runs % 2 and arguments[0] in FORESEES else []
                 code, said = program.run(*arguments, *tried, preexec_fn=limits_for(kilobytes))
@@ -128,8 +128,8 @@ def main():
                     failures.check("please report" not in said, where)
                     failures.check(all(whole.get(name) == content for name, content in made.items()),
                                    where + " left " + ", ".join(made))
-                kilobytes += step if well < 4 else 4 * step
-            failures.check(well >= 16, f"{verb}: never went well within {kilobytes} kB")
+                kilobytes += step if well < 2 else 8 * step
+            failures.check(well >= 8, f"{verb}: never went well within {kilobytes} kB")
             print(f"{verb}: well from about {kilobytes // MB} MB", flush=True)
         print(f"{runs} runs, {foreseen} refused beforehand, in {ended} memory or threads ended; the program loads "
               f"within {least} kB")

@@ -32,7 +32,7 @@ TEST(PaintTone, TheLightThatAPaintingHas) {
     sphere.size = 256, sphere.azimuth = azimuth, sphere.elevation = elevation;
     const Exemplar exemplar = ExemplarOf(PaintSphere(sphere));
     const PaintedLight light = FindPaintedLight(PaintSheet(exemplar, 2.0));
-    SCOPED_TRACE(testing::Message() << azimuth << ", " << elevation << ": " << light.azimuth << ", "
+    SCOPED_TRACE(::testing::Message() << azimuth << ", " << elevation << ": " << light.azimuth << ", "
                                     << light.elevation);
     EXPECT_LT(AngleBetween(light, {azimuth, elevation, 1.0}), azimuth > 90.0 ? 15.0 : 6.0);
     EXPECT_GT(light.correlation, 0.9);
@@ -68,7 +68,7 @@ TEST(PaintedDisc, CentreAndRadius) {
     const PaintOnGround paint(sheet);
     ASSERT_TRUE(paint.known());
     const PaintedDisc disc = FindPaintedDisc(paint);
-    SCOPED_TRACE(testing::Message() << x << ", " << y << ", " << radius);
+    SCOPED_TRACE(::testing::Message() << x << ", " << y << ", " << radius);
     ASSERT_TRUE(disc.found);
     EXPECT_NEAR(disc.x, 512.0 * x, 1.0);
     EXPECT_NEAR(disc.y, 512.0 * y, 1.0);

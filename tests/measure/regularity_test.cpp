@@ -34,7 +34,7 @@ TEST(Regularity, PeriodAndDirectionOfLines) {
       const double angle = degrees / 360.0 * kTurn;
       const RegularityReport report =
           Measure([&](int x, int y) { return std::cos(kTurn * (x * std::cos(angle) - y * std::sin(angle)) / period); });
-      SCOPED_TRACE(testing::Message() << degrees << " degrees, " << period);
+      SCOPED_TRACE(::testing::Message() << degrees << " degrees, " << period);
       EXPECT_GT(report.peak, 0.9);
       EXPECT_GT(report.local_echo, 0.9);
       EXPECT_FALSE(report.grid);

@@ -255,6 +255,7 @@ TEST(TradeReport, CsvReadsBackToTheSameTextsAndValues) {
     EXPECT_EQ(NumberOf(rows, i, "both_standard_error"), variant.both.standard_error);
     EXPECT_EQ(NumberOf(rows, i, "energy"), variant.energy.mean);
     EXPECT_EQ(NumberOf(rows, i, "missing_standard_error"), variant.missing.standard_error);
+    EXPECT_EQ(NumberOf(rows, i, "texture"), *variant.texture);
     EXPECT_EQ(NumberOf(rows, i, "guide_degrees"), *variant.guide_degrees);
     EXPECT_EQ(NumberOf(rows, i, "coherence"), *variant.coherence);
     EXPECT_EQ(NumberOf(rows, i, "chunk_area_pixels"), *variant.chunk_area);

@@ -24,6 +24,7 @@ inline TradeMeasure MadeUpVariant(const std::string& axis, const std::string& va
   variant.both = {both, 0.0123456789012345};
   variant.energy = {both / 3, 0.004};
   variant.missing = {both / 1.5, 0.008};
+  variant.texture = 0.1375;
   variant.guide_degrees = 2.25;
   variant.coherence = 0.897;
   variant.chunk_area = 153.25;

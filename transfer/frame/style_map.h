@@ -19,7 +19,7 @@ struct StyleMap {
   static constexpr int kMaxStyles = 0xfffe;
   std::vector<std::uint16_t> style;
   // By fragment of the guides, likewise; empty: fragments are of their pixel's style.
-  std::vector<std::uint16_t> fragment_style;
+  std::vector<std::uint16_t> fragment_style = {};
 };
 
 // Styles by the ids of objects and of materials. An object's style takes precedence over its material's, and both over

@@ -94,8 +94,9 @@ std::string RefuseNoSmoothing(const std::string& text) {
 }  // namespace
 
 void AddViewOptions(CLI::App& verb, SceneOptions& options) {
+  // CLI11 2.4 allows no argument of an option's name, --scene.
   verb.add_option(
-          "scene", options.request.scene,
+          "scene_file", options.request.scene,
           "scene file: .glb, .gltf, .obj, .ply, or .blend, which Blender exports first (3.4.1 and 4.3.2 tested)")
       ->type_name("FILE")
       ->required();

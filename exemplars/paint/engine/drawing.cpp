@@ -9,7 +9,7 @@
 
 namespace scumble::paint {
 namespace {
-constexpr float kSquint = 13.0f;     // radius of the blur
+constexpr float kToneBlur = 13.0f;     // radius of the blur
 constexpr float kEagerness = 4.0f;   // an error of a tenth in tone gets 0.4 of full pressure
 constexpr float kOverhang = 1.045f;  // strokes fade out at this many radii
 }  // namespace
@@ -30,7 +30,7 @@ Touch Drawing::Missing(const Touch& target, float eagerness, float heaviest) con
     const glm::vec3 color = picture.pixels[i];
     darkness.pixels[i] = 1.0f - Luminance(color.r, color.g, color.b);
   }
-  const auto seen = std::make_shared<const Field>(Blur(darkness, kSquint));
+  const auto seen = std::make_shared<const Field>(Blur(darkness, kToneBlur));
   return [=](glm::vec2 at) {
     const float scale = static_cast<float>(seen->size) / kSide;
     const float there = seen->Near(static_cast<int>(at.x * scale), static_cast<int>(at.y * scale));

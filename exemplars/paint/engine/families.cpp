@@ -10,7 +10,7 @@
 namespace scumble::paint {
 namespace {
 
-constexpr float kStep = 4.0f;      // units between the points of a line
+constexpr float kPointStep = 4.0f;      // units between the points of a line
 constexpr float kBend = 150.0f;    // units over which neighbours bend together
 constexpr float kOverRim = 1.02f;  // lines that swell have faded out at this many radii
 
@@ -27,7 +27,7 @@ std::vector<glm::vec2> VisibleArc(glm::vec3 axis, float latitude, float overhang
     return axis * cosine + (nearest * std::cos(angle) + aside * std::sin(angle)) * sine;
   };
   if (at(0.0f).z <= 0.0f) return {};
-  const float turn = kStep / (kRadius * sine);
+  const float turn = kPointStep / (kRadius * sine);
   const auto walk = [&](float sign) {
     std::vector<glm::vec2> part;
     float angle = 0.0f;
@@ -41,7 +41,7 @@ std::vector<glm::vec2> VisibleArc(glm::vec3 axis, float latitude, float overhang
       // Near the rim steps shorten, so the heading is that of the last few.
       const glm::vec2 before = part[part.size() - std::min<std::size_t>(part.size(), 4)];
       const glm::vec2 heading = (last - before) / std::max(glm::distance(last, before), 1e-4f);
-      for (float way = kStep; way <= overhang; way += kStep) part.push_back(last + heading * way);
+      for (float way = kPointStep; way <= overhang; way += kPointStep) part.push_back(last + heading * way);
     }
     return part;
   };
@@ -78,7 +78,7 @@ float ShareOfPressure(int line, float openness) {
 // Cuts a line into strokes of the hand and presses them.
 void BreakUp(Chance& chance, const std::vector<glm::vec2>& line, const Touch& touch, const FamilyOptions& options,
              std::vector<Stroke>& strokes) {
-  const auto points = [](float units) { return static_cast<int>(std::lround(units / kStep)); };
+  const auto points = [](float units) { return static_cast<int>(std::lround(units / kPointStep)); };
   const int count = static_cast<int>(line.size());
   // The first stroke begins somewhere before the line, so that no seam runs along the rim.
   int begin = -points(chance.Uniform(0.0f, options.length_max));

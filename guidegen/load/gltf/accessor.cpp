@@ -160,7 +160,10 @@ class Reader {
     const auto& sparse = accessor_->sparse;
     if (sparse.count < 0 || std::size_t(sparse.count) > accessor_->count) return Bad("has a wrong sparse count");
     if (!IsIndexType(sparse.indices.componentType)) return Bad("has sparse indices of a wrong type");
-    if (sparse.indices.byteOffset < 0 || sparse.values.byteOffset < 0) return Bad("has a negative sparse offset");
+    // tinygltf 2.9 itself takes a negative one for 0, as that of the accessor.
+    if (std::ptrdiff_t(sparse.indices.byteOffset) < 0 || std::ptrdiff_t(sparse.values.byteOffset) < 0) {
+      return Bad("has a negative sparse offset");
+    }
     const std::size_t count = std::size_t(sparse.count);
     const std::size_t index_bytes = std::size_t(ComponentBytes(sparse.indices.componentType));
     SCUMBLE_ASSIGN(const Block indices, Slice({.view = sparse.indices.bufferView,

@@ -319,6 +319,28 @@ bool ReadForTinygltf(std::vector<unsigned char>* out, std::string* error, const 
 
 bool NeverWrite(std::string*, const std::string&, const std::vector<unsigned char>&, void*) { return false; }
 
+bool SizeForTinygltf(std::size_t* size, std::string* error, const std::string& name, void*) {
+  std::error_code failed;
+  *size = std::filesystem::file_size(name, failed);
+  if (failed && error) *error += failed.message();
+  return !failed;
+}
+
+// tinygltf 2.9 also wants files' sizes, and refuses more than 2 GB unless it is told another limit.
+template <class Loader, class Callbacks>
+void SetFileCallbacks(Loader& loader, Surroundings& surroundings, Callbacks callbacks) {
+  callbacks.FileExists = &BesideScene;
+  callbacks.ExpandFilePath = [](const std::string& name, void*) { return name; };
+  callbacks.ReadWholeFile = &ReadForTinygltf;
+  callbacks.WriteWholeFile = &NeverWrite;
+  callbacks.user_data = &surroundings;
+  if constexpr (requires { callbacks.GetFileSizeInBytes; }) {
+    callbacks.GetFileSizeInBytes = &SizeForTinygltf;
+    loader.SetMaxExternalFileSize(std::numeric_limits<std::size_t>::max());
+  }
+  loader.SetFsCallbacks(callbacks);
+}
+
 // tinygltf's message about an accepted file becomes a warning, except where tinygltf is stricter than glTF.
 void WarnOfComplaints(std::string complaints, WarningCounter& warnings) {
   // The materials' own warnings name textures without an index.
@@ -340,8 +362,7 @@ Status RunTinygltf(const std::string& file, Surroundings& surroundings, std::spa
   const std::string& folder = surroundings.folder;
   tinygltf::TinyGLTF loader;
   loader.SetImageLoader(&KeepEncoded, nullptr);
-  loader.SetFsCallbacks({&BesideScene, [](const std::string& name, void*) { return name; }, &ReadForTinygltf,
-                         &NeverWrite, &surroundings});
+  SetFileCallbacks(loader, surroundings, tinygltf::FsCallbacks());
   std::string errors, warnings;
   bool ok = false;
   const unsigned size = static_cast<unsigned>(bytes.size());

@@ -116,7 +116,7 @@ TEST_F(CliBadFiles, FragmentsOfGuides) {
   expect_refused(header, 0x40, true, "has version 65");
   expect_refused(header + 4, 0x40, true, "of a picture of 112×32");
   expect_refused(header + 12, 0x01, true, "fragments of");
-  expect_refused(whole.find(std::string("material.ID\0", 12), header) + 12 + 3, 0x40, false, "outside the picture");
+  expect_refused(whole.find(std::string("cells\0", 6), header) + 6 + 3, 0x40, false, "outside the picture");
   RunOk({"transfer", "whole.exr", "--style", "style", "-o", "out.png"});
 }
 
@@ -145,7 +145,7 @@ TEST_F(CliBadContent, ExemplarSizes) {
   WriteText("zero.ppm", "P6\n0 0\n255\n");
   ExpectError(Transfer("g.exr", "zero.ppm"), 3, {"zero.ppm"});
   WriteText("huge.ppm", "P6\n100000 100000\n255\n");
-  ExpectError(Transfer("g.exr", "huge.ppm"), 3, {"huge.ppm", "100000×100000"});
+  ExpectError(Transfer("g.exr", "huge.ppm"), 3, {"huge.ppm", "100000"});
   WritePainted("wide.png", 32, 16);
   ExpectError(Transfer("g.exr", "wide.png"), 3, {"wide.png is 32×16", "square", "crop"});
   WritePainted("dot.png", 1, 1);

@@ -14,8 +14,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool Contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
 class CliExemplar : public CliTest {
  protected:
   // A style painted on suzanne, 96×54.

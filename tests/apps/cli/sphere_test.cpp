@@ -49,7 +49,7 @@ TEST_F(CliSphere, SizeOnPaper) {
   refused({"--print-size", "10"}, {"--print-size '10'", "150mm, 15cm or 6in"});
   refused({"--print-size", "1mm"}, {"--print-size 1mm at 300 dpi is 12 pixels", "16 to 8192", "--dpi"});
   refused({"--print-size", "2000mm"}, {"23622 pixels"});
-  refused({"--dpi", "10"}, {"--dpi", "72 to 2400"});
+  refused({"--dpi", "10"}, {"--dpi", "72", "2400"});
   refused({"--page", "a5"}, {"--page a5", "a4, letter, a3 or fit"});
   refused({"--only", "jpg"}, {"--only jpg", "png, ora or pdf"});
   refused({"--print-size", "200mm", "--page", "a4"},

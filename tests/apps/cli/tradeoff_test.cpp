@@ -88,8 +88,8 @@ TEST_F(Tradeoff, WritesAPageFiguresAndPicturesThatAgree) {
     const auto& way = json["ways"][i];
     const auto& row = rows[i + 1];
     ASSERT_EQ(row.size(), rows[0].size());
-    EXPECT_EQ(row[column["way"]], way["way"]);
-    EXPECT_EQ(row[column["options"]], way["options"]);
+    EXPECT_EQ(nlohmann::json(row[column["way"]]), way["way"]);
+    EXPECT_EQ(nlohmann::json(row[column["options"]]), way["options"]);
     EXPECT_EQ(std::stod(row[column["both"]]), way["both"]["mean"].get<double>());
     EXPECT_EQ(std::stod(row[column["total_ms_median"]]), way["total_ms"]["median"].get<double>());
     EXPECT_EQ(std::stod(row[column["memory_bytes"]]), way["memory_bytes"].get<double>());

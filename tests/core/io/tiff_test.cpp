@@ -106,10 +106,10 @@ INSTANTIATE_TEST_SUITE_P(All, TiffShapes,
                                                               TiffSize{2, 2}, TiffSize{37, 23}, TiffSize{700, 100},
                                                               TiffSize{33000, 2}),
                                             ::testing::Values(8, 16)),
-                         [](const auto& info) {
-                           const TiffSize shape = std::get<0>(info.param);
+                         [](const auto& test) {
+                           const TiffSize shape = std::get<0>(test.param);
                            return std::to_string(shape.width) + "x" + std::to_string(shape.height) + "of" +
-                                  std::to_string(std::get<1>(info.param));
+                                  std::to_string(std::get<1>(test.param));
                          });
 
 // What a reader finds beside the pixels. How many rows a strip has is the writer's own business.

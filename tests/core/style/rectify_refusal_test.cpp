@@ -88,10 +88,10 @@ TEST(RectifyRefusal, AMosaicOfTemplatesIsRefusedBeforeItIsFitted) {
   EXPECT_TRUE(FitTemplate(marks, 1400, 1400)) << "five sheets";
 
   // Six sheets of 256 pixels; a sheet's marks are found as well as any.
-  constexpr int kSize = 256;
-  const int margin = TemplateMargin(kSize), side = kSize + 2 * margin;
+  constexpr int kTile = 256;
+  const int margin = TemplateMargin(kTile), side = kTile + 2 * margin;
   Picture sheet = Filled(side, side, 65535), mosaic = Filled(3 * side, 2 * side, 65535);
-  DrawFiducials(sheet, kSize, margin);
+  DrawFiducials(sheet, kTile, margin);
   for (int y = 0; y < mosaic.height; ++y) {
     for (int k = 0; k < 3; ++k) std::copy_n(sheet.At(0, y % side), 4 * std::size_t(side), mosaic.At(k * side, y));
   }

@@ -65,7 +65,7 @@ TEST_P(StraightHairs, HaveTheNormalsOfARod) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, StraightHairs, ::testing::Bool(),
-                         [](const auto& info) { return info.param ? "Ribbons" : "Round"; });
+                         [](const auto& test) { return test.param ? "Ribbons" : "Round"; });
 
 TEST(Hair, ARingOfItIsATorus) {
   const int side = 80;

@@ -93,11 +93,11 @@ TEST(NormalMaps, AStretchInTheMeshIsUndone) {
 
 // A ramp from black on the left to white on the right, over a square of 2 m.
 Scene Ramp(const Bump& bump) {
-  constexpr int kWidth = 64;
+  constexpr int kTexels = 64;
   Scene scene = SceneOf(QuadMesh());
-  Picture picture(kWidth, 1);
-  for (int x = 0; x < kWidth; ++x) {
-    for (int i = 0; i < 3; ++i) picture.rgba[std::size_t(4 * x + i)] = Stored((x + 0.5) / kWidth);
+  Picture picture(kTexels, 1);
+  for (int x = 0; x < kTexels; ++x) {
+    for (int i = 0; i < 3; ++i) picture.rgba[std::size_t(4 * x + i)] = Stored((x + 0.5) / kTexels);
   }
   scene.textures.push_back(picture);
   scene.materials[0].bump = bump;

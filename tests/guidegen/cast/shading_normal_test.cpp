@@ -225,8 +225,9 @@ TEST(BentNormals, AMirrorLosesNothing) {
   scene.world_radiance = glm::vec3(1.0f);
   const auto result = Render(scene, LookingAt({0, 0.5, 6}, {0, 0, 0}, 40.0), Paths(48, {Layer::kLpeFull}, 16));
   for (std::size_t i = 0; i < result.guides.pixel_count(); ++i) {
-    if (result.guides.Plane(Layer::kCoverage)[i] > 0.0f)
+    if (result.guides.Plane(Layer::kCoverage)[i] > 0.0f) {
       EXPECT_NEAR(result.guides.Plane(Layer::kLpeFull)[i], 1.0, 1e-5);
+    }
   }
 }
 

@@ -14,7 +14,7 @@
 namespace scumble::testing {
 namespace {
 
-constexpr int kSide = 16;  // of a tile
+constexpr int kTileSize = 16;  // of a tile
 const LayerSet kLight = {Layer::kLuminance, Layer::kShadow};
 
 Light Square(const glm::dvec3& at, double size, double radiance = 10.0) {
@@ -60,7 +60,7 @@ Scene EveryLamp(int many) {
 
 // A scene's lights, and the points that the rays of one tile's pixels meet.
 struct LitTile {
-  explicit LitTile(const Scene& scene) : camera(CameraRays::Make(kView, 4 * kSide, 4 * kSide).value()) {
+  explicit LitTile(const Scene& scene) : camera(CameraRays::Make(kView, 4 * kTileSize, 4 * kTileSize).value()) {
     std::vector<PlacedObject> objects;
     for (const Instance& instance : scene.instances) {
       const Mesh& mesh = scene.meshes[std::size_t(instance.mesh)];
@@ -71,9 +71,9 @@ struct LitTile {
         EmbreeScene::Build(std::move(objects), "", {.light_rays = true, .emitters = true}).value());
     placed = PlaceLights(scene.lights, camera).value();
     lights = std::make_unique<LightSet>(placed, embree->objects(), scene.world_radiance);
-    points.reserve(kSide * kSide);
-    for (int i = 0; i < kSide * kSide; ++i) {
-      const int column = i % kSide, row = i / kSide;
+    points.reserve(kTileSize * kTileSize);
+    for (int i = 0; i < kTileSize * kTileSize; ++i) {
+      const int column = i % kTileSize, row = i / kTileSize;
       const ViewRay ray = camera.Through(4.0 * column + 2.0, 4.0 * row + 2.0);  // every fourth pixel of a picture
       const RTCRayHit hit = CastSingleRay(*embree, ray.origin, ray.direction);
       if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
@@ -118,7 +118,7 @@ TEST(AreaLightTile, AFixedNumberIsTheMeanOfPlainSamples) {
 // First samples of all pixels: four, and eight along the borders of tiles.
 std::size_t FirstSamples(int width, int height) {
   std::size_t count = 0;
-  const auto at_border = [](int at) { return at % kSide == 0 || at % kSide == kSide - 1; };
+  const auto at_border = [](int at) { return at % kTileSize == 0 || at % kTileSize == kTileSize - 1; };
   for (int i = 0; i < width * height; ++i) count += at_border(i % width) || at_border(i / width) ? 8 : 4;
   return count;
 }

@@ -233,8 +233,11 @@ TEST(RoughDiffuse, ReturnsWhatTheFormulaIntegratesTo) {
       const double returned = OverHemisphere([&](const glm::dvec3& d) { return bsdf.Diffuse(d).value.g; });
       EXPECT_NEAR(returned, SampledAlbedo(bsdf), 2e-3) << roughness << " " << cosine;
       EXPECT_NEAR(OverHemisphere([&](const glm::dvec3& d) { return bsdf.Diffuse(d).density; }), 1.0, 1e-3);
-      if (cosine == 1.0) EXPECT_NEAR(returned, scale, 1e-4);
-      if (cosine == 1e-6) EXPECT_NEAR(returned, 1.0, 1e-3);
+      if (cosine == 1.0) {
+        EXPECT_NEAR(returned, scale, 1e-4);
+      } else if (cosine == 1e-6) {
+        EXPECT_NEAR(returned, 1.0, 1e-3);
+      }
       EXPECT_GT(returned, before) << roughness << " " << cosine << ": rough surfaces flatten towards the rim";
       before = returned;
     }

@@ -1,0 +1,280 @@
+#include "measure/texture/guided_texture.h"
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/image/hash.h"
+#include "measure/texture/normal_tone.h"
+#include "measure/texture/paint_pyramid.h"
+
+namespace scumble {
+namespace internal {
+
+using Weights = std::vector<float>;  // of a group's features
+inline constexpr std::size_t kQuantiles = 64, kCells = 52;
+using Quantiles = std::array<float, kQuantiles>;
+
+// The distributions of one group of an exemplar's features.
+struct Distributions {
+  std::vector<Weights> slices;
+  std::array<std::vector<Quantiles>, kCells> cells;  // by slice; empty: too few pixels
+};
+
+struct OneExemplar {
+  NormalTone tone;
+  std::array<Distributions, 1 + kOctaves> groups;
+  float condition;  // the first of its guides beside normals
+};
+
+}  // namespace internal
+namespace {
+
+using internal::Distributions;
+using internal::FeatureGroup;
+using internal::FeaturesOf;
+using internal::kCells;
+using internal::kOctaves;
+using internal::kQuantiles;
+using internal::NormalTone;
+using internal::OneExemplar;
+using internal::PaintFeatures;
+using internal::Quantiles;
+using internal::Weights;
+
+// Rings of equal area on the disc of normals, from the middle out, and the cells of each.
+constexpr std::size_t kRings = 5;
+constexpr int kCellsOfRing[kRings] = {4, 8, 12, 12, 16};
+constexpr std::size_t kGroups = 1 + kOctaves;
+constexpr int kDirections = 8;  // of slices, besides the features' own axes
+// A cell counts where either side has so many pixels, and takes so many at most, evenly.
+constexpr std::size_t kLeastPixels = 100, kMostPixels = 2000;
+// Deviations are taken to be so large at least: paint of one tone may vary a little.
+constexpr double kLeastTone = 0.05, kLeastStroke = 0.002;
+constexpr int kBlock = 24;  // pixels, of halves of an exemplar
+
+std::size_t CellOf(float x, float y) {
+  const auto ring = std::size_t(std::clamp(kRings * (x * x + y * y), 0.0f, kRings - 1.0f));
+  int first = 0;
+  for (std::size_t k = 0; k < ring; ++k) first += kCellsOfRing[k];
+  // The way round a square instead of a circle: no angle is needed.
+  const float length = std::abs(x) + std::abs(y);
+  const float along = length > 0.0f ? x / length : 1.0f;
+  const float turn = y >= 0.0f ? 1.0f - along : 3.0f + along;  // 0 … 4
+  const int count = kCellsOfRing[ring];
+  return std::size_t(first + std::min(count - 1, int(0.25f * turn * float(count))));
+}
+
+using Pixels = std::vector<std::uint32_t>;
+using CellPixels = std::array<Pixels, kCells>;
+
+// The valid pixels of a group that `counts`, by cell.
+template <class Counts>
+CellPixels PixelsOf(const FeatureGroup& group, const Counts& counts) {
+  CellPixels cells;
+  for (std::size_t i = 0; i < group.valid.size(); ++i) {
+    if (group.valid[i] && counts(i)) cells[CellOf(group.normal[0][i], group.normal[1][i])].push_back(std::uint32_t(i));
+  }
+  return cells;
+}
+
+std::vector<double> DeviationsOf(const FeatureGroup& group, const CellPixels& cells, double least) {
+  std::vector<double> deviations;
+  for (const auto& plane : group.planes) {
+    double sum = 0.0, squares = 0.0, count = 0.0;
+    for (const Pixels& pixels : cells) {
+      for (const std::uint32_t i : pixels) sum += plane[i], squares += double(plane[i]) * plane[i], count += 1.0;
+    }
+    const double mean = count > 0.0 ? sum / count : 0.0;
+    const double variance = count > 0.0 ? std::max(0.0, squares / count - mean * mean) : 0.0;
+    deviations.push_back(std::max(least, std::sqrt(variance)));
+  }
+  return deviations;
+}
+
+// The axes and some random directions, over features that are divided by their deviations.
+std::vector<Weights> SlicesOf(const std::vector<double>& deviations, std::size_t group) {
+  std::vector<Weights> slices;
+  for (std::size_t f = 0; f < deviations.size(); ++f) {
+    slices.emplace_back(deviations.size(), 0.0f)[f] = float(1.0 / deviations[f]);
+  }
+  for (int d = 0; d < kDirections; ++d) {
+    std::vector<double> direction;
+    double squared = 0.0;
+    for (std::size_t f = 0; f < deviations.size(); ++f) {
+      double sum = -2.0;  // of four uniform numbers, less their mean: nearly normal
+      for (int k = 0; k < 4; ++k) sum += UnitFloat(Hash(int(group), d, f, k));
+      direction.push_back(sum), squared += sum * sum;
+    }
+    Weights& weights = slices.emplace_back();
+    for (std::size_t f = 0; f < deviations.size(); ++f) {
+      weights.push_back(float(direction[f] / (std::sqrt(squared) * deviations[f])));
+    }
+  }
+  return slices;
+}
+
+Quantiles QuantilesOf(const FeatureGroup& group, const Pixels& pixels, const Weights& weights) {
+  const std::size_t count = std::min(pixels.size(), kMostPixels);
+  std::vector<float> values(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::uint32_t i = pixels[k * pixels.size() / count];
+    for (std::size_t f = 0; f < weights.size(); ++f) values[k] += weights[f] * group.planes[f][i];
+  }
+  std::sort(values.begin(), values.end());
+  Quantiles quantiles;
+  for (std::size_t q = 0; q < kQuantiles; ++q) quantiles[q] = values[(2 * q + 1) * count / (2 * kQuantiles)];
+  return quantiles;
+}
+
+Distributions DistributionsOf(const FeatureGroup& group, std::size_t number, const CellPixels& cells) {
+  Distributions result;
+  result.slices = SlicesOf(DeviationsOf(group, cells, number == 0 ? kLeastTone : kLeastStroke), number);
+  tbb::parallel_for(std::size_t{0}, kCells, [&](std::size_t cell) {
+    if (cells[cell].size() < kLeastPixels) return;
+    for (const Weights& weights : result.slices) {
+      result.cells[cell].push_back(QuantilesOf(group, cells[cell], weights));
+    }
+  });
+  return result;
+}
+
+// The sum over the pixels of a picture of their cells' distances, and the number of pixels.
+struct Sum {
+  double distance = 0.0, pixels = 0.0;
+
+  void Add(const Distributions& exemplar, const FeatureGroup& group, const CellPixels& cells) {
+    std::array<double, kCells> of_cell = {};
+    tbb::parallel_for(std::size_t{0}, kCells, [&](std::size_t cell) {
+      if (cells[cell].size() < kLeastPixels || exemplar.cells[cell].empty()) return;
+      for (std::size_t s = 0; s < exemplar.slices.size(); ++s) {
+        const Quantiles here = QuantilesOf(group, cells[cell], exemplar.slices[s]);
+        for (std::size_t q = 0; q < kQuantiles; ++q) of_cell[cell] += std::abs(here[q] - exemplar.cells[cell][s][q]);
+      }
+      of_cell[cell] /= double(kQuantiles * exemplar.slices.size());
+    });
+    for (std::size_t cell = 0; cell < kCells; ++cell) {
+      if (cells[cell].size() < kLeastPixels || exemplar.cells[cell].empty()) continue;
+      distance += double(cells[cell].size()) * of_cell[cell], pixels += double(cells[cell].size());
+    }
+  }
+  double Mean() const { return pixels > 0.0 ? distance / pixels : 0.0; }
+};
+
+using Sums = std::array<Sum, kGroups>;
+
+// Of the groups that were measured.
+double MeanOf(const Sums& sums) {
+  double sum = 0.0, count = 0.0;
+  for (const Sum& one : sums) {
+    if (one.pixels > 0.0) sum += one.Mean(), count += 1.0;
+  }
+  return count > 0.0 ? sum / count : 0.0;
+}
+
+}  // namespace
+
+struct GuidedTexture::Impl {
+  std::vector<OneExemplar> exemplars;
+  double floor = 0.0;
+};
+
+GuidedTexture::GuidedTexture(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+GuidedTexture::~GuidedTexture() = default;
+GuidedTexture::GuidedTexture(GuidedTexture&&) noexcept = default;
+GuidedTexture& GuidedTexture::operator=(GuidedTexture&&) noexcept = default;
+
+Expected<GuidedTexture> GuidedTexture::Of(std::span<const EnergyExemplar> exemplars, int threads) {
+  if (exemplars.empty()) return InputError("a texture distance needs an exemplar, and there is none");
+  for (const EnergyExemplar& exemplar : exemplars) {
+    const std::size_t pixels = std::size_t(exemplar.picture->width) * std::size_t(exemplar.picture->height);
+    if (exemplar.usable.size() != pixels || exemplar.normal[0].size() != pixels ||
+        exemplar.normal[1].size() != pixels || exemplar.normal[2].size() != pixels) {
+      return InputError("a texture distance: the exemplar has " + std::to_string(pixels) +
+                        " pixels, and its planes have another number of values");
+    }
+  }
+  auto impl = std::make_unique<Impl>();
+  tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+  arena.execute([&] {
+    Sums halves;
+    for (const EnergyExemplar& exemplar : exemplars) {
+      std::vector<float> surface(exemplar.usable.size());
+      for (std::size_t i = 0; i < surface.size(); ++i) surface[i] = exemplar.usable[i] ? 0.0f : -1.0f;
+      NormalTone tone(*exemplar.picture, exemplar.normal, exemplar.usable);
+      const PaintFeatures features = FeaturesOf(*exemplar.picture, exemplar.normal, std::move(surface), tone);
+      OneExemplar one{std::move(tone), {}, 0.0f};
+      if (!exemplar.more_guides.empty()) {
+        const auto first = std::find_if(exemplar.usable.begin(), exemplar.usable.end(), [](auto u) { return u != 0; });
+        if (first != exemplar.usable.end()) {
+          one.condition = exemplar.more_guides[0][std::size_t(first - exemplar.usable.begin())];
+        }
+      }
+      for (std::size_t g = 0; g < kGroups; ++g) {
+        const int octave = g == 0 ? 0 : int(g) - 1;
+        const auto width = std::size_t(exemplar.picture->width >> octave), block = std::size_t(kBlock >> octave);
+        const auto half = [&](std::size_t i) { return (i % width / block + i / width / block) % 2; };
+        one.groups[g] = DistributionsOf(features[g], g, PixelsOf(features[g], [](std::size_t) { return true; }));
+        const Distributions first =
+            DistributionsOf(features[g], g, PixelsOf(features[g], [&](std::size_t i) { return half(i) == 0; }));
+        halves[g].Add(first, features[g], PixelsOf(features[g], [&](std::size_t i) { return half(i) == 1; }));
+      }
+      impl->exemplars.push_back(std::move(one));
+    }
+    impl->floor = MeanOf(halves);
+  });
+  return GuidedTexture(std::move(impl));
+}
+
+Expected<GuidedTextureReport> GuidedTexture::Measure(const EnergyTarget& target, std::span<const float> surface,
+                                                     int threads) const {
+  const std::size_t pixels = std::size_t(target.picture->width) * std::size_t(target.picture->height);
+  const bool has_conditions = impl_->exemplars.size() > 1 && !target.more_guides.empty();
+  if (surface.size() != pixels || target.coverage.size() != pixels || target.normal[0].size() != pixels ||
+      target.normal[1].size() != pixels || (has_conditions && target.more_guides[0].size() != pixels)) {
+    return InputError("a texture distance: the picture has " + std::to_string(pixels) +
+                      " pixels, and its guides have another number of values");
+  }
+  Sums sums;
+  tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+  arena.execute([&] {
+    for (const OneExemplar& exemplar : impl_->exemplars) {
+      const auto is_own = [&](std::size_t i) {
+        if (!has_conditions) return &exemplar == impl_->exemplars.data();
+        const float wanted = target.more_guides[0][i], off = std::abs(exemplar.condition - wanted);
+        return std::all_of(impl_->exemplars.begin(), impl_->exemplars.end(), [&](const OneExemplar& rival) {
+          const float further = std::abs(rival.condition - wanted);
+          return off < further || (off == further && &exemplar <= &rival);
+        });
+      };
+      std::vector<float> own(surface.begin(), surface.end());
+      bool any = false;
+      for (std::size_t i = 0; i < own.size(); ++i) {
+        if (!(target.coverage[i] >= 0.999f) || !is_own(i)) own[i] = -1.0f;
+        any = any || own[i] >= 0.0f;
+      }
+      if (!any) continue;
+      const PaintFeatures features = FeaturesOf(*target.picture, target.normal, std::move(own), exemplar.tone);
+      for (std::size_t g = 0; g < kGroups; ++g) {
+        sums[g].Add(exemplar.groups[g], features[g], PixelsOf(features[g], [](std::size_t) { return true; }));
+      }
+    }
+  });
+  GuidedTextureReport report;
+  report.distance = MeanOf(sums);
+  report.tone = sums[0].Mean();
+  for (std::size_t octave = 0; octave < kOctaves; ++octave) report.strokes[octave] = sums[1 + octave].Mean();
+  report.measured = std::size_t(sums[0].pixels);
+  return report;
+}
+
+double GuidedTexture::floor() const { return impl_->floor; }
+
+}  // namespace scumble

@@ -1,0 +1,142 @@
+#include "measure/texture/paint_pyramid.h"
+
+#include <tbb/parallel_for.h>
+
+#include <cstddef>
+#include <utility>
+
+#include "core/filter/gaussian_blur.h"
+
+namespace scumble::internal {
+namespace {
+
+using Plane = std::vector<float>;
+
+// One octave's picture.
+struct Level {
+  int width = 0, height = 0;
+  std::array<Plane, 3> detail;  // Oklab beside the tone
+  std::array<Plane, 2> normal;
+  Plane surface;
+
+  std::size_t Index(int x, int y) const { return std::size_t(y) * std::size_t(width) + std::size_t(x); }
+};
+
+// A block has a surface if its four pixels have the same.
+Level Halved(const Level& level) {
+  Level half;
+  half.width = level.width / 2, half.height = level.height / 2;
+  const std::size_t pixels = std::size_t(half.width) * std::size_t(half.height);
+  half.surface.resize(pixels);
+  for (Plane& plane : half.detail) plane.resize(pixels);
+  for (Plane& plane : half.normal) plane.resize(pixels);
+  tbb::parallel_for(0, half.height, [&](int y) {
+    for (int x = 0; x < half.width; ++x) {
+      const std::size_t to = half.Index(x, y), upper = level.Index(2 * x, 2 * y), lower = level.Index(2 * x, 2 * y + 1);
+      const auto mean = [&](const Plane& plane) {
+        return 0.25f * (plane[upper] + plane[upper + 1] + plane[lower] + plane[lower + 1]);
+      };
+      for (std::size_t c = 0; c < 3; ++c) half.detail[c][to] = mean(level.detail[c]);
+      for (std::size_t c = 0; c < 2; ++c) half.normal[c][to] = mean(level.normal[c]);
+      const float first = level.surface[upper];
+      const bool same =
+          level.surface[upper + 1] == first && level.surface[lower] == first && level.surface[lower + 1] == first;
+      half.surface[to] = same ? first : -1.0f;
+    }
+  });
+  return half;
+}
+
+// Where all pixels up to `reach` away have one surface.
+std::vector<std::uint8_t> ValidWithin(const Level& level, int reach) {
+  std::vector<std::uint8_t> along(level.surface.size()), valid(level.surface.size());
+  tbb::parallel_for(0, level.height, [&](int y) {
+    int same = 0;  // pixels up to this one that have its surface
+    for (int x = 0; x < level.width; ++x) {
+      const float here = level.surface[level.Index(x, y)];
+      same = here < 0.0f ? 0 : x > 0 && level.surface[level.Index(x - 1, y)] == here ? same + 1 : 1;
+      if (same > 2 * reach) along[level.Index(x - reach, y)] = 1;
+    }
+  });
+  tbb::parallel_for(reach, std::max(reach, level.height - reach), [&](int y) {
+    for (int x = 0; x < level.width; ++x) {
+      const std::size_t i = level.Index(x, y);
+      bool same = true;
+      for (int v = y - reach; v <= y + reach && same; ++v) {
+        const std::size_t q = level.Index(x, v);
+        same = along[q] && level.surface[q] == level.surface[i];
+      }
+      valid[i] = same;
+    }
+  });
+  return valid;
+}
+
+// The mean of the values on either side less the one in the middle.
+Plane SecondDifference(const Plane& plane, const Level& level, int dx, int dy) {
+  Plane result(plane.size());
+  tbb::parallel_for(1, std::max(1, level.height - 1), [&](int y) {
+    const float *here = plane.data() + level.Index(0, y), *before = plane.data() + level.Index(0, y - dy) - dx,
+                *after = plane.data() + level.Index(0, y + dy) + dx;
+    float* const out = result.data() + level.Index(0, y);
+    for (int x = 1; x < level.width - 1; ++x) out[x] = 0.5f * (before[x] + after[x]) - here[x];
+  });
+  return result;
+}
+
+FeatureGroup StrokesOf(const Level& level) {
+  FeatureGroup group;
+  std::array<Plane, 3> fine;
+  std::array<Plane, 2> wide;  // of a and b
+  tbb::parallel_for(0, 5, [&](int k) {
+    if (k < 3) {
+      fine[std::size_t(k)] = GaussianBlur(level.detail[std::size_t(k)], level.width, level.height, 1.0);
+    } else {
+      wide[std::size_t(k - 3)] = GaussianBlur(level.detail[std::size_t(k - 2)], level.width, level.height, 2.0);
+    }
+  });
+  for (const auto& [dx, dy] : {std::pair(1, 0), {0, 1}, {1, 1}, {1, -1}}) {
+    group.planes.push_back(SecondDifference(fine[0], level, dx, dy));
+  }
+  for (std::size_t c = 0; c < 2; ++c) {
+    Plane& band = group.planes.emplace_back(std::move(fine[c + 1]));
+    for (std::size_t i = 0; i < band.size(); ++i) band[i] -= wide[c][i];
+  }
+  constexpr int kReach = 4;  // two deviations of the wider Gaussian
+  group.valid = ValidWithin(level, kReach);
+  group.normal = level.normal;
+  return group;
+}
+
+}  // namespace
+
+PaintFeatures FeaturesOf(const Picture& picture, const NormalPlanes& normal, std::vector<float> surface,
+                         const NormalTone& tone) {
+  Level level;
+  level.width = picture.width, level.height = picture.height;
+  level.surface = std::move(surface);
+  PaintFeatures features;
+  FeatureGroup& tones = features[0];
+  tones.planes.assign(3, Plane(level.surface.size()));
+  for (Plane& plane : level.detail) plane.resize(level.surface.size());
+  for (std::size_t c = 0; c < 2; ++c) level.normal[c].assign(normal[c].begin(), normal[c].end());
+  tbb::parallel_for(0, level.height, [&](int y) {
+    for (int x = 0; x < level.width; ++x) {
+      const std::size_t i = level.Index(x, y);
+      if (level.surface[i] < 0.0f) continue;
+      const glm::vec3 color = OklabOf(picture.rgba.data() + 4 * i), off = color - tone.At(normal[0][i], normal[1][i]);
+      for (int c = 0; c < 3; ++c) {
+        tones.planes[std::size_t(c)][i] = color[c], level.detail[std::size_t(c)][i] = off[c];
+      }
+    }
+  });
+  tones.valid = ValidWithin(level, 1);
+  tones.normal = level.normal;
+  for (std::size_t octave = 0; octave < kOctaves; ++octave) {
+    if (octave > 0) level = Halved(level);
+    features[1 + octave] = StrokesOf(level);
+  }
+  return features;
+}
+
+}  // namespace scumble::internal
