@@ -25,9 +25,10 @@ struct Fragments {
   // By fragment, the index of its pixel (GuideSet::Index), never falling. A pixel's fragments follow each other.
   std::vector<std::uint32_t> pixel;
   // count() × 1 values: the layers of the guides, at the subsample of this surface that is nearest to the mean
-  // place of them all. Coverage is the share of the pixel that the surface fills. What is left of the pixel's own coverage belongs
-  // to the surface at its centre. Luminance, shadow and light paths are those of the nearest pixel, among the eight
-  // around and the fragment's own, whose centre shows the surface; without one, those of the fragment's own pixel.
+  // place of them all. Coverage is the share of the pixel that the surface fills. What is left of the pixel's own
+  // coverage belongs to the surface at its centre. Luminance, shadow and light paths are those of the nearest pixel,
+  // among the eight around and the fragment's own, whose centre shows the surface; without one, those of the fragment's
+  // own pixel.
   GuideSet values;
   // count() values, or none where it is not known: which of the pixel's 4 × 4 cells the surface shows in, bit
   // 4 · row + column, row 0 at the top. A cell without subsamples has no bit.

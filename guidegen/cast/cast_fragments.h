@@ -16,7 +16,7 @@ namespace scumble {
 struct FoundFragments {
   struct Found {
     std::uint32_t pixel;
-    glm::vec2 at;       // of the subsample, from the pixel's centre
+    glm::vec2 at;  // of the subsample, from the pixel's centre
     std::uint16_t cells;
     std::size_t first;  // of its values
   };

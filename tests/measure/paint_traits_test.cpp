@@ -33,7 +33,7 @@ TEST(PaintTone, TheLightThatAPaintingHas) {
     const Exemplar exemplar = ExemplarOf(PaintSphere(sphere));
     const PaintedLight light = FindPaintedLight(PaintSheet(exemplar, 2.0));
     SCOPED_TRACE(::testing::Message() << azimuth << ", " << elevation << ": " << light.azimuth << ", "
-                                    << light.elevation);
+                                      << light.elevation);
     EXPECT_LT(AngleBetween(light, {azimuth, elevation, 1.0}), azimuth > 90.0 ? 15.0 : 6.0);
     EXPECT_GT(light.correlation, 0.9);
   }

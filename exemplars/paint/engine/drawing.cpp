@@ -9,7 +9,7 @@
 
 namespace scumble::paint {
 namespace {
-constexpr float kToneBlur = 13.0f;     // radius of the blur
+constexpr float kToneBlur = 13.0f;   // radius of the blur
 constexpr float kEagerness = 4.0f;   // an error of a tenth in tone gets 0.4 of full pressure
 constexpr float kOverhang = 1.045f;  // strokes fade out at this many radii
 }  // namespace

@@ -10,9 +10,9 @@
 namespace scumble::paint {
 namespace {
 
-constexpr float kPointStep = 4.0f;      // units between the points of a line
-constexpr float kBend = 150.0f;    // units over which neighbours bend together
-constexpr float kOverRim = 1.02f;  // lines that swell have faded out at this many radii
+constexpr float kPointStep = 4.0f;  // units between the points of a line
+constexpr float kBend = 150.0f;     // units over which neighbours bend together
+constexpr float kOverRim = 1.02f;   // lines that swell have faded out at this many radii
 
 // The visible arc of a circle of latitude, from rim to rim or all round, and straight on past the rim.
 std::vector<glm::vec2> VisibleArc(glm::vec3 axis, float latitude, float overhang) {

@@ -43,10 +43,10 @@ Ids IdsAt(const GuideSet& guides, std::size_t i) {
 constexpr int kWidth = 61, kHeight = 47, kAa = 4;
 const LayerSet kAll = {Layer::kPosition, Layer::kAlbedo, Layer::kPref, Layer::kLuminance, Layer::kShadow};
 
-TEST(Fragments, AreTheSurfacesOfThePictureOfAllSubsamples) {
+void ExpectTheSurfacesOfAllSubsamples(const Scene& scene) {
   const Camera camera = LookingAt({0.5, 0.8, 6}, {0, 0, 0});
-  const GuideSet guides = Render(BallsBeforeAWall(), camera, Smooth(kWidth, kHeight, kAa, kAll)).guides;
-  const GuideSet fine = Render(BallsBeforeAWall(), camera, Sized(kWidth * kAa, kHeight * kAa, kAll)).guides;
+  const GuideSet guides = Render(scene, camera, Smooth(kWidth, kHeight, kAa, kAll)).guides;
+  const GuideSet fine = Render(scene, camera, Sized(kWidth * kAa, kHeight * kAa, kAll)).guides;
   ASSERT_TRUE(guides.fragments);
   const Fragments& fragments = *guides.fragments;
   ASSERT_EQ(fragments.values.layers(), guides.layers());
@@ -89,6 +89,29 @@ TEST(Fragments, AreTheSurfacesOfThePictureOfAllSubsamples) {
   }
   EXPECT_EQ(next, fragments.count());
   EXPECT_GT(next, 100u);
+}
+
+TEST(Fragments, AreTheSurfacesOfThePictureOfAllSubsamples) { ExpectTheSurfacesOfAllSubsamples(BallsBeforeAWall()); }
+
+// A card before a wall, with holes that its texture's alpha cuts out.
+TEST(Fragments, HolesThatAlphaCutsOutHaveThemToo) {
+  Scene scene = SceneOf(QuadMesh(), glm::scale(Moved(0, 0, -2), glm::dvec3(8.0)));
+  Material& pierced = scene.materials.emplace_back();
+  pierced.name = "pierced", pierced.alpha_mode = AlphaMode::kMask;
+  Picture picture(5, 5);
+  for (int y = 0; y < 5; ++y) {
+    for (int x = 0; x < 5; ++x) {
+      for (int c = 0; c < 3; ++c) picture.At(x, y)[c] = 40000;
+      picture.At(x, y)[3] = x % 2 && y % 2 ? 0 : 65535;
+    }
+  }
+  pierced.base_color_texture.texture = 0, pierced.base_color_texture.nearest = true;
+  scene.textures.push_back(picture);
+  Mesh card = QuadMesh();
+  card.material = 1;
+  AddObject(scene, "card", card, glm::rotate(Moved(0.1, 0, 0), 0.3, glm::dvec3(0, 1, 0.5)));
+  scene.lights.push_back(PointLight({3, 3, 6}, 100.0));
+  ExpectTheSurfacesOfAllSubsamples(scene);
 }
 
 TEST(Fragments, ChangeNoLayer) {
