@@ -97,11 +97,8 @@ def disarm(thing):
         thing.modifiers.new("scumble.own", "NODES").node_group = own_geometry()
 
 
-def own_geometry():
-    """Geometry nodes that let everything but instances through."""
-    name = "scumble.own"
-    if name in bpy.data.node_groups:
-        return bpy.data.node_groups[name]
+def geometry_nodes(name):
+    """A node group that takes and gives geometry."""
     tree = bpy.data.node_groups.new(name, "GeometryNodeTree")
     if hasattr(tree, "interface"):  # from Blender 4.0 on
         for way in ("INPUT", "OUTPUT"):
@@ -109,6 +106,15 @@ def own_geometry():
     else:
         tree.inputs.new("NodeSocketGeometry", "Geometry")
         tree.outputs.new("NodeSocketGeometry", "Geometry")
+    return tree
+
+
+def own_geometry():
+    """Geometry nodes that let everything but instances through."""
+    name = "scumble.own"
+    if name in bpy.data.node_groups:
+        return bpy.data.node_groups[name]
+    tree = geometry_nodes(name)
     source, target = tree.nodes.new("NodeGroupInput"), tree.nodes.new("NodeGroupOutput")
     parts, joined = tree.nodes.new("GeometryNodeSeparateComponents"), tree.nodes.new("GeometryNodeJoinGeometry")
     tree.links.new(source.outputs[0], parts.inputs[0])

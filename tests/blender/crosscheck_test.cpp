@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/support/blender_version.h"
+#include "tests/blender/blender_version.h"
 #include "tests/support/cli_harness.h"
 
 namespace scumble {

@@ -13,9 +13,9 @@
 #include "guidegen/guidegen.h"
 #include "guidegen/load/load_scene.h"
 #include "guidegen/rays/camera_rays.h"
-#include "tests/support/blender_cases.h"
-#include "tests/support/blender_version.h"
-#include "tests/support/cycles_passes.h"
+#include "tests/blender/blender_cases.h"
+#include "tests/blender/blender_version.h"
+#include "tests/blender/cycles_passes.h"
 #include "tests/support/numbers.h"
 
 namespace scumble {

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "guidegen/load/load_scene.h"
-#include "tests/support/blender_cases.h"
+#include "tests/blender/blender_cases.h"
 #include "tests/support/cli_harness.h"
 #include "tests/support/scoped_variable.h"
 

@@ -7,7 +7,7 @@
 
 #include "core/io/blender/blender_camera.h"
 #include "core/io/channel_file.h"
-#include "tests/support/blender_version.h"
+#include "tests/blender/blender_version.h"
 #include "tests/support/cli_harness.h"
 
 namespace scumble {

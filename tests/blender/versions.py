@@ -7,6 +7,7 @@ import bpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "blender_scripts"))
 from export_nodes import PRINCIPLED_INPUTS  # noqa: E402
+from guide_instances import geometry_nodes  # noqa: E402,F401 the scenes take it from here
 
 
 SHOWN_CHILDREN = "child_nbr" if bpy.app.version < (4, 0) else "child_percent"  # of a particle system, in the viewport
@@ -14,18 +15,6 @@ SHOWN_CHILDREN = "child_nbr" if bpy.app.version < (4, 0) else "child_percent"  #
 # The glTF exporter's option for all actions in use as one animation.
 ONE_ANIMATION = ({"export_nla_strips": False} if bpy.app.version < (3, 6)
                  else {"export_animation_mode": "ACTIVE_ACTIONS"})
-
-
-def geometry_nodes(name):
-    """A node group that takes and gives geometry."""
-    tree = bpy.data.node_groups.new(name, "GeometryNodeTree")
-    if hasattr(tree, "interface"):  # from Blender 4.0 on
-        for way in ("INPUT", "OUTPUT"):
-            tree.interface.new_socket("Geometry", in_out=way, socket_type="NodeSocketGeometry")
-    else:
-        tree.inputs.new("NodeSocketGeometry", "Geometry")
-        tree.outputs.new("NodeSocketGeometry", "Geometry")
-    return tree
 
 
 def smooth_by_angle(mesh, angle):
