@@ -144,7 +144,7 @@ struct Exemplar {
   std::filesystem::path guides_file = {};  // the file that guides are or would be read from; empty: none
   int margin = 0;                          // pixels of the template that were cut off the file on every side
   std::optional<SphereCut> cut = {};       // of a sphere that does not fill its file
-  SphereDoubt doubt = SphereDoubt::kNone;  // the paint clearly does not fill the square, and shows no clear sphere
+  bool fills = false;                      // the style says that the sphere fills the picture: none is looked for
 
   // The place of the picture's corner in the file.
   glm::ivec2 Origin() const { return cut ? glm::ivec2(cut->left, cut->top) : glm::ivec2(margin); }

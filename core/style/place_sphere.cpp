@@ -36,33 +36,42 @@ void CutTo(const Circle& circle, Exemplar& exemplar) {
   exemplar.picture = std::move(cut);
 }
 
-// What a picture that is no square shows instead of a sphere, and what to do.
-std::string WhyNone(const FoundSphere& found) {
-  const std::string crop = "an exemplar is a square that its sphere fills; crop it to the sphere";
+// What a picture shows instead of a sphere, and what to do.
+std::string WhyNone(const FoundSphere& found, bool is_square) {
+  // Paper may be what a painter left for the lights.
+  const std::string fills = is_square ? "; if the sphere fills the square all the same, write fills = true under its "
+                                        "[[exemplar]] in style.toml, or --set exemplar.1.fills=true"
+                                      : "";
   switch (found.doubt) {
     case SphereDoubt::kShadow:
       return "around " + PlaceText(found.circle) +
              " it shows a sphere that is no clear circle, because the ground below it is darker than elsewhere, as in "
              "a shadow: cut the shadow away, so that the ground has one colour, or crop the picture to the square "
-             "around the sphere";
+             "around the sphere" +
+             fills;
     case SphereDoubt::kUnevenGround:
       return "its ground has several colours, as paper that is lit unevenly: cut the sphere out onto transparency, or "
-             "crop the picture to the square around it; or give the guides of the scene that it shows";
+             "crop the picture to the square around it; or give the guides of the scene that it shows" +
+             fills;
     case SphereDoubt::kNone:
     case SphereDoubt::kNoCircle:
       break;
   }
   return (found.kind == Kind::kNoGround
               ? "its corners are neither transparent nor paper of one colour to find a sphere on: "
-              : "it shows no clear sphere on its ground: ") +
-         crop + ", or give the guides of the scene that it shows";
+              : "its paint shows no clear sphere on its ground: ") +
+         std::string(
+             "an exemplar is a square that its sphere fills; crop it to the sphere, or give the guides of the "
+             "scene that it shows") +
+         fills;
 }
 
 }  // namespace
 
 Status PlaceSphere(Exemplar& exemplar) {
   const Picture& picture = exemplar.picture;
-  if (!exemplar.is_sphere || !exemplar.guides_file.empty() || exemplar.guides || picture.empty()) return Ok();
+  if (exemplar.fills || !exemplar.is_sphere || !exemplar.guides_file.empty() || exemplar.guides || picture.empty())
+    return Ok();
   const FoundSphere found = FindSphere(picture);
   const bool is_square = picture.width == picture.height;
   if (is_square && (found.kind == Kind::kFills || found.kind == Kind::kNoGround || LooksLikeTemplate(picture)))
@@ -83,42 +92,13 @@ Status PlaceSphere(Exemplar& exemplar) {
     case Kind::kUnclear:
       break;
   }
-  if (!is_square) {
-    return InputError(exemplar.name + " is " + SizeText(picture) + ", and " + WhyNone(found));
-  }
-  exemplar.doubt = found.doubt;
-  return Ok();
+  return InputError(exemplar.name + " is " + SizeText(picture) + ", and " + WhyNone(found, is_square));
 }
 
 std::string DescribeCut(const SphereCut& cut) {
   return "its sphere does not fill the picture of " + std::to_string(cut.file_width) + "×" +
          std::to_string(cut.file_height) + "; it is taken as it lies, around " + PlaceText({cut.x, cut.y, cut.radius}) +
          ", with a radius of " + Rounded(cut.radius) + " pixels";
-}
-
-std::string DescribeDoubt(SphereDoubt doubt) {
-  const std::string so = ", so it is taken as if the sphere filled the square";
-  switch (doubt) {
-    case SphereDoubt::kShadow:
-      return "its paint clearly does not fill the picture, and its outline is no clear circle, because the ground "
-             "below "
-             "the sphere is darker than elsewhere, as in a shadow" +
-             so;
-    case SphereDoubt::kUnevenGround:
-      return "its paint clearly does not fill the picture, and its outline is no clear circle, because the ground has "
-             "several colours, as paper that is lit unevenly" +
-             so;
-    case SphereDoubt::kNone:
-    case SphereDoubt::kNoCircle:
-      break;
-  }
-  return "its paint clearly does not fill the picture, and its outline is no clear circle" + so;
-}
-
-std::string RemedyForDoubt(SphereDoubt doubt) {
-  if (doubt == SphereDoubt::kShadow) return "cut the shadow away, or crop the picture to the sphere";
-  if (doubt == SphereDoubt::kUnevenGround) return "cut the sphere out onto transparency, or crop the picture to it";
-  return "crop it to the sphere";
 }
 
 }  // namespace scumble

@@ -236,24 +236,33 @@ struct StyleSource {
   const StyleRoom& room;
 };
 
+std::optional<double> LuminanceOf(const toml::node& node) {
+  const auto luminance = node.value<double>();
+  return luminance && *luminance >= 0.0 && std::isfinite(*luminance) ? luminance : std::nullopt;
+}
+
 // `several`: the style has more than one exemplar, so that their luminances matter.
 Expected<Exemplar> ReadExemplar(const toml::table& table, const StyleSource& source, bool several) {
   const std::string file = source.path.string();
   const fs::path folder = source.path.parent_path();
   std::string image, guides;
-  std::optional<double> luminance;
+  Exemplar exemplar;
   for (const auto& [key, node] : table) {
     const std::string name(key.str());
     const std::string where = Where(file, node);
     if (name == "luminance") {
-      luminance = node.value<double>();
-      if (!luminance || !(*luminance >= 0.0 && std::isfinite(*luminance))) {
-        return InputError(where + ": exemplar.luminance: expected a number, 0 or more");
-      }
+      exemplar.luminance = LuminanceOf(node);
+      if (!exemplar.luminance) return InputError(where + ": exemplar.luminance: expected a number, 0 or more");
+      continue;
+    }
+    if (name == "fills") {
+      const auto* flag = node.as_boolean();
+      if (!flag) return InputError(where + ": exemplar.fills: expected true or false");
+      exemplar.fills = flag->get();
       continue;
     }
     if (name != "image" && name != "guides") {
-      return InputError(where + ": unknown key exemplar." + name + "; there are image, guides, luminance");
+      return InputError(where + ": unknown key exemplar." + name + "; there are image, guides, luminance, fills");
     }
     const auto* text = node.as_string();
     if (!text) return InputError(where + ": exemplar." + name + " must be a file's name in quotes");
@@ -262,12 +271,10 @@ Expected<Exemplar> ReadExemplar(const toml::table& table, const StyleSource& sou
   if (image.empty()) return InputError(Where(file, table) + ": [[exemplar]] has no image; add image = \"lit.png\"");
   const fs::path image_path = folder / image;
   SCUMBLE_RETURN_IF_ERROR(CheckPaintingIsThere(image_path, TemplateBeside(folder, guides), several, file));
-  Exemplar exemplar;
   exemplar.name = image_path.string();
-  exemplar.luminance = luminance;
   SCUMBLE_ASSIGN(exemplar.picture, ReadWithin(source.room, image_path));
   if (!guides.empty()) {
-    SCUMBLE_RETURN_IF_ERROR(ReadExemplarGuides(folder / guides, several && !luminance, source.room, exemplar));
+    SCUMBLE_RETURN_IF_ERROR(ReadExemplarGuides(folder / guides, several && !exemplar.luminance, source.room, exemplar));
   }
   return exemplar;
 }
@@ -339,7 +346,7 @@ Expected<Style> ReadStyleFile(const fs::path& path, const StyleRoom& room) {
   return style;
 }
 
-// "exemplar.2.luminance", the only key of an exemplar that can change after its files are read.
+// "exemplar.2.luminance" or "exemplar.2.fills", the keys of an exemplar that can change after its files are read.
 Status SetExemplarKey(Style& style, const std::string& name, const toml::node& node) {
   const std::string where = "--set " + name + ": ";
   const std::string last = std::to_string(style.exemplars.size());
@@ -347,11 +354,12 @@ Status SetExemplarKey(Style& style, const std::string& name, const toml::node& n
   if (dot == std::string::npos) {
     return UsageError(where + (name == "exemplar.luminance"
                                    ? "say whose, exemplar.1.luminance to exemplar." + last + ".luminance"
-                                   : "expected exemplar.1.luminance; other keys of [[exemplar]] "
+                                   : "expected exemplar.1.luminance or exemplar.1.fills; other keys of [[exemplar]] "
                                      "are set in style.toml"));
   }
-  if (name.substr(dot + 1) != "luminance") {
-    return UsageError(where + "only its luminance can be set here; image and guides are set in style.toml");
+  const std::string key = name.substr(dot + 1);
+  if (key != "luminance" && key != "fills") {
+    return UsageError(where + "only luminance and fills can be set here; image and guides are set in style.toml");
   }
   const std::string number = name.substr(begin, dot - begin);
   const bool is_number =
@@ -360,11 +368,15 @@ Status SetExemplarKey(Style& style, const std::string& name, const toml::node& n
   if (index < 1 || index > style.exemplars.size()) {
     return UsageError(where + "style " + style.name + " has the exemplars 1 to " + last);
   }
-  const auto luminance = node.value<double>();
-  if (!luminance || !(*luminance >= 0.0 && std::isfinite(*luminance))) {
-    return UsageError(where + "expected a number, 0 or more");
+  Exemplar& exemplar = style.exemplars[index - 1];
+  if (key == "fills") {
+    const auto* flag = node.as_boolean();
+    if (!flag) return UsageError(where + "expected true or false");
+    exemplar.fills = flag->get();
+    return Ok();
   }
-  style.exemplars[index - 1].luminance = *luminance;
+  exemplar.luminance = LuminanceOf(node);
+  if (!exemplar.luminance) return UsageError(where + "expected a number, 0 or more");
   return Ok();
 }
 

@@ -129,9 +129,6 @@ Expected<PreparedStyle> PrepareAndWarn(const Style& style, int height, const Run
 void NoteExemplarUse(const Style& style, const RunContext& context) {
   for (const Exemplar& exemplar : style.exemplars) {
     if (exemplar.cut) context.Note(exemplar.name + ": " + DescribeCut(*exemplar.cut));
-    if (exemplar.doubt != SphereDoubt::kNone) {
-      context.Warn(exemplar.name + ": " + DescribeDoubt(exemplar.doubt) + "; " + RemedyForDoubt(exemplar.doubt));
-    }
     const int soft_edge = exemplar.is_sphere ? SoftEdge(exemplar.picture) : 0;
     if (soft_edge > style.transfer.rim) {
       context.Warn(fmt::format("{}: {}; accept this with --set transfer.rim={}, or flatten the picture on its paper",

@@ -50,13 +50,12 @@ std::vector<PaintFault> AmbiguityFaults(const AmbiguityReport& report) {
 
 // Of a sphere that does not fill its file.
 std::vector<PaintFault> PlaceFaults(const Exemplar& exemplar) {
-  if (exemplar.doubt != SphereDoubt::kNone) {
-    return {{"no-clear-sphere", Weight::kMistake, DescribeDoubt(exemplar.doubt), RemedyForDoubt(exemplar.doubt),
-             std::nullopt}};
-  }
   if (!exemplar.cut) return {};
-  return {{"taken-as-it-lies", Weight::kRemark, DescribeCut(*exemplar.cut),
-           "crop it to the sphere, if that is not where it is", std::nullopt}};
+  return {
+      {"taken-as-it-lies", Weight::kRemark, DescribeCut(*exemplar.cut),
+       "if that is not where it is, crop it to the sphere; if the sphere fills the square, write fills = true under "
+       "its [[exemplar]]",
+       std::nullopt}};
 }
 
 // An exemplar for more light that is darker than one for less is legal, and most often a mistake.

@@ -65,7 +65,9 @@ Expected<ExitCode> ListKeys(const Globals& globals) {
       {"exemplar.guides", "\"\"",
        "guides of what is painted; empty: a sphere that fills the square or lies in it; in style.toml only"},
       {"exemplar.luminance", "",
-       "of its light; left out: measured; --set exemplar.1.luminance=0.8 sets the first one's"}};
+       "of its light; left out: measured; --set exemplar.1.luminance=0.8 sets the first one's"},
+      {"exemplar.fills", "false",
+       "the sphere fills the square, whatever its paint looks like: none is looked for in it"}};
   for (const auto& [key, default_value, help] : of_exemplars) {
     json.push_back({{"key", key}, {"default", default_value}, {"help", help}});
     text += fmt::format("{:<26} {:<12} {}\n", key, default_value, help);

@@ -55,7 +55,6 @@ TEST_F(PlaceSphereTest, TakesTheSphereAsItLies) {
     ASSERT_TRUE(style) << style.error().message;
     const Exemplar& exemplar = style->exemplars.front();
     ASSERT_TRUE(exemplar.cut);
-    EXPECT_EQ(exemplar.doubt, SphereDoubt::kNone);
     EXPECT_NEAR(exemplar.cut->left, 60, 2);
     EXPECT_NEAR(exemplar.cut->top, 80, 2);
     EXPECT_NEAR(exemplar.picture.width, 300, 4);
@@ -149,25 +148,54 @@ TEST_F(PlaceSphereTest, NamesShadowsAndUnevenPaper) {
   Overlay(uneven, [](double x, double) { return 1.0 - 0.5 * x / 600; });
   expect_refused(uneven, {"odd.png is 600×400", "lit unevenly", "cut the sphere out onto transparency"});
 
-  const Expected<Style> square = LoadStyle(Write("square.png", with_shadow(400, 400)));
-  ASSERT_TRUE(square) << square.error().message;
-  const Exemplar& exemplar = square->exemplars.front();
-  EXPECT_EQ(exemplar.doubt, SphereDoubt::kShadow);
-  EXPECT_NE(DescribeDoubt(exemplar.doubt).find("the ground below the sphere is darker"), std::string::npos);
-  EXPECT_NE(RemedyForDoubt(exemplar.doubt).find("cut the shadow away"), std::string::npos);
+  expect_refused(with_shadow(400, 400), {"odd.png is 400×400, and around x=200, y=1", "the ground below it is darker",
+                                         "cut the shadow away", "write fills = true"});
 }
 
-// Where a square's sphere is not clear, it is taken as ever, and says so.
-TEST_F(PlaceSphereTest, AnUnclearSquareStaysAsItIs) {
+// A square's paint may end early on purpose: then its style says so.
+TEST_F(PlaceSphereTest, AnUnclearSquareIsRefusedUnlessItFills) {
   Picture picture(400, 400);
   for (int i = 0; i < 400 * 400; ++i) SetGrey(picture, i % 400, i / 400, 1.0);
   for (int y = 100; y < 300; ++y) {
     for (int x = 100; x < 300; ++x) SetGrey(picture, x, y, 0.3);
   }
-  const Expected<Style> style = LoadStyle(Write("box.png", picture));
+  const std::string file = Write("box.png", picture);
+  const Expected<Style> refused = LoadStyle(file);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().kind, ErrorKind::kInput);
+  for (const char* word : {"box.png is 400×400", "shows no clear sphere", "crop it to the sphere", "fills = true"}) {
+    EXPECT_NE(refused.error().message.find(word), std::string::npos) << refused.error().message;
+  }
+  const Picture stored = *ReadPicture(file);
+  std::ofstream(folder_.path() / "style.toml") << "[[exemplar]]\nimage = \"box.png\"\nfills = true\n";
+  for (const Expected<Style>& style : {LoadStyle(folder_.path()), LoadStyle(file)}) {
+    ASSERT_TRUE(style) << style.error().message;
+    EXPECT_EQ(style->exemplars.front().picture.rgba, stored.rgba);
+  }
+  EXPECT_FALSE(LoadStyle(folder_.path(), {"exemplar.1.fills=false"}));
+  std::filesystem::remove(folder_.path() / "style.toml");
+  EXPECT_TRUE(LoadStyle(file, {"exemplar.1.fills=true"}));
+}
+
+// What would be cut to its sphere is not where it fills the square by word, and a word is true or false.
+TEST_F(PlaceSphereTest, FillsKeepsAnyPictureAsItIs) {
+  PaintedSphere painted;
+  painted.size = 200, painted.reach = 2.0;
+  const std::string file = Write("ball.png", Laid(PaintSphere(painted), 400, 400, 60, 80, 1.0));
+  ASSERT_TRUE(LoadStyle(file)->exemplars.front().cut);
+  const Expected<Style> style = LoadStyle(file, {"exemplar.1.fills=true"});
   ASSERT_TRUE(style) << style.error().message;
-  EXPECT_EQ(style->exemplars.front().doubt, SphereDoubt::kNoCircle);
+  EXPECT_FALSE(style->exemplars.front().cut);
   EXPECT_EQ(style->exemplars.front().picture.width, 400);
+  const Expected<Style> wrong = LoadStyle(file, {"exemplar.1.fills=1"});
+  ASSERT_FALSE(wrong);
+  EXPECT_EQ(wrong.error().kind, ErrorKind::kUsage);
+  EXPECT_NE(wrong.error().message.find("expected true or false"), std::string::npos) << wrong.error().message;
+  std::ofstream(folder_.path() / "style.toml") << "[[exemplar]]\nimage = \"ball.png\"\nfills = \"yes\"\n";
+  const Expected<Style> text = LoadStyle(folder_.path());
+  ASSERT_FALSE(text);
+  EXPECT_NE(text.error().message.find("style.toml:3: exemplar.fills: expected true or false"), std::string::npos)
+      << text.error().message;
 }
 
 // Guides say where the sphere is, and marks that there is a margin.

@@ -269,7 +269,7 @@ TEST_F(StyleFile, UnknownKeysAreRefusedWithTheKnownOnes) {
                 {"style.toml:1", "transfr"});
   ExpectRefusal(Load(std::string("transfer = 3\n") + kExemplar), ErrorKind::kInput, {"style.toml:1", "[transfer]"});
   ExpectRefusal(Load(std::string(kExemplar) + "weight = 2\n"), ErrorKind::kInput,
-                {"style.toml:3", "unknown key exemplar.weight", "image, guides, luminance"});
+                {"style.toml:3", "unknown key exemplar.weight", "image, guides, luminance, fills"});
 }
 
 TEST_F(StyleFile, BadTomlSaysTheLine) {
