@@ -400,7 +400,7 @@ SCENES = {  # builder, layers, size, samples
     "emissive": (emissive, DIFFUSE_LAYERS, LANDSCAPE, 256),
     "rough": (rough, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 128),
     "coarse": (coarse, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 256),
-    "bent": (bent, [], LANDSCAPE, 0),
+    "bent": (bent, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 128),
     "world": (world_only, DIFFUSE_LAYERS, LANDSCAPE, 128),
     "mixed": (mixed, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 128),
     "stretched": (stretched, DIFFUSE_LAYERS, LANDSCAPE, 64),
