@@ -1,0 +1,304 @@
+#!/usr/bin/env python3
+"""Pairs of pictures to be judged by eye alone, for choosing a measure of paint (docs/paint-texture.md).
+
+    /usr/bin/python3 bench/paint_pairs.py --choose        # anew: forgets all votes
+    /usr/bin/python3 bench/paint_pairs.py --draw          # pictures and sheets without names, into out/paint-pairs/
+    /usr/bin/python3 bench/paint_pairs.py --read FILE     # adds one reading: {"1": ["A", "why"], …}
+    /usr/bin/python3 bench/paint_pairs.py                 # agreement of the readings; of figures, on the open half
+    /usr/bin/python3 bench/paint_pairs.py --locked        # of figures, on the locked half: once, at the end
+
+Ten paintings on four scenes; of each twelve pairs of ways to draw it, good ones and deliberately bad ones. Every third
+pair holds the style as it is. Which pairs, which side is A, what part is shown, and which half is locked away is
+decided by hashes. A sheet shows the exemplar beside A and B, at the size at which it is used. Whoever reads the sheets
+must not have seen anything else. One reading is a vote for each pair with a reason.
+"""
+
+import argparse
+import hashlib
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+sys.dont_write_bytecode = True
+
+import numpy as np
+import OpenImageIO as oiio
+
+ROOT = Path(__file__).resolve().parent.parent
+PAIRS = ROOT / "bench/paint_pairs.json"
+OUT = ROOT / "out/paint-pairs"
+SAMPLES = [("oil", "suzanne"), ("watercolour", "snail"), ("graphite", "toys"), ("gouache", "stilllife"),
+           ("pastel", "toys"), ("ink", "suzanne"), ("plein-air", "stilllife"), ("charcoal", "snail"),
+           ("woodcut", "suzanne"), ("coloured-pencil", "snail")]
+PAIRS_OF_EACH = 12
+CROPS = {"snail": [(380, 60), (130, 180), (330, 240)], "stilllife": [(280, 140), (480, 60), (400, 240)],
+         "suzanne": [(280, 30), (60, 240), (400, 240)], "toys": [(230, 20), (60, 220), (420, 150)]}
+CROP = 300
+WAYS = {  # options of `scumble transfer`; a name in capitals: what is done to the exemplar or the picture besides
+    "as it is": [],
+    "another seed": ["--seed", "7"],
+    "Lit Sphere": ["method=litsphere"],
+    "threshold 0.4": ["threshold=0.4"],
+    "threshold 0.25": ["threshold=0.25"],
+    "threshold 0.03": ["threshold=0.03"],
+    "blend_radius 0": ["blend_radius=0"],
+    "blend_radius 4": ["blend_radius=4"],
+    "blend_radius 8": ["blend_radius=8"],
+    "hybrid 8": ["hybrid=8"],
+    "hybrid 8, threshold 0.25": ["hybrid=8", "threshold=0.25"],
+    "levels 4": ["levels=4"],
+    "variety 30": ["variety=30"],
+    "strokes of half the size": ["scale=0.5"],
+    "strokes of twice the size": ["scale=2"],
+    "guides of half the size": ["HALF", "--upsample", "2"],
+    "picture of half the size": ["HALF", "STRETCH"],
+    "flat fill": ["method=litsphere", "FLAT"],
+    "blurred": ["BLUR"],
+    "noise of the right spectrum": ["method=litsphere", "NOISE"],
+    "mosaic": ["threshold=0.6", "blend_radius=0"],
+    "repeats": ["method=litsphere", "REPEATS"],
+}
+GREY = 0.93
+
+
+def lot(*parts):
+    """A whole number that parts decide."""
+    return int.from_bytes(hashlib.sha256(" ".join(map(str, parts)).encode()).digest()[:6], "big")
+
+
+def choose():
+    pairs = []
+    for style, scene in SAMPLES:
+        chosen = set()
+        while len(chosen) < PAIRS_OF_EACH:
+            turn = len(chosen)
+            names = sorted(WAYS, key=lambda way: lot(style, scene, turn, way, len(pairs)))
+            two = ["as it is", next(name for name in names if name != "as it is")] if turn % 3 == 0 else names[:2]
+            two.sort(key=lambda way: lot("side", style, scene, turn, way))
+            salt = 0
+            while frozenset(two) in chosen:
+                salt += 1
+                two = sorted(WAYS, key=lambda way: lot(style, scene, turn, way, salt))[:2]
+            chosen.add(frozenset(two))
+            crop = CROPS[scene][lot("crop", style, turn) % 3] if turn % 2 else None
+            pairs.append({"style": style, "scene": scene, "A": two[0], "B": two[1], "crop": crop,
+                          "locked": False, "votes": []})
+    for i in sorted(range(len(pairs)), key=lambda i: lot("locked", i))[: len(pairs) // 2]:
+        pairs[i]["locked"] = True
+    save(pairs)
+
+
+def save(pairs):
+    rows = ",\n ".join(json.dumps(pair, ensure_ascii=False) for pair in pairs)
+    PAIRS.write_text("[%s]\n" % rows, encoding="utf-8")
+
+
+def read(path):
+    pixels = oiio.ImageInput.open(str(path)).read_image(format="float")
+    return np.clip(pixels, 0.0, 1.0)
+
+
+def write(path, pixels):
+    spec = oiio.ImageSpec(pixels.shape[1], pixels.shape[0], pixels.shape[2], "uint16")
+    output = oiio.ImageOutput.create(str(path))
+    output.open(str(path), spec)
+    output.write_image(np.ascontiguousarray(pixels, dtype=np.float32))
+    output.close()
+
+
+def blurred(pixels, sigma):
+    """Gaussian over rows and columns; borders are repeated."""
+    reach = int(3 * sigma + 1)
+    weights = np.exp(-0.5 * (np.arange(-reach, reach + 1) / sigma) ** 2)
+    weights /= weights.sum()
+    for axis in (0, 1):
+        padded = np.pad(pixels, [(reach, reach) if a == axis else (0, 0) for a in range(3)], mode="edge")
+        length = pixels.shape[axis]
+        pixels = sum(w * np.take(padded, range(k, k + length), axis) for k, w in enumerate(weights))
+    return pixels
+
+
+def without_strokes(exemplar, way):
+    """The exemplar's tone alone, or with a detail that is not its own."""
+    size = exemplar.shape[0]
+    color, rest = exemplar[..., :3], exemplar[..., 3:]
+    tone = blurred(color, size / 40)
+    detail = color - tone
+    if way == "FLAT":
+        color = blurred(color, size / 12)
+    elif way == "NOISE":  # the detail's spectrum, in phases by chance
+        phases = np.angle(np.fft.fft2(np.random.default_rng(1).standard_normal((size, size))))
+        color = tone + np.real(np.fft.ifft2(np.abs(np.fft.fft2(detail, axes=(0, 1)))
+                                            * np.exp(1j * phases)[..., None], axes=(0, 1)))
+    else:  # one piece of the detail over and over
+        piece = size // 14
+        at = int(0.42 * size)
+        tile = detail[at:at + piece, at:at + piece]
+        count = size // piece + 1
+        color = tone + np.tile(tile, (count, count, 1))[:size, :size]
+    return np.concatenate([np.clip(color, 0.0, 1.0), rest], -1)
+
+
+def style_folder(style, way):
+    """The style itself, or a copy with other exemplars."""
+    own = ROOT / "exemplars" / style
+    if way not in ("FLAT", "NOISE", "REPEATS"):
+        return own
+    folder = OUT / "styles" / ("%s-%s" % (style, way.lower()))
+    if not folder.exists():
+        folder.mkdir(parents=True)
+        for file in own.iterdir():
+            is_painting = file.suffix == ".png" and 'image = "%s"' % file.name in (own / "style.toml").read_text()
+            if is_painting:
+                write(folder / file.name, without_strokes(read(file), way))
+            else:
+                (folder / file.name).write_bytes(file.read_bytes())
+    return folder
+
+
+def scumble(*arguments):
+    done = subprocess.run([str(ROOT / "build/scumble"), *map(str, arguments), "-q"], capture_output=True, text=True)
+    if done.returncode != 0:
+        sys.exit("scumble %s\n%s" % (" ".join(map(str, arguments)), done.stderr))
+
+
+def guides(style, scene, height):
+    file = OUT / ("guides-%s-%s-%d.exr" % (style, scene, height))
+    if not file.exists():
+        scumble("guidegen", ROOT / "scenes" / (scene + ".glb"), "--style", ROOT / "exemplars" / style,
+                "--size", "%dx%d" % (height * 16 // 9, height), "-o", file)
+    return file
+
+
+def picture(style, scene, way, height):
+    """Without paper, on light grey: (height, width, 3)."""
+    name = "%s-%s-%d-%s" % (style, scene, height, way.replace(" ", "_").replace(",", ""))
+    file = OUT / "pictures" / (name + ".png")
+    if not file.exists():
+        file.parent.mkdir(parents=True, exist_ok=True)
+        marks = [part for part in WAYS[way] if part.isupper()]
+        options = ["--set", "transfer.paper="]
+        for part in WAYS[way]:
+            if "=" in part:
+                options += ["--set", "transfer." + part]
+            elif not part.isupper():
+                options += [part]
+        rendered = height // 2 if "HALF" in marks else height
+        scumble("transfer", guides(style, scene, rendered), "--style",
+                style_folder(style, marks[-1] if marks else ""), *options, "-o", file)
+        if "STRETCH" in marks:
+            subprocess.run(["oiiotool", str(file), "--resize", "%dx%d" % (height * 16 // 9, height), "-o", str(file)],
+                           check=True)
+        if "BLUR" in marks:
+            subprocess.run(["oiiotool", str(file), "--blur", "5x5", "-o", str(file)], check=True)
+    pixels = read(file)
+    alpha = pixels[..., 3:]
+    return pixels[..., :3] * alpha + GREY * (1.0 - alpha)
+
+
+def exemplar_part(style, height, size):
+    """The first painting as it is used at that height, or its part on the left above the middle."""
+    at_height = OUT / ("exemplar-%s-%d.png" % (style, height))
+    if not at_height.exists():
+        toml = (ROOT / "exemplars" / style / "style.toml").read_text(encoding="utf-8")
+        scale = next((float(line.split("=")[1]) for line in toml.splitlines() if line.startswith("scale =")), 1.0)
+        lit = ROOT / "exemplars" / style / "lit.png"
+        side = round(read(lit).shape[0] * scale * height / 1080)
+        subprocess.run(["oiiotool", str(lit), "--resize", "%dx%d" % (side, side), "-o", str(at_height)], check=True)
+    pixels = read(at_height)
+    if pixels.shape[2] == 4:
+        pixels = pixels[..., :3] * pixels[..., 3:] + GREY * (1.0 - pixels[..., 3:])
+    side = pixels.shape[0]
+    x, y = max(0, min(side - size, side // 6)), max(0, min(side - size, side // 8))
+    part = pixels[y:y + size, x:x + size, :3]
+    panel = np.full((size, size, 3), 0.97)
+    panel[:part.shape[0], :part.shape[1]] = part
+    return panel
+
+
+def draw_row(pair):
+    if pair["crop"]:
+        x, y = pair["crop"]
+        sides = [picture(pair["style"], pair["scene"], pair[s], 540)[y:y + CROP, x:x + CROP] for s in "AB"]
+        panels = [exemplar_part(pair["style"], 540, CROP)] + sides
+    else:
+        sides = [picture(pair["style"], pair["scene"], pair[s], 360) for s in "AB"]
+        panels = [exemplar_part(pair["style"], 360, 360)] + sides
+    gap = np.full((panels[0].shape[0], 8, 3), 0.97)
+    row = np.concatenate([panels[0], gap, panels[1], gap, panels[2]], 1)
+    return np.concatenate([np.full((26, row.shape[1], 3), 0.97), row], 0), panels[0].shape[1] + 8, panels[1].shape[1] + 8
+
+
+def draw(pairs):
+    """Two whole pictures or three crops a sheet."""
+    (OUT / "sheets").mkdir(parents=True, exist_ok=True)
+    for is_crop, rows_a_sheet in ((False, 2), (True, 3)):
+        numbers = [i for i, pair in enumerate(pairs) if bool(pair["crop"]) == is_crop]
+        for begin in range(0, len(numbers), rows_a_sheet):
+            part = numbers[begin:begin + rows_a_sheet]
+            rows = [draw_row(pairs[i]) for i in part]
+            name = "%s-%02d" % ("crops" if is_crop else "whole", begin // rows_a_sheet + 1)
+            file = OUT / "sheets" / (name + ".png")
+            write(OUT / "sheet.png", np.concatenate([row for row, _, _ in rows], 0))
+            texts, top = [], 0
+            for i, (row, a, width) in zip(part, rows):
+                for side, x in (("exemplar", 4), ("%d A" % (i + 1), a), ("%d B" % (i + 1), a + width)):
+                    texts.append("--text:x=%d:y=%d:size=18:font=DejaVuSans:color=0.1,0.1,0.1" % (x + 4, top + 19))
+                    texts.append(side)
+                top += row.shape[0]
+            subprocess.run(["oiiotool", str(OUT / "sheet.png"), *texts, "-d", "uint8", "-o", str(file)], check=True)
+            print(file, ", ".join(str(i + 1) for i in part), flush=True)
+
+
+def add_reading(pairs, path):
+    votes = json.loads(Path(path).read_text(encoding="utf-8"))
+    for number, pair in enumerate(pairs, 1):
+        vote = votes.get(str(number))
+        if not vote or vote[0] not in ("A", "B", "=") or not vote[1].strip():
+            sys.exit("%s: pair %d: expected [\"A\", \"B\" or \"=\", a reason], found %s" % (path, number, vote))
+        pair["votes"].append(vote)
+    save(pairs)
+
+
+def majority(pair):
+    """The side that more readings chose; none where they are even."""
+    sides = [vote[0] for vote in pair["votes"]]
+    a, b = sides.count("A"), sides.count("B")
+    return "A" if a > b else "B" if b > a else None
+
+
+def is_agreed(pair):
+    return len({vote[0] for vote in pair["votes"]}) == 1 and pair["votes"][0][0] != "="
+
+
+def report(pairs):
+    readings = len(pairs[0]["votes"])
+    print("%d pairs, %d readings; all readings agree on %d, a majority chose in %d"
+          % (len(pairs), readings, sum(map(is_agreed, pairs)), sum(majority(pair) is not None for pair in pairs)))
+    for i in range(readings):
+        for j in range(i):
+            both = [p for p in pairs if "=" not in (p["votes"][i][0], p["votes"][j][0])]
+            same = sum(p["votes"][i][0] == p["votes"][j][0] for p in both)
+            print("readings %d and %d: the same side in %d of %d" % (j + 1, i + 1, same, len(both)))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--choose", action="store_true", help="pick the pairs anew and forget all votes")
+    parser.add_argument("--draw", action="store_true", help="draw pictures and sheets")
+    parser.add_argument("--read", metavar="FILE", help="add one reading")
+    options = parser.parse_args()
+    if options.choose:
+        choose()
+    pairs = json.loads(PAIRS.read_text(encoding="utf-8"))
+    if options.draw:
+        draw(pairs)
+    elif options.read:
+        add_reading(pairs, options.read)
+    elif not options.choose:
+        report(pairs)
+
+
+if __name__ == "__main__":
+    main()
