@@ -70,7 +70,7 @@ def principled_sockets():
             socket.default_value = 1.8 if name == "IOR" else 300.0 if name == "Thin Film Thickness" else 0.6
         if "Emission" in name:
             versions.input_of(paint.node_tree.nodes["Principled BSDF"], "Emission").default_value = (0.2, 0.1, 0.05, 1)
-        small_ball(paint.name, (0.45 * (number % 26 - 12.5), -0.4, LOW - 1.1 - 0.45 * (number // 26)), paint)
+        small_ball(paint.name, (0.45 * (number % 26 - 12.5), -0.4, LOW - 0.95 - 0.45 * (number // 26)), paint)
 
 
 def textured_balls():
