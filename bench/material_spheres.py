@@ -128,7 +128,8 @@ def main():
         build(case)
         render(case, arguments.output / (case["name"] + ".exr"))
         unsupported = export_scene.Unsupported()
-        export_scene.export(bpy.context.scene, arguments.output / (case["name"] + ".glb"), unsupported)
+        export_scene.export(bpy.context.scene, bpy.context.view_layer, arguments.output / (case["name"] + ".glb"),
+                            unsupported)
         if unsupported.lines:
             sys.exit("scumble: error: " + case["name"] + ": " + "; ".join(unsupported.lines))
 
