@@ -9,7 +9,8 @@ key light's direction, under a white world of radiance 1, and under a 2 m area l
 Scumble traces the same scene's export. Both are also compared with the models' formulas, integrated here.
 
 Prints the tables as Markdown. FOLDER keeps every render; existing ones are not rendered again: give each version of
-Blender its own. Needs Blender 3.4 or 4.3, python3-numpy and python3-openimageio. It only measures: nothing passes or fails.
+Blender its own. Needs Blender 3.4 or 4.3, python3-numpy and python3-openimageio. It only measures: nothing passes or
+fails.
 """
 
 import argparse
@@ -147,7 +148,8 @@ def diffuse_albedo(diffuse, eye, roughness, steps=96):
 
 
 def specular_albedo(fresnel, eye, roughness, color, metallic, steps=96):
-    """The reflection of a white world by the specular lobe towards `eye`, by normals that the eye can see (Heitz 2018)."""
+    """The reflection of a white world by the specular lobe towards `eye`, by normals that the eye can see (Heitz
+    2018)."""
     around, radius = evenly(steps)
     to_eye = np.array([math.sqrt(1.0 - eye * eye), 0.0, eye])
     alpha = max(roughness * roughness, 1e-6)
@@ -459,7 +461,8 @@ def main():
     cases = all_cases(arguments.size, arguments.samples)
     render(cases, arguments)
     pairs = {case["name"]: Pair(case, arguments.output) for case in cases}
-    print(f"Blender {version}. More light in Cycles than in ours, as a share of ours, mean over the sphere.\n\nPure shaders:")
+    print(f"Blender {version}. More light in Cycles than in ours, as a share of ours, mean over the sphere.\n\n"
+          "Pure shaders:")
     pure_table(pairs)
     print("\nPrincipled:")
     for color in COLORS:

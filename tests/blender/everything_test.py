@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""One .blend with everything in it, made by each Blender, is drawn by each that can open it, and each sees in it what its
-own Cycles sees.
+"""One .blend with everything in it, made by each Blender, is drawn by each that can open it, and each sees in it what
+its own Cycles sees.
 
     everything_test.py PROGRAM [BLENDER…]      the Blender in PATH where none is named; older ones first
 """
