@@ -217,7 +217,7 @@ def run(command):
 
 def blender_version(blender):
     said = subprocess.run([blender, "--version"], stdout=subprocess.PIPE, text=True, check=True).stdout
-    return said.split()[1]
+    return next(line.split()[1] for line in said.splitlines() if line.startswith("Blender "))
 
 
 def render(cases, arguments):
