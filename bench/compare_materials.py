@@ -8,11 +8,13 @@ A smooth sphere of radius 1 m under an orthographic camera, one material at a ti
 key light's direction, under a white world of radiance 1, and under a 2 m area light. Cycles renders Blender's node;
 Scumble traces the same scene's export. Both are also compared with the models' formulas, integrated here.
 
-Prints the tables as Markdown. FOLDER keeps every render; existing ones are not rendered again. Needs Blender 3.4,
-python3-numpy and python3-openimageio. It only measures: nothing passes or fails.
+Prints the tables as Markdown. FOLDER keeps every render; existing ones are not rendered again: give each version of
+Blender its own. Needs Blender 3.4 or 4.3, python3-numpy and python3-openimageio. It only measures: nothing passes or
+fails.
 """
 
 import argparse
+import functools
 import json
 import math
 import subprocess
@@ -55,14 +57,21 @@ def fresnel_dielectric(cosine, ior=1.5):
     return 0.5 * a * a * (1.0 + b * b)
 
 
-def fresnel_gltf(cosine, f0):
+def fresnel_gltf(cosine, color, metallic):
+    f0 = f0_of(color, metallic)
     return f0 + (1.0 - f0) * pow5(cosine)
 
 
-def fresnel_principled(cosine, f0):
-    """Cycles 3.4: the dielectric's curve for an index of 1.5, rescaled to start at f0."""
-    least = fresnel_dielectric(np.float64(1.0))
+def fresnel_cycles3(cosine, color, metallic):
+    """The dielectric's curve for an index of 1.5, rescaled to start at F0."""
+    f0, least = f0_of(color, metallic), fresnel_dielectric(np.float64(1.0))
     return f0 + (1.0 - f0) * (fresnel_dielectric(cosine) - least) / (1.0 - least)
+
+
+def fresnel_cycles4(cosine, color, metallic):
+    """A dielectric and a metal, mixed; with a white tint of its edge F82 is Schlick's."""
+    metal = np.asarray(color) + (1.0 - np.asarray(color)) * pow5(cosine)
+    return fresnel_dielectric(cosine) * (1.0 - metallic) + metal * metallic
 
 
 def lambert_coupled(eye, light, half, roughness):
@@ -77,7 +86,21 @@ def burley(eye, light, half, roughness):
     return (1.0 + grazing * pow5(light)) * (1.0 + grazing * pow5(eye))
 
 
-MODELS = {"ours": (lambert_coupled, fresnel_gltf), "cycles": (burley, fresnel_principled)}
+def lambert_coated(eye, light, half, roughness):
+    """Cycles 4's diffuse lobe over that of Lambert: without what the dielectric lobe reflects towards the eye."""
+    cosines, reflected = coat_table(roughness)
+    return 1.0 - np.interp(eye, cosines, reflected) + 0.0 * light
+
+
+@functools.lru_cache(maxsize=None)
+def coat_table(roughness):
+    cosines = np.linspace(0.0, 1.0, 65)
+    return cosines, np.array([specular_albedo(fresnel_cycles4, max(c, 1e-3), roughness, 0.0, 0.0)
+                              for c in cosines])
+
+
+MODELS = {"ours": (lambert_coupled, fresnel_gltf), "cycles": (burley, fresnel_cycles3)}
+CYCLES4 = (lambert_coated, fresnel_cycles4)
 
 
 def smith(cosine, alpha):
@@ -104,22 +127,34 @@ def sun_radiance(model, normal, case):
     d = (lit * diffuse(eye, lit, along, case["roughness"]))[:, None] * color * (1.0 - case["metallic"])
     alpha = case["roughness"] ** 2
     s = ggx(above, alpha) * smith(eye, alpha) * smith(np.maximum(lit, 1e-9), alpha) / (4.0 * eye) * math.pi
-    return d, np.where(lit > 0.0, s, 0.0)[:, None] * fresnel(along, f0_of(color, case["metallic"]))
+    return d, np.where(lit > 0.0, s, 0.0)[:, None] * fresnel(along, color, case["metallic"])
 
 
-def albedo(model, eye, roughness, f0, steps=96):
-    """The reflection of a white world by a white surface towards `eye`: of the diffuse lobe, of the specular lobe."""
-    diffuse, fresnel = MODELS[model]
-    u, v = (a.ravel() for a in np.meshgrid((np.arange(steps) + 0.5) / steps, (np.arange(steps) + 0.5) / steps))
-    around, radius = 2.0 * math.pi * u, np.sqrt(v)
+def evenly(steps):
+    """Points of a square, one in the middle of each cell."""
+    middles = (np.arange(steps) + 0.5) / steps
+    u, v = (a.ravel() for a in np.meshgrid(middles, middles))
+    return 2.0 * math.pi * u, np.sqrt(v)
+
+
+def diffuse_albedo(diffuse, eye, roughness, steps=96):
+    """The reflection of a white world by a white diffuse lobe towards `eye`."""
+    around, radius = evenly(steps)
     to_eye = np.array([math.sqrt(1.0 - eye * eye), 0.0, eye])
-    light = np.stack([radius * np.cos(around), radius * np.sin(around), np.sqrt(1.0 - v)], 1)  # spread as the cosine
+    light = np.stack([radius * np.cos(around), radius * np.sin(around), np.sqrt(1.0 - radius * radius)], 1)
     half = light + to_eye
     half /= np.linalg.norm(half, axis=1, keepdims=True)
-    d = diffuse(eye, light[:, 2], np.sum(half * light, 1), roughness).mean()
+    return diffuse(eye, light[:, 2], np.sum(half * light, 1), roughness).mean()
+
+
+def specular_albedo(fresnel, eye, roughness, color, metallic, steps=96):
+    """The reflection of a white world by the specular lobe towards `eye`, by normals that the eye can see (Heitz
+    2018)."""
+    around, radius = evenly(steps)
+    to_eye = np.array([math.sqrt(1.0 - eye * eye), 0.0, eye])
     alpha = max(roughness * roughness, 1e-6)
     stretched = np.array([alpha * to_eye[0], 0.0, eye]) / np.hypot(alpha * to_eye[0], eye)
-    share = 0.5 * (1.0 + stretched[2])  # normals that the eye can see (Heitz 2018)
+    share = 0.5 * (1.0 + stretched[2])
     x, y = radius * np.cos(around), radius * np.sin(around)
     y = (1.0 - share) * np.sqrt(1.0 - x * x) + share * y
     first = np.array([0.0, 1.0, 0.0])
@@ -130,15 +165,15 @@ def albedo(model, eye, roughness, f0, steps=96):
     micro /= np.linalg.norm(micro, axis=1, keepdims=True)
     along = micro @ to_eye
     out = 2.0 * along * micro[:, 2] - eye
-    s = np.where(out > 0.0, fresnel(along, f0) * smith(np.maximum(out, 1e-9), alpha), 0.0).mean()
-    return d, s
+    return np.where(out > 0.0, fresnel(along, color, metallic) * smith(np.maximum(out, 1e-9), alpha), 0.0).mean()
 
 
 def sphere_albedo(model, roughness, color, metallic, steps=48):
     """The mean over an orthographic sphere's disc, where cos² is evenly spread."""
     cosines = np.sqrt((np.arange(steps) + 0.5) / steps)
-    values = [albedo(model, c, roughness, 0.04 * (1.0 - metallic) + color * metallic) for c in cosines]
-    return np.mean([color * (1.0 - metallic) * d + s for d, s in values])
+    diffuse, fresnel = MODELS[model]
+    return np.mean([color * (1.0 - metallic) * diffuse_albedo(diffuse, c, roughness) +
+                    specular_albedo(fresnel, c, roughness, color, metallic) for c in cosines])
 
 
 # ---- Renders ---------------------------------------------------------------------------------------------------------
@@ -178,6 +213,11 @@ def run(command):
     done = subprocess.run([str(part) for part in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     if done.returncode != 0:
         sys.exit(f"{command[0]} ended with {done.returncode}:\n{done.stdout[-3000:]}")
+
+
+def blender_version(blender):
+    said = subprocess.run([blender, "--version"], stdout=subprocess.PIPE, text=True, check=True).stdout
+    return next(line.split()[1] for line in said.splitlines() if line.startswith("Blender "))
 
 
 def render(cases, arguments):
@@ -338,7 +378,10 @@ def angle_table():
     print("\n| roughness | model | " + " | ".join(f"{a}°" for a in angles) + " |\n|---|---|" + "---|" * len(angles))
     for roughness in (0.1, 0.5, 1.0):
         for model, words in (("ours", "glTF, ours"), ("cycles", "Principled")):
-            values = [sum(albedo(model, math.cos(math.radians(a)), roughness, 0.04, 256)) for a in angles]
+            diffuse, fresnel = MODELS[model]
+            cosines = [math.cos(math.radians(a)) for a in angles]
+            values = [diffuse_albedo(diffuse, c, roughness, 256) + specular_albedo(fresnel, c, roughness, 1.0, 0.0, 256)
+                      for c in cosines]
             print(f"| {roughness:g} | {words} | " + " | ".join(f"{v:.3f}" for v in values) + " |")
 
 
@@ -411,11 +454,15 @@ def main():
     arguments = parser.parse_args()
     if arguments.size < 128 or arguments.size % 128:
         parser.error(f"--size {arguments.size}: expected a multiple of 128")
+    version = blender_version(arguments.blender)
+    if version >= "4":
+        MODELS["cycles"] = CYCLES4
     arguments.output.mkdir(parents=True, exist_ok=True)
     cases = all_cases(arguments.size, arguments.samples)
     render(cases, arguments)
     pairs = {case["name"]: Pair(case, arguments.output) for case in cases}
-    print("More light in Cycles than in ours, as a share of ours, mean over the sphere.\n\nPure shaders:")
+    print(f"Blender {version}. More light in Cycles than in ours, as a share of ours, mean over the sphere.\n\n"
+          "Pure shaders:")
     pure_table(pairs)
     print("\nPrincipled:")
     for color in COLORS:

@@ -20,6 +20,7 @@ from mathutils import Vector
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "blender_scripts"))
 import export_scene  # noqa: E402
+from export_nodes import principled_input  # noqa: E402
 
 AZIMUTH, ELEVATION = -40.0, 40.0  # the key light's, core/image/direction.h
 LAMP_DISTANCE, LAMP_SIDE = 4.0, 2.0  # m
@@ -53,7 +54,8 @@ def make_material(case):
         shader.inputs["Base Color"].default_value = color
         shader.inputs["Metallic"].default_value = case["metallic"]
         shader.inputs["Roughness"].default_value = case["roughness"]
-        shader.inputs["Specular"].default_value = 0.5
+        principled_input(shader, "Specular").default_value = 0.5
+        shader.inputs["IOR"].default_value = 1.5  # Cycles 4 takes F0 from it
     else:
         shader.inputs["Color"].default_value = color
         shader.inputs["Roughness"].default_value = case["roughness"] if case["bsdf"] == "glossy" else 0.0
@@ -126,7 +128,8 @@ def main():
         build(case)
         render(case, arguments.output / (case["name"] + ".exr"))
         unsupported = export_scene.Unsupported()
-        export_scene.export(bpy.context.scene, arguments.output / (case["name"] + ".glb"), unsupported)
+        export_scene.export(bpy.context.scene, bpy.context.view_layer, arguments.output / (case["name"] + ".glb"),
+                            unsupported)
         if unsupported.lines:
             sys.exit("scumble: error: " + case["name"] + ": " + "; ".join(unsupported.lines))
 

@@ -306,7 +306,7 @@ def objects():
     for frame, x in ((1, 0.0), (11, 10.0)):
         mover.location.x = x
         mover.keyframe_insert("location", index=0, frame=frame)
-    for curve in mover.animation_data.action.fcurves:
+    for curve in versions.action_curves(mover):
         for key in curve.keyframe_points:
             key.interpolation = "LINEAR"
     shaped = cube("Shaped", (3, 16, 0), plain)

@@ -8,7 +8,7 @@ import bpy
 import versions
 from mathutils import Euler, Vector
 
-COLUMNS, APART = 5, 1.5
+COLUMNS, APART = 6, 1.5
 
 
 def add(name, data, material):
@@ -18,7 +18,7 @@ def add(name, data, material):
     thing = bpy.data.objects.new(name, data)
     if not data.materials:
         data.materials.append(material)
-    thing.location = (APART * (number % COLUMNS - 2), 0.0, APART * (number // COLUMNS))
+    thing.location = (APART * (number % COLUMNS - (COLUMNS - 1) / 2), 0.0, APART * (number // COLUMNS))
     thing.rotation_euler = Euler((0.9, 0.2, 0.4))
     scene.collection.objects.link(thing)
     return thing
@@ -163,6 +163,6 @@ def build(material):
     add_mesh("Folded", folded, material, False)
     camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
     bpy.context.scene.collection.objects.link(camera)
-    camera.data.type, camera.data.ortho_scale = "ORTHO", 8.4
+    camera.data.type, camera.data.ortho_scale = "ORTHO", 9.6
     camera.location, camera.rotation_euler = (0, -10, APART), Euler((math.pi / 2, 0, 0))
     bpy.context.scene.camera = camera

@@ -44,7 +44,8 @@ def build(words):
     if "ortho" in words:
         data.type, data.ortho_scale = "ORTHO", 8
     if "lens" in words:
-        data.type, data.cycles.panorama_type = "PANO", "FISHEYE_EQUISOLID"
+        data.type = "PANO"
+        getattr(data, "cycles", data).panorama_type = "FISHEYE_EQUISOLID"  # Blender 4.3 has it in the camera itself
     if "dof" in words or "slightdof" in words:
         data.dof.use_dof = True
         data.dof.focus_distance, data.dof.aperture_fstop = (4.0, 0.1) if "dof" in words else (8.0, 0.2)

@@ -6,6 +6,7 @@ from pathlib import Path
 import bpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "blender_scripts"))
+from blend_common import action_curves  # noqa: E402,F401
 from export_nodes import PRINCIPLED_INPUTS  # noqa: E402
 from guide_instances import geometry_nodes  # noqa: E402,F401 the scenes take it from here
 

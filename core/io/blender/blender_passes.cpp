@@ -44,26 +44,34 @@ void FindCoverage(const BlenderMattes& mattes, GuideSet& guides) {
   for (std::size_t i = 0; i < shown.size(); ++i) coverage[i] = coverage[i] > 0.0f ? shown[i] : 0.0f;
 }
 
+// The objects' shares of a pixel: their Cryptomatte's sum, without one the length of the normals' sum.
+float SumOfShares(const BlenderMattes& mattes, const GuideSet& guides, std::size_t i) {
+  if (mattes.empty()) return std::sqrt(SquaredLength(guides.Vec3(Layer::kNormal, i)));
+  float sum = 0.0f;
+  for (std::size_t r = 1; r < mattes.begin()->second.ranks.size(); r += 2) {
+    const std::vector<float>& rank = mattes.begin()->second.ranks[r];
+    if (!rank.empty() && rank[i] > 0.0f) sum += rank[i];
+  }
+  return sum;
+}
+
 // Adds what shadow catchers cover to the coverage, and returns it. `mattes` may be empty.
 std::vector<float> CoverCatchers(const BlenderMattes& mattes, GuideSet& guides) {
   constexpr float kNoise = 0.01f;  // of the sums
   const auto coverage = guides.Plane(Layer::kCoverage);
-  std::vector<float> caught(coverage.size(), 0.0f);
+  std::vector<float> sums(coverage.size()), caught(coverage.size(), 0.0f);
+  for (std::size_t i = 0; i < sums.size(); ++i) sums[i] = SumOfShares(mattes, guides, i);
+  // Catchers count twice in Cycles 3, once in Cycles 4.
+  const bool twice = std::any_of(sums.begin(), sums.end(), [](float sum) { return sum > 1.5f; });
   for (std::size_t i = 0; i < caught.size(); ++i) {
     const float film = coverage[i];
-    // Objects count once, catchers twice. An opaque film's coverage has both.
-    float beyond = 0.0f;
-    if (mattes.empty()) {
-      beyond = SquaredLength(guides.Vec3(Layer::kNormal, i)) > 2.25f ? 2.0f * (1.0f - 0.5f * film) : 0.0f;
-    } else {
-      for (std::size_t r = 1; r < mattes.begin()->second.ranks.size(); r += 2) {
-        const std::vector<float>& rank = mattes.begin()->second.ranks[r];
-        if (!rank.empty() && rank[i] > 0.0f) beyond += rank[i];
-      }
-      beyond -= film;
+    float beyond = sums[i] - film;  // an opaque film's coverage has objects and catchers
+    if (mattes.empty()) {           // averaged normals are shorter
+      const bool beside = twice ? sums[i] > 1.5f : beyond > 0.5f;
+      beyond = beside ? (twice ? 2.0f - film : 1.0f - film) : 0.0f;
     }
     if (!(beyond > kNoise)) continue;
-    caught[i] = std::min(1.0f, film >= 1.0f ? beyond : 0.5f * beyond);
+    caught[i] = std::min(1.0f, film >= 1.0f || !twice ? beyond : 0.5f * beyond);
     coverage[i] = std::min(1.0f, film + caught[i]);
   }
   return caught;

@@ -38,8 +38,9 @@ using BlenderMattes = std::map<Layer, Matte>;  // kObject, kMaterial
 //     normal, and become background where there is none.
 // Layers that the set lacks are left out; A and normal must be there. `name` stands for the file.
 //   - luminance and shadow come from passes of light (core/io/blender/render_light.h). Where the pass Shadow Catcher is
-//     among them, shadow catchers are covered. A transparent film has none of their alpha; their other data count
-//     double in a pixel's sums: Cryptomatte's coverage shows them, or a normal of length 2 without it.
+//     among them, shadow catchers are covered. A transparent film has none of their alpha. In a pixel's sums their
+//     other data count double in Cycles 3, and once in Cycles 4: Cryptomatte's coverage shows them, or the normal's
+//     length without it.
 Status ConvertBlenderPasses(const std::optional<GuideCamera>& camera, const BlenderMattes& mattes,
                             const BlenderLight& light, const std::string& name, GuideSet& guides);
 
