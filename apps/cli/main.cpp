@@ -84,6 +84,6 @@ int main(int argc, char** argv) {
     scumble::ReportUncaughtExceptions();
     return scumble::Run(argc, argv);
   } catch (...) {
-    return scumble::ReportException(std::current_exception());
+    scumble::ReportAndEnd();
   }
 }
