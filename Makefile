@@ -18,7 +18,7 @@ demo: build ## draw a dozen pictures and a contact sheet into out/demo/; ALL=1 d
 	@.ci/demo $(if $(filter-out 0,$(ALL)),--all)
 
 bare: ## run demo and test in a new Debian root that holds only git and make (as root); ONLY=demo runs one; DEBIAN=12
-	@DEBIAN=$(or $(DEBIAN),12) .ci/bare $(foreach target,$(or $(ONLY),demo test),"make $(target)")
+	@exec env DEBIAN=$(or $(DEBIAN),12) .ci/bare $(foreach target,$(or $(ONLY),demo test),"make $(target)")
 
 check: ## the quick tests, for between edits: under a minute once built; one library's: CHECK=transfer
 	@.ci/install test

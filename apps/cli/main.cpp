@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <exception>
 #include <memory>
+#include <new>
 #include <sstream>
 
 #include "apps/cli/app/command.h"
@@ -67,6 +68,10 @@ int Run(int argc, char** argv) {
   // Allows more threads than cores, if the user requests them: the library would refuse them with its own message.
   const tbb::global_control workers(tbb::global_control::max_allowed_parallelism,
                                     std::size_t(std::max(globals.threads, tbb::this_task_arena::max_concurrency())));
+  // oneTBB 2022 hangs if it finds no memory for its first arena: that is made now, and kept, if there is enough for it.
+  ::operator delete(::operator new(std::size_t(4) << 20));
+  tbb::task_arena first_arena(1, 1);
+  first_arena.initialize();
   SetIoThreads(globals.threads);
   const Expected<ExitCode> result = chosen();
   if (!result) return Fail(result.error());
@@ -84,6 +89,6 @@ int main(int argc, char** argv) {
     scumble::ReportUncaughtExceptions();
     return scumble::Run(argc, argv);
   } catch (...) {
-    return scumble::ReportException(std::current_exception());
+    scumble::ReportAndEnd();
   }
 }

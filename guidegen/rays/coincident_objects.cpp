@@ -53,4 +53,18 @@ std::vector<bool> FindHiddenCoincident(std::span<const PlacedObject> objects) {
   return covered;
 }
 
+std::vector<bool> FindTied(std::span<const PlacedObject> objects, const std::vector<bool>& hidden) {
+  constexpr std::uint64_t kNone = 0;
+  std::vector<std::uint64_t> hashes(objects.size(), kNone);
+  std::unordered_map<std::uint64_t, int> count;
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    if (hidden[i] || !objects[i].mesh || objects[i].mesh->triangles.empty()) continue;
+    hashes[i] = HashOf(objects[i]);
+    ++count[hashes[i]];
+  }
+  std::vector<bool> tied(objects.size(), false);
+  for (std::size_t i = 0; i < objects.size(); ++i) tied[i] = hashes[i] != kNone && count[hashes[i]] > 1;
+  return tied;
+}
+
 }  // namespace scumble

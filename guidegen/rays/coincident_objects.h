@@ -16,4 +16,8 @@ namespace scumble {
 // is only compared with another of its size at its place.
 std::vector<bool> FindHiddenCoincident(std::span<const PlacedObject> objects);
 
+// By object: whether another one that is not hidden either may be at its place. Embree then chooses, and its choice
+// depends on which of the two have filters. Compares hashes alone, so a few others may be among them.
+std::vector<bool> FindTied(std::span<const PlacedObject> objects, const std::vector<bool>& hidden);
+
 }  // namespace scumble

@@ -155,8 +155,9 @@ void FillVertices(RTCGeometry geometry, const PlacedObject& object) {
   });
 }
 
-// Emissive objects, and those that reach far, need the filter only for rays of light.
-RTCGeometry MakeMesh(RTCDevice device, PlacedObject& object, bool light_rays) {
+// Emissive objects, and those that reach far, need the filter only for rays of light. An object that is tied with
+// another has it always, so that camera rays see one of the two whether light is cast or not.
+RTCGeometry MakeMesh(RTCDevice device, PlacedObject& object, bool light_rays, bool tied) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   FillVertices(geometry, object);
   const std::vector<glm::uvec3>& triangles = object.mesh->triangles;
@@ -164,7 +165,7 @@ RTCGeometry MakeMesh(RTCDevice device, PlacedObject& object, bool light_rays) {
                              sizeof(glm::uvec3), triangles.size());
   object.reaches_far = light_rays && ReachesFar(object);
   const bool asks_light = object.reaches_far || (light_rays && MayEmit(*object.material));
-  if (!object.material->double_sided || MayHaveHoles(*object.material) || asks_light) {
+  if (!object.material->double_sided || MayHaveHoles(*object.material) || asks_light || tied) {
     rtcSetGeometryIntersectFilterFunction(geometry, FilterHits);
     rtcSetGeometryOccludedFilterFunction(geometry, FilterHits);
   }
@@ -218,9 +219,9 @@ RTCGeometry MakeCurves(RTCDevice device, const PlacedObject& object) {
   return geometry;
 }
 
-RTCGeometry MakeGeometry(RTCDevice device, PlacedObject& object, bool light_rays) {
+RTCGeometry MakeGeometry(RTCDevice device, PlacedObject& object, bool light_rays, bool tied) {
   if (!object.mesh) return MakeSphere(device, object);
-  return object.mesh->IsCurves() ? MakeCurves(device, object) : MakeMesh(device, object, light_rays);
+  return object.mesh->IsCurves() ? MakeCurves(device, object) : MakeMesh(device, object, light_rays, tied);
 }
 
 // Robust: no cracks between neighbours, and no thin object is lost.
@@ -294,10 +295,11 @@ Status EmbreeScene::Commit(const Needs& needs, const Progress& progress) {
       &reason);
   scene_.reset(NewScene(device_.get(), needs.robust));
   const std::vector<bool> covered = FindHiddenCoincident(*objects_);
+  const std::vector<bool> tied = FindTied(*objects_, covered);
   for (std::size_t i = 0; i < objects_->size(); ++i) {
     PlacedObject& object = (*objects_)[i];
     if (covered[i] || (object.mesh && object.mesh->triangles.empty() && !object.mesh->IsCurves())) continue;
-    RTCGeometry geometry = MakeGeometry(device_.get(), object, needs.light_rays);
+    RTCGeometry geometry = MakeGeometry(device_.get(), object, needs.light_rays, tied[i]);
     rtcSetGeometryUserData(geometry, &object);
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(scene_.get(), geometry, static_cast<unsigned>(i));

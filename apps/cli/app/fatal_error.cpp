@@ -21,13 +21,13 @@ bool IsForWantOfThreads(const std::exception& error) {
   return std::strstr(error.what(), "pthread_create") != nullptr;
 }
 
-[[noreturn]] void ReportAndEnd() {
+}  // namespace
+
+void ReportAndEnd() {
   const int code = ReportException(std::current_exception());
   RemovePendingTemporaries();
   ::_exit(code);  // other threads still run: nothing that they use may be destroyed
 }
-
-}  // namespace
 
 int ReportException(std::exception_ptr thrown) {
   try {

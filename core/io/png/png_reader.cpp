@@ -46,11 +46,20 @@ bool IsHarmless(const png_text& text) {
          !key.starts_with("raw profile") && !key.starts_with("exif:");
 }
 
+// OpenImageIO from 2.5 on writes such a chunk into every picture: a header, and a list of no entries.
+bool IsEmptyExif(const png_byte* exif, png_uint_32 size) {
+  constexpr png_uint_32 kSize = 14;
+  return size == kSize && (std::memcmp(exif, "MM\0*\0\0\0\x08\0\0\0\0\0\0", kSize) == 0 ||
+                           std::memcmp(exif, "II*\0\x08\0\0\0\0\0\0\0\0\0", kSize) == 0);
+}
+
 bool IsPlain(png_structp png, png_infop info) {
   constexpr double kNearlyLinear = 0.2;
   double gamma = 0;
   if (png_get_gAMA(png, info, &gamma) != 0 && std::fabs(gamma - 1.0) < kNearlyLinear) return false;
-  if (png_get_valid(png, info, PNG_INFO_eXIf) != 0) return false;
+  png_bytep exif = nullptr;
+  png_uint_32 exif_size = 0;
+  if (png_get_eXIf_1(png, info, &exif_size, &exif) != 0 && !IsEmptyExif(exif, exif_size)) return false;
   if (png_get_x_offset_pixels(png, info) != 0 || png_get_y_offset_pixels(png, info) != 0) return false;
   png_textp texts = nullptr;
   int count = 0;

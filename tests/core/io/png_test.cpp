@@ -184,7 +184,12 @@ struct Kind {
   double gamma = 0;
   std::string key = "", text = "";
   int offset = 0;
+  std::string exif = "";
 };
+
+using namespace std::string_literals;
+const std::string kEmptyExif = "MM\0*\0\0\0\x08\0\0\0\0\0\0"s, kEmptyExifBackwards = "II*\0\x08\0\0\0\0\0\0\0\0\0"s;
+const std::string kTurned = "MM\0*\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0\x06\0\0\0\0\0\0"s;
 
 // A file of that kind with noise in it, by libpng.
 void Write(const fs::path& path, const Kind& kind, int width, int height) {
@@ -212,6 +217,8 @@ void Write(const fs::path& path, const Kind& kind, int width, int height) {
   }
   if (kind.gamma > 0) png_set_gAMA(png, info, kind.gamma);
   if (kind.offset != 0) png_set_oFFs(png, info, kind.offset, 0, PNG_OFFSET_PIXEL);
+  std::vector<png_byte> exif(kind.exif.begin(), kind.exif.end());
+  if (!exif.empty()) png_set_eXIf_1(png, info, png_uint_32(exif.size()), exif.data());
   std::string key = kind.key, words = kind.text;
   png_text text{};
   text.compression = PNG_TEXT_COMPRESSION_NONE, text.key = key.data(), text.text = words.data();
@@ -262,7 +269,9 @@ TEST(PngReader, ReadsEveryKindAsThePictureLibraryDoes) {
                                    {kRgb, 8, false, false, 1 / 1.8},
                                    {kRgb, 8, false, false, 0, "Comment", "a word"},
                                    {kRgba, 16, false, false, 0, "scumble:settings", "seed 1"},
-                                   {kRgb, 8, false, false, 0, "oiio:ColorSpace", "sRGB"}};
+                                   {kRgb, 8, false, false, 0, "oiio:ColorSpace", "sRGB"},
+                                   {kRgb, 8, false, false, 0, "", "", 0, kEmptyExif},
+                                   {kG, 16, false, false, 0, "", "", 0, kEmptyExifBackwards}};
   TemporaryFolder folder;
   for (const Kind& kind : kinds) {
     for (const auto& [width, height] : {Shape{1, 1}, Shape{19, 13}, Shape{7, 40}}) {
@@ -291,7 +300,8 @@ TEST(PngReader, LeavesToThePictureLibraryWhatSaysMore) {
        {Kind{kRgb, 8, false, false, 1.0}, Kind{kRgb, 8, false, false, 0, "oiio:ColorSpace", "Linear"},
         Kind{kRgb, 8, false, false, 0, "XML:com.adobe.xmp", "<x/>"},
         Kind{kRgb, 8, false, false, 0, "Raw profile type exif", "\nexif\n 1\n00\n"},
-        Kind{kRgb, 8, false, false, 0, "Orientation", "6"}, Kind{kRgb, 8, false, false, 0, "", "", 3}}) {
+        Kind{kRgb, 8, false, false, 0, "Orientation", "6"}, Kind{kRgb, 8, false, false, 0, "", "", 3},
+        Kind{kRgb, 8, false, false, 0, "", "", 0, kTurned}}) {
     Write(folder / "p.png", kind, 5, 4);
     const auto bytes = *ReadWholeFile(folder / "p.png");
     EXPECT_FALSE(internal::ReadPlainPng(bytes)) << kind.gamma << kind.key;

@@ -55,5 +55,18 @@ TEST(CoincidentObjects, WithHolesAreNotComparedWithEachOther) {
   EXPECT_EQ(std::count(all.begin(), all.end(), true), 500'000);
 }
 
+// Only of those that are seen, and only where another is.
+TEST(CoincidentObjects, AreTiedWhereNoneIsHidden) {
+  const Stand stand;
+  PlacedObject aside = stand.Of(stand.solid);
+  aside.view_from_object[3][0] = 1.0;
+  const auto tied = [](const std::vector<PlacedObject>& objects) {
+    return FindTied(objects, FindHiddenCoincident(objects));
+  };
+  EXPECT_EQ(tied({stand.Of(stand.solid), aside, stand.Of(stand.single)}), (std::vector<bool>{true, false, true}));
+  EXPECT_EQ(tied({stand.Of(stand.lamp), stand.Of(stand.solid)}), (std::vector<bool>{true, true}));
+  EXPECT_EQ(tied({stand.Of(stand.single), stand.Of(stand.solid), aside}), (std::vector<bool>{false, false, false}));
+}
+
 }  // namespace
 }  // namespace scumble::testing
