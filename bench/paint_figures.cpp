@@ -17,6 +17,8 @@
 namespace scumble {
 namespace {
 
+constexpr std::size_t kPatches = 512;  // all patches are searched for, as no sources are known
+
 void OrStop(const Status& status) {
   if (status) return;
   std::fprintf(stderr, "%s\n", status.error().message.c_str());
@@ -33,7 +35,9 @@ std::shared_ptr<const GuideSet> ReadAll(const std::string& file) {
 void PrintFigures(const TradeReference& reference, const GuidedTexture& texture, const std::string& file) {
   const Picture picture = OrStop(ReadPicture(file));
   TradeMeasure measure;
-  OrStop(reference.MeasurePaint(picture, nullptr, EnergyOptions(), measure));
+  EnergyOptions patches;
+  patches.samples = kPatches;
+  OrStop(reference.MeasurePaint(picture, nullptr, patches, measure));
   OrStop(reference.MeasureTexture(texture, picture, measure));
   const nlohmann::ordered_json line = {{"picture", file},
                                        {"both", measure.both.mean},

@@ -5,6 +5,7 @@
     /usr/bin/python3 bench/paint_pairs.py --draw          # pictures and sheets without names, into out/paint-pairs/
     /usr/bin/python3 bench/paint_pairs.py --read FILE     # adds one reading: {"1": ["A", "why"], …}
     /usr/bin/python3 bench/paint_pairs.py                 # agreement of the readings; of figures, on the open half
+    /usr/bin/python3 bench/paint_pairs.py --measure       # anew: the figures of all pictures (build/bench/paint_figures)
     /usr/bin/python3 bench/paint_pairs.py --locked        # of figures, on the locked half: once, at the end
 
 Ten paintings on four scenes; of each twelve pairs of ways to draw it, good ones and deliberately bad ones. Every third
@@ -27,6 +28,7 @@ import OpenImageIO as oiio
 
 ROOT = Path(__file__).resolve().parent.parent
 PAIRS = ROOT / "bench/paint_pairs.json"
+FIGURES = ROOT / "bench/paint_figures.json"
 OUT = ROOT / "out/paint-pairs"
 SAMPLES = [("oil", "suzanne"), ("watercolour", "snail"), ("graphite", "toys"), ("gouache", "stilllife"),
            ("pastel", "toys"), ("ink", "suzanne"), ("plein-air", "stilllife"), ("charcoal", "snail"),
@@ -171,8 +173,8 @@ def guides(style, scene, height):
     return file
 
 
-def picture(style, scene, way, height):
-    """Without paper, on light grey: (height, width, 3)."""
+def picture_file(style, scene, way, height):
+    """Without paper."""
     name = "%s-%s-%d-%s" % (style, scene, height, way.replace(" ", "_").replace(",", ""))
     file = OUT / "pictures" / (name + ".png")
     if not file.exists():
@@ -192,7 +194,12 @@ def picture(style, scene, way, height):
                            check=True)
         if "BLUR" in marks:
             subprocess.run(["oiiotool", str(file), "--blur", "5x5", "-o", str(file)], check=True)
-    pixels = read(file)
+    return file
+
+
+def picture(style, scene, way, height):
+    """On light grey: (height, width, 3)."""
+    pixels = read(picture_file(style, scene, way, height))
     alpha = pixels[..., 3:]
     return pixels[..., :3] * alpha + GREY * (1.0 - alpha)
 
@@ -261,6 +268,46 @@ def add_reading(pairs, path):
     save(pairs)
 
 
+def measure(pairs):
+    """The figures of each whole picture, crops and all: half the pairs show one at 360 lines, half at 540."""
+    wanted = {}
+    for pair in pairs:
+        height = 540 if pair["crop"] else 360
+        for side in "AB":
+            wanted.setdefault((pair["style"], pair["scene"], height), set()).add(pair[side])
+    figures = {}
+    for (style, scene, height), ways in sorted(wanted.items()):
+        files = {str(picture_file(style, scene, way, height)): way for way in sorted(ways)}
+        done = subprocess.run([str(ROOT / "build/bench/paint_figures"), str(ROOT / "exemplars" / style),
+                               str(guides(style, scene, height)), *files], capture_output=True, text=True, check=True)
+        for line in map(json.loads, done.stdout.splitlines()):
+            way = files[line.pop("picture")]
+            figures["%s %s %d %s" % (style, scene, height, way)] = {k: round(v, 4) for k, v in line.items()}
+        print(style, scene, height, flush=True)
+    rows = ",\n ".join("%s: %s" % (json.dumps(name), json.dumps(of)) for name, of in sorted(figures.items()))
+    FIGURES.write_text("{%s}\n" % rows, encoding="utf-8")
+
+
+def agreement(pairs, locked):
+    """By figure: in how many pairs the smaller one is on the side that a majority chose, of those on which all readings
+    agree, and of all that a majority decided."""
+    figures = json.loads(FIGURES.read_text(encoding="utf-8"))
+    part = [pair for pair in pairs if pair["locked"] == locked and majority(pair)]
+    print("%s half: %d pairs that a majority decided, %d of them unanimously"
+          % ("locked" if locked else "open", len(part), sum(map(is_agreed, part))))
+    for name in ("both", "energy", "missing", "texture"):
+        def agrees(pair):
+            key = "%s %s %d " % (pair["style"], pair["scene"], 540 if pair["crop"] else 360)
+            a, b = (figures[key + pair[side]][name] for side in "AB")
+            return ("A" if a < b else "B") == majority(pair)
+        agreed = [pair for pair in part if is_agreed(pair)]
+        print("%-8s %3.0f%% of all, %3.0f%% of the unanimous" % (name, 100 * sum(map(agrees, part)) / len(part),
+                                                              100 * sum(map(agrees, agreed)) / len(agreed)))
+        if not locked:
+            wrong = [i + 1 for i, pair in enumerate(pairs) if pair in agreed and not agrees(pair)]
+            print("         wrong where all agree: " + ", ".join(map(str, wrong)))
+
+
 def majority(pair):
     """The side that more readings chose; none where they are even."""
     sides = [vote[0] for vote in pair["votes"]]
@@ -287,6 +334,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--choose", action="store_true", help="pick the pairs anew and forget all votes")
     parser.add_argument("--draw", action="store_true", help="draw pictures and sheets")
+    parser.add_argument("--measure", action="store_true", help="measure all pictures anew")
+    parser.add_argument("--locked", action="store_true", help="judge the figures by the locked half")
     parser.add_argument("--read", metavar="FILE", help="add one reading")
     options = parser.parse_args()
     if options.choose:
@@ -296,8 +345,11 @@ def main():
         draw(pairs)
     elif options.read:
         add_reading(pairs, options.read)
+    elif options.measure:
+        measure(pairs)
     elif not options.choose:
         report(pairs)
+        agreement(pairs, options.locked)
 
 
 if __name__ == "__main__":
