@@ -38,17 +38,12 @@ def keys(thing, path, values, index=-1):
 
 
 def small_ball(name, place, material, radius=0.2):
-    data, shape = bpy.data.meshes.new(name), bmesh.new()
-    shape.loops.layers.uv.new("UVMap")
-    bmesh.ops.create_uvsphere(shape, u_segments=32, v_segments=16, radius=radius, calc_uvs=True)
-    for face in shape.faces:
-        face.smooth = True
-    shape.to_mesh(data)
-    shape.free()
-    data.materials.append(material)
-    thing = bpy.data.objects.new(name, data)
-    thing.location = place
-    bpy.context.scene.collection.objects.link(thing)
+    def build(shape):
+        shape.loops.layers.uv.new("UVMap")
+        bmesh.ops.create_uvsphere(shape, u_segments=32, v_segments=16, radius=radius, calc_uvs=True)
+
+    thing = matrix_shapes.add_mesh(name, build, material, True)
+    thing.location, thing.rotation_euler = place, Euler()
     return thing
 
 
