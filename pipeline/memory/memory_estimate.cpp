@@ -203,8 +203,8 @@ void AddGuides(const Size& size, const LayerSet& layers, const SceneRequest& opt
 std::size_t FragmentsExpected(const Size& size, int aa) { return aa > 1 ? PixelsOf(size) / kPixelsOfFragment : 0; }
 
 void AddGuideFile(const Size& size, const LayerSet& layers, bool cryptomatte, MemoryNeed& need) {
-  // Ids of objects and materials and a plane of zeros, and all eight channels in the file.
-  constexpr Bytes kMattePlanes = 3 + 8;
+  // The mattes of objects and materials; in the file their channels, and the ids once more.
+  constexpr Bytes kMattePlanes = 8 + 10;
   need.TakeTransient("guide file",
                      PlanesOf(size, Made(layers)) + (cryptomatte ? kMattePlanes * kFloat * PixelsOf(size) : 0));
 }

@@ -3,8 +3,9 @@
     blender -b -noaudio --factory-startup -P tests/blender/read_guides.py -- --input guides.exr --output FOLDER
                                                                          --matte CryptoObject:NAME …
 
-Writes FOLDER/read.json (the outputs of an Image node, the layers of a Cryptomatte node) and FOLDER/read0001.exr, with a
-layer matte0, matte1, … for each matte and one for each output of the Image node, by its number: pass0, pass1, ….
+Writes FOLDER/read.json (the outputs of an Image node, of another one with its Layer lpe, and the layers of a
+Cryptomatte node) and FOLDER/read0001.exr, with a layer matte0, matte1, … for each matte and one for each output of the
+Image nodes, by its number: pass0, pass1, ….
 """
 
 import argparse
@@ -41,8 +42,11 @@ def main():
     scene.use_nodes = True
     tree = scene.node_tree
     tree.nodes.clear()
-    source = tree.nodes.new("CompositorNodeImage")
-    source.image = image
+    plain, light = (tree.nodes.new("CompositorNodeImage") for _ in range(2))
+    plain.image = light.image = image
+    light.layer = "lpe"
+    shown = [(output.name, output) for output in plain.outputs]
+    shown += [("lpe." + output.name, output) for output in light.outputs]
     target = tree.nodes.new("CompositorNodeOutputFile")
     target.format.file_format, target.format.color_depth = "OPEN_EXR_MULTILAYER", "32"
     target.base_path = str(arguments.output / "read")
@@ -51,13 +55,13 @@ def main():
     for number, node in enumerate(mattes):
         target.layer_slots.new(f"matte{number}")
         tree.links.new(node.outputs["Matte"], target.inputs[-1])
-    for number, output in enumerate(source.outputs):
+    for number, (_, output) in enumerate(shown):
         target.layer_slots.new(f"pass{number}")
         tree.links.new(output, target.inputs[-1])
     tree.links.new(mattes[0].outputs["Matte"], tree.nodes.new("CompositorNodeComposite").inputs["Image"])
     bpy.ops.render.render(write_still=True)
-    found = {"passes": [output.name for output in source.outputs],
-             "kinds": [output.type for output in source.outputs],
+    found = {"passes": [name for name, _ in shown],
+             "kinds": [output.type for _, output in shown],
              "mattes": [item.identifier for item in mattes[0].bl_rna.properties["layer_name"].enum_items],
              "multilayer": image.type}
     (arguments.output / "read.json").write_text(json.dumps(found))

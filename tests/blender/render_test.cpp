@@ -198,7 +198,7 @@ TEST(BlenderRender, CoverageIsThatOfATransparentFilm) {
   EXPECT_GT(partial, 100u);
 }
 
-// Blender's compositor shows our guides under their names, but for ids, which it has as Cryptomatte.
+// Blender's compositor shows our guides under their names, ids as numbers and as Cryptomatte.
 class BlenderCompositor : public CliTest {};
 
 TEST_F(BlenderCompositor, ShowsOurGuidesAndTheirMattes) {
@@ -227,8 +227,9 @@ TEST_F(BlenderCompositor, ShowsOurGuidesAndTheirMattes) {
   ASSERT_EQ(std::system(command.c_str()), 0) << Bytes("log");
   const auto json = nlohmann::json::parse(Bytes("read.json"), nullptr, false);
   const auto passes = json.at("passes").get<std::vector<std::string>>();
-  for (const char* name : {"normal", "depth", "position", "pref", "motion", "albedo", "luminance", "shadow"}) {
-    EXPECT_EQ(std::count(passes.begin(), passes.end(), name), 1) << name << " " << json;
+  for (const LayerInfo& info : AllLayers()) {
+    if (info.layer == Layer::kCoverage) continue;
+    EXPECT_EQ(std::count(passes.begin(), passes.end(), info.name), 1) << info.name << " " << json;
   }
   const auto read = ReadChannels(At("read0001.exr"));
   ASSERT_TRUE(read) << read.error().message;
@@ -248,6 +249,12 @@ TEST_F(BlenderCompositor, ShowsOurGuidesAndTheirMattes) {
   expect_matte("matte1.V", Layer::kObject, ids[1]);
   expect_matte("matte2.V", Layer::kMaterial, 5);
   expect_matte("matte3.V", Layer::kObject, 0);
+  for (const Layer layer : {Layer::kObject, Layer::kMaterial}) {
+    const auto found = std::find(passes.begin(), passes.end(), std::string(Info(layer).name));
+    ASSERT_NE(found, passes.end());
+    const auto shown = plane("pass" + std::to_string(found - passes.begin()) + ".V");
+    EXPECT_TRUE(std::ranges::equal(shown, guides.Plane(layer))) << *found;
+  }
 }
 
 class BlenderTransfer : public CliTest {};

@@ -25,6 +25,11 @@ struct MatteChannel {
   int index;           // 2 · rank, and one more where it is coverage
 };
 
+// The ids of kObject and kMaterial once more, beside Cryptomatte, under a name whose ending compositors show: Blender
+// shows no channel called "ID", but "object.X" as the pass "object".
+inline constexpr const char* kShownObjectIds = "object.X";
+inline constexpr const char* kShownMaterialIds = "material.X";
+
 // Nothing for any other name, CryptoAsset included.
 std::optional<MatteChannel> ParseMatteChannel(std::string_view name);
 

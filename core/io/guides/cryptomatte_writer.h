@@ -1,6 +1,7 @@
 // Guides' objects and materials as Cryptomatte, for compositors. Private to core/io.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -19,12 +20,14 @@ class MattePlanes {
  public:
   // Adds the mattes CryptoObject and CryptoMaterial of those id layers that the guides have: the channels R (id), G
   // (coverage), B and A of one level each, and the attributes cryptomatte/KEY/name, hash, conversion and manifest. A
-  // pixel has one rank, its id with the coverage A; the second one is 0. An id without a name is 0. The guides and this
+  // pixel has its id with the coverage A; where it has fragments, the two ids with the largest coverage. An id without
+  // a name is 0. The layer itself is added once more as kShownObjectIds or kShownMaterialIds. The guides and this
   // outlive the image.
   void AddTo(const GuideSet& guides, ExrImage& image);
 
  private:
-  std::vector<float> objects_, materials_, zero_;
+  using Planes = std::array<std::vector<float>, 4>;
+  Planes objects_, materials_;
 };
 
 }  // namespace scumble::internal

@@ -17,15 +17,19 @@ namespace {
 
 using Meanings = std::map<std::string, ChannelMeaning>;  // by the channel's name
 
-// Empty if a channel belongs to a view layer, has no meaning here, or has another channel's meaning. A Cryptomatte
-// beside our own ids says nothing new, so it has no meaning and is passed over.
+// What stands beside our own ids for compositors, and says nothing new.
+bool IsForCompositors(const std::string& name) {
+  return ParseMatteChannel(name) || name == kShownObjectIds || name == kShownMaterialIds;
+}
+
+// Empty if a channel belongs to a view layer, has no meaning here, or has another channel's meaning.
 std::optional<Meanings> MeaningsOf(const ExrHeader& header) {
   const auto software = header.texts.find("Software");
   if (software != header.texts.end() && software->second.starts_with("Blender")) return std::nullopt;
   const bool is_ours = header.texts.count("scumble:generator") > 0;
   Meanings meanings;
   for (const auto& [name, half] : header.channels) {
-    if (is_ours && ParseMatteChannel(name)) continue;
+    if (is_ours && IsForCompositors(name)) continue;
     const std::optional<ChannelMeaning> meaning = ParseChannelName(name);
     if (!meaning || !meaning->prefix.empty() || ParseMatteChannel(name)) return std::nullopt;
     const bool is_taken = std::any_of(meanings.begin(), meanings.end(), [&](const auto& other) {

@@ -3,15 +3,20 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "core/image/fragments.h"
 #include "core/image/hash.h"
+#include "core/io/channel_file.h"
 #include "core/io/file/atomic_file.h"
 #include "core/io/guide_file.h"
+#include "core/io/guides/cryptomatte.h"
 #include "core/io/guides/fragment_storage.h"
 #include "tests/support/guide_files.h"
 #include "tests/support/temporary_folder.h"
@@ -75,6 +80,47 @@ GuideReadOptions Layers(const LayerSet& layers) {
   GuideReadOptions options;
   options.required = layers;
   return options;
+}
+
+// Where fragments are, mattes have the two objects that cover most of the pixel.
+TEST(FragmentFile, MattesHaveTheSharesOfFragments) {
+  const TemporaryFolder folder;
+  GuideSet guides = GuidesWithFragments(37, 23);
+  std::map<std::uint32_t, std::uint32_t> matte_ids;
+  for (std::uint32_t id = 0; id < 99; ++id) {
+    guides.object_names[id] = "object " + std::to_string(id);
+    matte_ids[id] = MatteBits(MatteHash(guides.object_names[id]));
+  }
+  GuideWriteOptions options;
+  options.cryptomatte = true;
+  ASSERT_TRUE(WriteGuides(folder / "g.exr", guides, options));
+  const auto read = ReadChannels(folder / "g.exr");
+  ASSERT_TRUE(read) << read.error().message;
+  const Fragments& fragments = *guides.fragments;
+  int shared = 0;
+  for (std::size_t i = 0, f = 0; i < guides.pixel_count(); ++i) {
+    std::map<std::uint32_t, float> shares;
+    float centre = guides.Plane(Layer::kCoverage)[i];
+    for (; f < fragments.count() && fragments.pixel[f] == i; ++f) {
+      const float coverage = fragments.values.Plane(Layer::kCoverage)[f];
+      shares[matte_ids.at(std::uint32_t(fragments.values.Plane(Layer::kObject)[f]))] += coverage;
+      centre -= coverage;
+    }
+    shares[matte_ids.at(std::uint32_t(guides.Plane(Layer::kObject)[i]))] += centre;
+    std::vector<float> sorted;
+    for (const auto& [id, share] : shares) sorted.push_back(share);
+    std::ranges::sort(sorted, std::greater());
+    sorted.resize(std::max<std::size_t>(2, sorted.size()));
+    shared += sorted[1] > 0.0f;
+    for (int rank = 0; rank < 2; ++rank) {
+      const auto channel = [&](char name) { return (*read->Find(std::string("CryptoObject00.") + name))[i]; };
+      const float coverage = channel("GA"[rank]);
+      ASSERT_NEAR(coverage, sorted[std::size_t(rank)], 1e-6f) << i;
+      if (coverage == 0.0f) continue;
+      ASSERT_NEAR(shares[std::bit_cast<std::uint32_t>(channel("RB"[rank]))], coverage, 1e-6f) << i;
+    }
+  }
+  EXPECT_GT(shared, 100);
 }
 
 TEST(FragmentFile, KeepsTheirBits) {
