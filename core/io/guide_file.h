@@ -13,8 +13,8 @@ namespace scumble {
 struct GuideWriteOptions {
   bool half = false;                // colour layers as 16-bit half floats; data layers stay 32-bit float
   std::string compression = "zip";  // none, rle, zips, zip or piz: lossless only
-  bool cryptomatte = false;  // for compositors: objects and materials as Cryptomatte too, and their ids as a pass that
-                             // Blender shows (core/io/guides/cryptomatte.h)
+  bool cryptomatte = false;  // for compositors: objects and materials as Cryptomatte too, and their ids as passes that
+                             // Blender 3 shows (core/io/guides/cryptomatte.h)
 };
 
 // Lossless, and the fastest to write and read: background is packed, surfaces hardly.

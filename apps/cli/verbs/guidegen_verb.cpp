@@ -76,10 +76,9 @@ void AddGuidegenVerb(CLI::App& app, Globals& globals, Action& chosen) {
       sub->add_option("--compression", verb->compression, "none, rle, zips, zip or piz; all are lossless");
   compression->type_name("NAME")->capture_default_str();
   AddFastIoOption(*sub, verb->fast_io)->excludes(compression);
-  sub->add_flag(
-      "--cryptomatte", verb->cryptomatte,
-      "for compositors: write objects and materials as Cryptomatte too, with their names, and their ids as object.X "
-      "and material.X, which Blender shows; transfer reads the ids in any case");
+  sub->add_flag("--cryptomatte", verb->cryptomatte,
+                "for compositors: write objects and materials as Cryptomatte too, with their names, and their ids as "
+                "the passes object_id and material_id; transfer reads the ids in any case");
   sub->add_option("-o,--output", verb->output, "guide file to write, .exr; required unless --explain is given")
       ->type_name("FILE");
   AddSequenceOptions(*sub, verb->sequence);

@@ -25,10 +25,11 @@ struct MatteChannel {
   int index;           // 2 · rank, and one more where it is coverage
 };
 
-// The ids of kObject and kMaterial once more, beside Cryptomatte, under a name whose ending compositors show: Blender
-// shows no channel called "ID", but "object.X" as the pass "object".
-inline constexpr const char* kShownObjectIds = "object.X";
-inline constexpr const char* kShownMaterialIds = "material.X";
+// The ids of kObject and kMaterial once more, beside Cryptomatte, under names that every compositor shows: Blender 3
+// shows no channel called "ID", but this one as the pass "object_id". A second channel of the pass "object" would make
+// a colour of it in Blender 4, which shows "object.ID" too.
+inline constexpr const char* kShownObjectIds = "object_id.X";
+inline constexpr const char* kShownMaterialIds = "material_id.X";
 
 // Nothing for any other name, CryptoAsset included.
 std::optional<MatteChannel> ParseMatteChannel(std::string_view name);
