@@ -87,24 +87,44 @@ def burley(eye, light, half, roughness):
 
 
 def lambert_coated(eye, light, half, roughness):
-    """Cycles 4's diffuse lobe over that of Lambert: without what the dielectric lobe reflects towards the eye."""
-    cosines, reflected = coat_table(roughness)
+    """Cycles 4's diffuse lobe over that of Lambert: without what the dielectric lobe would reflect towards the eye if
+    facets neither masked nor shadowed. Cycles reads it from a table of 16 roughnesses and 16 cosines."""
+    cosines = np.linspace(0.0, 1.0, 16)
+    low = min(int(roughness * 15), 14)
+    share = roughness * 15 - low
+    reflected = coat_row(low) * (1.0 - share) + coat_row(low + 1) * share
     return 1.0 - np.interp(eye, cosines, reflected) + 0.0 * light
 
 
 @functools.lru_cache(maxsize=None)
-def coat_table(roughness):
-    cosines = np.linspace(0.0, 1.0, 65)
-    return cosines, np.array([specular_albedo(fresnel_cycles4, max(c, 1e-3), roughness, 0.0, 0.0)
-                              for c in cosines])
+def coat_row(row):
+    def grown(cosine, color, metallic):  # by how much of 1 − F0
+        return (fresnel_dielectric(cosine) - 0.04) / 0.96
 
+    def unmasked(eye, light):
+        return eye
 
-MODELS = {"ours": (lambert_coupled, fresnel_gltf), "cycles": (burley, fresnel_cycles3)}
-CYCLES4 = (lambert_coated, fresnel_cycles4)
+    return np.array([0.04 + 0.96 * specular_albedo(grown, unmasked, max(c / 15.0, 1e-4), row / 15.0, 0.0, 0.0)
+                     for c in range(16)])
 
 
 def smith(cosine, alpha):
     return 2.0 * cosine / (cosine + np.sqrt(alpha * alpha * (1.0 - cosine * cosine) + cosine * cosine))
+
+
+def separable(eye, light):
+    return eye * light
+
+
+def correlated(eye, light):
+    """By height (Heitz 2014), from each direction's own masking."""
+    return eye * light / (eye + light - eye * light)
+
+
+# By Blender's major version. Ours shades an export's metals and dielectrics with the masking of that version.
+MODELS = {3: {"ours": (lambert_coupled, fresnel_gltf, separable), "cycles": (burley, fresnel_cycles3, separable)},
+          4: {"ours": (lambert_coupled, fresnel_gltf, correlated),
+              "cycles": (lambert_coated, fresnel_cycles4, correlated)}}
 
 
 def ggx(cosine, alpha):
@@ -118,7 +138,7 @@ def f0_of(color, metallic):
 
 def sun_radiance(model, normal, case):
     """Diffuse and specular radiance of a sun of strength π at each normal."""
-    diffuse, fresnel = MODELS[model]
+    diffuse, fresnel, masking = model
     eye, light = normal[:, 2], normal @ KEY
     half = (KEY + [0, 0, 1]) / np.linalg.norm(KEY + [0, 0, 1])
     along, above = half @ KEY, np.clip(normal @ half, 0.0, 1.0)
@@ -126,7 +146,8 @@ def sun_radiance(model, normal, case):
     color = np.asarray(case["color"])
     d = (lit * diffuse(eye, lit, along, case["roughness"]))[:, None] * color * (1.0 - case["metallic"])
     alpha = case["roughness"] ** 2
-    s = ggx(above, alpha) * smith(eye, alpha) * smith(np.maximum(lit, 1e-9), alpha) / (4.0 * eye) * math.pi
+    masked = masking(smith(eye, alpha), smith(np.maximum(lit, 1e-9), alpha))
+    s = ggx(above, alpha) * masked / (4.0 * eye) * math.pi
     return d, np.where(lit > 0.0, s, 0.0)[:, None] * fresnel(along, color, case["metallic"])
 
 
@@ -147,7 +168,7 @@ def diffuse_albedo(diffuse, eye, roughness, steps=96):
     return diffuse(eye, light[:, 2], np.sum(half * light, 1), roughness).mean()
 
 
-def specular_albedo(fresnel, eye, roughness, color, metallic, steps=96):
+def specular_albedo(fresnel, masking, eye, roughness, color, metallic, steps=96):
     """The reflection of a white world by the specular lobe towards `eye`, by normals that the eye can see (Heitz
     2018)."""
     around, radius = evenly(steps)
@@ -165,15 +186,17 @@ def specular_albedo(fresnel, eye, roughness, color, metallic, steps=96):
     micro /= np.linalg.norm(micro, axis=1, keepdims=True)
     along = micro @ to_eye
     out = 2.0 * along * micro[:, 2] - eye
-    return np.where(out > 0.0, fresnel(along, color, metallic) * smith(np.maximum(out, 1e-9), alpha), 0.0).mean()
+    seen = smith(eye, alpha)
+    masked = masking(seen, smith(np.maximum(out, 1e-9), alpha)) / seen
+    return np.where(out > 0.0, fresnel(along, color, metallic) * masked, 0.0).mean()
 
 
 def sphere_albedo(model, roughness, color, metallic, steps=48):
     """The mean over an orthographic sphere's disc, where cos² is evenly spread."""
     cosines = np.sqrt((np.arange(steps) + 0.5) / steps)
-    diffuse, fresnel = MODELS[model]
+    diffuse, fresnel, masking = model
     return np.mean([color * (1.0 - metallic) * diffuse_albedo(diffuse, c, roughness) +
-                    specular_albedo(fresnel, c, roughness, color, metallic) for c in cosines])
+                    specular_albedo(fresnel, masking, c, roughness, color, metallic) for c in cosines])
 
 
 # ---- Renders ---------------------------------------------------------------------------------------------------------
@@ -341,7 +364,7 @@ def largest_table(pairs):
                       f"{sun[3]:.0f}° | {signed(world[0], 3)} | {world[1]:.3f} | {world[2]:.0f}° |")
 
 
-def formula_table(pairs):
+def formula_table(pairs, models):
     """Each renderer under the sun against its own formula: how well the formulas explain the pictures."""
     print("\n| renderer | lobe | mean, rendered over formula | pixels, RMS over mean |\n|---|---|---|---|")
     for model, index in (("ours", 0), ("cycles", 1)):
@@ -351,7 +374,7 @@ def formula_table(pairs):
                 for metallic in METALLIC:
                     for roughness in ROUGHNESS:
                         pair = pairs[name_of("sun", "principled", color, roughness, metallic)]
-                        true = sun_radiance(model, pair.normal, pair.case)[lobe] @ LUMA
+                        true = sun_radiance(models[model], pair.normal, pair.case)[lobe] @ LUMA
                         found = pair.parts[part][index]
                         if true.mean() > 1e-9:
                             ratios.append(found.mean() / true.mean())
@@ -359,29 +382,29 @@ def formula_table(pairs):
             print(f"| {model} | {part} | {min(ratios):.4f} … {max(ratios):.4f} | {max(spreads):.4f} at most |")
 
 
-def furnace_table(pairs):
+def furnace_table(pairs, models):
     print("\n| roughness | dielectric: ours | formula | Cycles | formula | metal: ours | formula | Cycles | formula |"
           "\n|---|---|---|---|---|---|---|---|---|")
     for roughness in FURNACE_ROUGHNESS:
         figures = []
         for metallic in (0.0, 1.0):
             pair = pairs[name_of("world", "principled", "white", roughness, metallic)]
-            for index, model in enumerate(MODELS):
+            for index, model in enumerate(models.values()):
                 figures.append(pair.parts["full"][index].mean())
                 figures.append(sphere_albedo(model, roughness, 1.0, metallic))
         print(f"| {roughness:g} | " + " | ".join(f"{f:.4f}" for f in figures) + " |")
 
 
-def angle_table():
+def angle_table(models):
     """The reflection of a white world by a white dielectric by the angle of view, from the formulas."""
     angles = (0, 45, 60, 75, 85)
     print("\n| roughness | model | " + " | ".join(f"{a}°" for a in angles) + " |\n|---|---|" + "---|" * len(angles))
     for roughness in (0.1, 0.5, 1.0):
         for model, words in (("ours", "glTF, ours"), ("cycles", "Principled")):
-            diffuse, fresnel = MODELS[model]
+            diffuse, fresnel, masking = models[model]
             cosines = [math.cos(math.radians(a)) for a in angles]
-            values = [diffuse_albedo(diffuse, c, roughness, 256) + specular_albedo(fresnel, c, roughness, 1.0, 0.0, 256)
-                      for c in cosines]
+            values = [diffuse_albedo(diffuse, c, roughness, 256) +
+                      specular_albedo(fresnel, masking, c, roughness, 1.0, 0.0, 256) for c in cosines]
             print(f"| {roughness:g} | {words} | " + " | ".join(f"{v:.3f}" for v in values) + " |")
 
 
@@ -455,8 +478,7 @@ def main():
     if arguments.size < 128 or arguments.size % 128:
         parser.error(f"--size {arguments.size}: expected a multiple of 128")
     version = blender_version(arguments.blender)
-    if version >= "4":
-        MODELS["cycles"] = CYCLES4
+    models = MODELS[4 if version >= "4" else 3]
     arguments.output.mkdir(parents=True, exist_ok=True)
     cases = all_cases(arguments.size, arguments.samples)
     render(cases, arguments)
@@ -470,11 +492,11 @@ def main():
     print("\nLargest difference of `full`, Cycles − ours; facing white under the sun is 1, the world is 1:")
     largest_table(pairs)
     print("\nEach renderer against its own formula, under the sun:")
-    formula_table(pairs)
+    formula_table(pairs, models)
     print("\nWhite furnace, base colour 1, mean over the sphere:")
-    furnace_table(pairs)
+    furnace_table(pairs, models)
     print("\nWhite dielectric in a white world, by the angle of view:")
-    angle_table()
+    angle_table(models)
     if arguments.sheet:
         make_sheet(pairs, arguments.sheet)
 

@@ -6,6 +6,7 @@
 //   (surface/normal_map.h).
 // - Cycles 3 loses the light that bounces on between the facets of a rough diffuse surface, Cycles 4 gives it back
 //   (surface/bsdf.h).
+// - GGX's masking and shadowing are separable in Cycles 3, and correlated by height in Cycles 4 (surface/bsdf.h).
 //
 // Scenes without a version are shaded as by Cycles 3. Lamps say themselves what they mean (Light::spot_cosine).
 #pragma once

@@ -79,11 +79,11 @@ SurfaceBsdf::SurfaceBsdf(const PlacedObject& object, std::uint32_t primitive, co
       to_eye_(to_eye) {
   const Material& material = *object.material;
   if (material.bsdf == Bsdf::kEmission) return;
+  cycles4_ = material.cycles4;
   const glm::dvec3 base = NotNegative(glm::dvec3(SurfaceColor(object, primitive, point.barycentric)));
   if (material.bsdf == Bsdf::kDiffuse) {
     diffuse_ = base;
     diffuse_roughness_ = std::clamp(double(material.diffuse_roughness), 0.0, 1.0);
-    cycles4_ = material.cycles4;
     if (cycles4_ && diffuse_roughness_ > 0.0) {
       const double mean = (pi + diffuse_roughness_ * (2.0 * pi - 5.6) / 3.0) / RoughDiffuseScale(diffuse_roughness_);
       const glm::dvec3 color = glm::min(base, 1.0);
@@ -103,7 +103,7 @@ SurfaceBsdf::SurfaceBsdf(const PlacedObject& object, std::uint32_t primitive, co
   alpha_ = std::max(roughness * roughness, least_alpha);
   mirror_ = !(alpha_ >= kSmoothestAlpha);
   double eye = glm::dot(normal_, to_eye);
-  if (material.cycles4 && material.bsdf == Bsdf::kMetallicRoughness) {
+  if (cycles4_ && material.bsdf == Bsdf::kMetallicRoughness) {
     specular_normal_ = BentNormal(facing_, to_eye, normal_);
     eye = glm::dot(specular_normal_, to_eye);
   }
@@ -118,6 +118,14 @@ SurfaceBsdf::SurfaceBsdf(const PlacedObject& object, std::uint32_t primitive, co
 }
 
 glm::dvec3 SurfaceBsdf::Fresnel(double cosine) const { return fresnel_ ? f0_ + (1.0 - f0_) * Schlick(cosine) : f0_; }
+
+// Smith's masking and shadowing of both directions, over the masking of the eye's alone.
+double SurfaceBsdf::Shadowing(double eye, double light) const {
+  const double to_light = SmithG1(light, alpha_);
+  if (!cycles4_) return to_light;
+  const double to_eye = SmithG1(eye, alpha_);
+  return to_light / (to_eye + to_light - to_eye * to_light);
+}
 
 // The transmission of a dielectric coat: (1 − F) on the way in and out, scaled so that the whole lobe returns 1 − F of
 // the incoming light (the form is Ashikhmin and Shirley's, 2000). glTF's own weight, 1 − F at the half vector, would
@@ -177,7 +185,7 @@ SurfaceBsdf::Value SurfaceBsdf::Specular(const glm::dvec3& to_light) const {
   const glm::dvec3 half = sum / length;
   const double density =
       SmithG1(eye, alpha_) * GgxD(std::min(glm::dot(specular_normal_, half), 1.0), alpha_) / (4.0 * eye);
-  return {Fresnel(glm::dot(half, to_light)) * (density * SmithG1(cosine, alpha_)), density};
+  return {Fresnel(glm::dot(half, to_light)) * (density * Shadowing(eye, cosine)), density};
 }
 
 SurfaceBsdf::Bounce SurfaceBsdf::SampleDiffuse(double u, double v) const {
@@ -218,7 +226,8 @@ SurfaceBsdf::Bounce SurfaceBsdf::SampleSpecular(double u, double v) const {
   bounce.direction = glm::normalize(half * (2.0 * along) - to_eye_);
   const double cosine = glm::dot(specular_normal_, bounce.direction);
   if (!(along > 0.0) || !(cosine > 0.0) || !(glm::dot(facing_, bounce.direction) > 0.0)) return bounce;
-  bounce.weight = Fresnel(along) * (mirror_ ? 1.0 : SmithG1(cosine, alpha_));
+  const double eye = glm::dot(specular_normal_, to_eye_);
+  bounce.weight = Fresnel(along) * (mirror_ ? 1.0 : Shadowing(eye, cosine));
   bounce.density = mirror_ ? std::numeric_limits<double>::infinity() : Specular(bounce.direction).density;
   bounce.blur_density = bounce.density;
   if (!(bounce.density > 0.0)) bounce.weight = glm::dvec3(0.0);

@@ -11,9 +11,10 @@
 // Shading normals that differ from the interpolated ones take some of it away: ShadingNormalShadow.
 //
 // Walter et al., "Microfacet models for refraction", EGSR 2007; Heitz, "Sampling the GGX distribution of visible
-// normals", JCGT 2018. Masking and shadowing are Smith's, separable, as in glTF 2.0 and in Cycles 3.4. Light between
-// microfacets is lost, so no surface returns more than it receives. White under a coat is the exception, by 0.13% at
-// most, because the diffuse part depends on the eye's angle alone.
+// normals", JCGT 2018. Masking and shadowing are Smith's: separable in Cycles 3, G1(eye)·G1(light), and correlated by
+// height in Cycles 4, 1 / (1/G1(eye) + 1/G1(light) − 1), after Heitz, "Understanding the masking-shadowing function",
+// JCGT 2014. Light between microfacets is lost, so no surface returns more than it receives. White under a coat is the
+// exception, by 0.13% at most, because the diffuse part depends on the eye's angle alone.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -64,6 +65,7 @@ class SurfaceBsdf {
   double BounceOnce(double cosine) const;
   double Coupling(double cosine) const;
   glm::dvec3 Fresnel(double cosine) const;
+  double Shadowing(double eye, double light) const;
 
   glm::dvec3 facing_;
   glm::dvec3 normal_;

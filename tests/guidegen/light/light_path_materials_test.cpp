@@ -13,9 +13,9 @@ namespace {
 
 double Schlick(double cosine) { return std::pow(1.0 - cosine, 5.0); }
 
-double SmithG1(double cosine, double alpha) {
+double SmithLambda(double cosine, double alpha) {
   const double tangent2 = 1.0 / (cosine * cosine) - 1.0;
-  return 2.0 / (1.0 + std::sqrt(1.0 + alpha * alpha * tangent2));
+  return 0.5 * (std::sqrt(1.0 + alpha * alpha * tangent2) - 1.0);
 }
 
 double GgxD(double cosine, double alpha) {
@@ -28,7 +28,15 @@ struct Paint {
   double base = 1.0;
   double metallic = 0.0;
   double roughness = 1.0;
+  bool cycles4 = false;
 };
+
+// Masking and shadowing: each for itself in Cycles 3, correlated by height in Cycles 4.
+double SmithG2(const Paint& p, double eye, double light) {
+  const double alpha = p.roughness * p.roughness;
+  const double e = SmithLambda(eye, alpha), l = SmithLambda(light, alpha);
+  return p.cycles4 ? 1.0 / (1.0 + e + l) : 1.0 / ((1.0 + e) * (1.0 + l));
+}
 
 // Radiance towards `eye` per irradiance of light from `light`, on a surface that faces +Z. What the diffuse lobe gets
 // is (1 − F) at both angles, scaled so that it returns 1 − F of what comes in.
@@ -43,12 +51,13 @@ double SpecularLobe(const Paint& p, const glm::dvec3& eye, const glm::dvec3& lig
   const glm::dvec3 half = glm::normalize(eye + light);
   const double f0 = 0.04 * (1.0 - p.metallic) + p.base * p.metallic;
   const double fresnel = f0 + (1.0 - f0) * Schlick(glm::dot(half, light));
-  return fresnel * GgxD(half.z, alpha) * SmithG1(eye.z, alpha) * SmithG1(light.z, alpha) / (4.0 * eye.z * light.z);
+  return fresnel * GgxD(half.z, alpha) * SmithG2(p, eye.z, light.z) / (4.0 * eye.z * light.z);
 }
 
 Material Coated(const Paint& p) {
   Material material = Painted(Bsdf::kMetallicRoughness, float(p.base), float(p.roughness));
   material.metallic = float(p.metallic);
+  material.cycles4 = p.cycles4;
   return material;
 }
 
@@ -82,7 +91,7 @@ TextureUse TwoTexels(Scene& scene, const std::vector<std::uint16_t>& left, const
 }
 
 // What the lobes return of a sky of 1, by a sum of n × n directions whose error falls as n^-2. The diffuse one: 1 − F
-// of the way out. The specular one: F · G1(eye) · G1(light) times the cosine between eye and half vector over those of
+// of the way out. The specular one: F · G2 times the cosine between eye and half vector over those of
 // the two, in the mean over half vectors that are spread as D · cosine is: with tan² = α² (1 − q) / q for q even in
 // [0, 1], and q = s⁴ to have more of them where they lie flat.
 double Integrated(const Paint& p, double eye, int n) {
@@ -97,10 +106,10 @@ double Integrated(const Paint& p, double eye, int n) {
       const double along = std::sqrt((1.0 - z * z) * (1.0 - eye * eye)) * std::cos(around) + z * eye;
       const double light = 2.0 * along * z - eye;
       if (!(along > 0.0) || !(light > 0.0)) continue;
-      sum += 4.0 * s * s * s * (f0 + (1.0 - f0) * Schlick(along)) * SmithG1(light, alpha) * along / z;
+      sum += 4.0 * s * s * s * (f0 + (1.0 - f0) * Schlick(along)) * SmithG2(p, eye, light) * along / z;
     }
   }
-  const double specular = sum / (double(n) * n) * SmithG1(eye, alpha) / eye;
+  const double specular = sum / (double(n) * n) / eye;
   return p.base * (1.0 - p.metallic) * 0.96 * (1.0 - Schlick(eye)) + specular;
 }
 
@@ -171,7 +180,7 @@ TEST(MaterialFurnace, ARoughSurfaceReturnsWhatItsLobesIntegrateTo) {
     for (const double roughness : {0.3, 0.5, 0.7, 1.0}) {
       for (const double metallic : {0.0, 0.5, 1.0}) {
         for (const double height : {2.1, 0.3}) {
-          const Paint paint{base, metallic, roughness};
+          const Paint paint{base, metallic, roughness, roughness == 1.0};
           const double eye = height / std::hypot(3.0, height);
           const double expected = Integrated(paint, eye, 100);
           EXPECT_LE(expected, kMostReturned);
@@ -188,15 +197,18 @@ TEST(MaterialLobes, ASunGivesTheFormulas) {
   for (const double roughness : {0.1, 0.3, 0.6, 1.0}) {
     for (const double metallic : {0.0, 0.5, 1.0}) {
       for (const double angle : {0.0, 0.7, 1.4}) {
-        const Paint paint{0.6, metallic, roughness};
-        Scene scene = Floor(Coated(paint));
-        scene.lights = {SlantedSun(angle)};
-        const auto result = Render(scene, SlantedAt(0.0), Paths(1, {Layer::kLpeLDE, Layer::kLpeLSE}));
-        const double diffuse = DiffuseLobe(paint, kSlantedEye, ToSun(angle)) * std::cos(angle);
-        const double specular = SpecularLobe(paint, kSlantedEye, ToSun(angle)) * std::cos(angle);
-        EXPECT_NEAR(Center(result, Layer::kLpeLDE), diffuse, 1e-5 * diffuse + 1e-9) << roughness << " " << metallic;
-        // The picture's one pixel is not quite at 45°, which a sharp highlight feels.
-        EXPECT_NEAR(Center(result, Layer::kLpeLSE), specular, 2e-4 * specular + 1e-9) << roughness << " " << metallic;
+        for (const bool cycles4 : {false, true}) {
+          const Paint paint{0.6, metallic, roughness, cycles4};
+          SCOPED_TRACE(::testing::Message() << roughness << " " << metallic << " " << angle << " " << cycles4);
+          Scene scene = Floor(Coated(paint));
+          scene.lights = {SlantedSun(angle)};
+          const auto result = Render(scene, SlantedAt(0.0), Paths(1, {Layer::kLpeLDE, Layer::kLpeLSE}));
+          const double diffuse = DiffuseLobe(paint, kSlantedEye, ToSun(angle)) * std::cos(angle);
+          const double specular = SpecularLobe(paint, kSlantedEye, ToSun(angle)) * std::cos(angle);
+          EXPECT_NEAR(Center(result, Layer::kLpeLDE), diffuse, 1e-5 * diffuse + 1e-9);
+          // The picture's one pixel is not quite at 45°, which a sharp highlight feels.
+          EXPECT_NEAR(Center(result, Layer::kLpeLSE), specular, 2e-4 * specular + 1e-9);
+        }
       }
     }
   }
