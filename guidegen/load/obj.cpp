@@ -95,6 +95,7 @@ class ObjLoader {
   Expected<Scene> Load() {
     SCUMBLE_RETURN_IF_ERROR(ParseObj(path_, warnings_, contents_));
     SCUMBLE_RETURN_IF_ERROR(CheckAttributes());
+    DropNormalsOfNone();
     for (const tinyobj::shape_t& shape : shapes_) SCUMBLE_RETURN_IF_ERROR(CheckShape(shape));
     ChooseOrigins();
     PlacePositions();
@@ -117,6 +118,21 @@ class ObjLoader {
       }
     }
     return Ok();
+  }
+
+  // Shapes of subdivision libraries name a normal at each corner, and hold none.
+  void DropNormalsOfNone() {
+    if (!attributes_.normals.empty()) return;
+    for (tinyobj::shape_t& shape : shapes_) {
+      bool is_named = false;
+      for (tinyobj::index_t& index : shape.mesh.indices) {
+        is_named |= index.normal_index >= 0;
+        index.normal_index = -1;
+      }
+      if (!is_named) continue;
+      warnings_.Add("faces name normals, but the file has none: they are taken for faces without",
+                    "'" + Excerpt(shape.name, 80) + "'");
+    }
   }
 
   glm::dvec3 PlaceOf(std::size_t vertex) const {
