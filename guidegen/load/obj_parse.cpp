@@ -26,11 +26,32 @@ void DropEmptyIndices(std::string::iterator begin, std::string::iterator end) {
   }
 }
 
+// The corners of each face, of which it takes three at least; empty if none has more than 255.
+class CornerCounter {
+ public:
+  void Add(std::string::const_iterator begin, std::string::const_iterator end) {
+    std::uint32_t corners = 0;
+    bool in_word = false;
+    for (auto c = begin; c != end; ++c) {
+      corners += !IsBlank(*c) && !in_word;
+      in_word = !IsBlank(*c);
+    }
+    if (corners < 3) return;
+    most_ = std::max(most_, corners);
+    counts_.push_back(corners);
+  }
+  std::vector<std::uint32_t> Take() { return most_ > 255 ? std::move(counts_) : std::vector<std::uint32_t>(); }
+
+ private:
+  std::vector<std::uint32_t> counts_;
+  std::uint32_t most_ = 0;
+};
+
 // Turns lines into comments that tinyobjloader would store but no code here reads; line numbers stay. A subdivision tag
 // of 20 bytes becomes 360 KB, and again in each shape. The lines and points of an object are copied at each change of
 // material; the first index of each kind shows that they exist. Returns whether smoothing groups are mentioned, `s off`
 // included, which tinyobjloader does not tell from silence.
-bool PrepareText(std::string& text) {
+bool PrepareText(std::string& text, CornerCounter& faces) {
   bool has_smoothing = false;
   const auto ends_line = [](char c) { return c == '\n' || c == '\r'; };
   bool has_lines = false, has_points = false;  // in this object or group
@@ -39,7 +60,10 @@ bool PrepareText(std::string& text) {
     const auto what = std::find_if_not(begin, end, IsBlank);
     begin = end == text.end() ? end : end + 1;
     if (what == end || what + 1 == end || !IsBlank(what[1])) continue;
-    if (*what == 'f') DropEmptyIndices(what, end);
+    if (*what == 'f') {
+      DropEmptyIndices(what, end);
+      faces.Add(what + 1, end);
+    }
     if (*what == 'o' || *what == 'g') has_lines = has_points = false;
     has_smoothing |= *what == 's';
     if (*what == 't') *what = '#';
@@ -156,7 +180,9 @@ Status ParseObj(const std::filesystem::path& path, WarningCounter& warnings, Obj
   if (bytes.empty()) return InputError(file + " is empty; expected a Wavefront OBJ scene");
   SCUMBLE_RETURN_IF_ERROR(CheckTextEncoding(file, bytes));
   std::string text = AsTextWithoutMark(bytes);
-  contents.has_smoothing = PrepareText(text);
+  CornerCounter faces;
+  contents.has_smoothing = PrepareText(text, faces);
+  contents.corner_counts = faces.Take();
   std::istringstream stream(std::move(text));
   LibraryReader library(path, warnings);
   std::string warning, error;
