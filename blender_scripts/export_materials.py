@@ -99,7 +99,7 @@ def keep_or_cut(tree, reader, node, name):
         source = previous(source.node.inputs[0])
     if source is not None and source.node.type == "TEX_IMAGE" and image_fault(source.node, "data") is None:
         return None
-    value = reader.number(node.inputs[name])
+    value = min(max(reader.number(node.inputs[name]), 0.0), 1.0)  # as Cycles clamps it
     clear_links(tree, node.inputs[name])
     node.inputs[name].default_value = value
     return value
@@ -227,6 +227,8 @@ def simplify(materials, unsupported):
         holes, bends, bsdf = False, export_bends.Bends(), diffuse(copy.diffuse_color[:3])
         if copy.use_nodes and copy.node_tree:
             bsdf, bends, holes = simplify_nodes(copy, Reader(name, unsupported))
+        # Old files hold values beyond 1 here, which the exporter writes for a material without nodes.
+        copy.roughness, copy.metallic = min(copy.roughness, 1.0), min(copy.metallic, 1.0)
         # These settings are the viewport's; Cycles shows both sides of every surface and always applies alpha.
         copy.use_backface_culling = False
         copy.blend_method = "BLEND" if holes else "OPAQUE"

@@ -130,6 +130,7 @@ enum class SphereDoubt {
   kNoCircle,      // its outline is no circle
   kShadow,        // it would be one but for darker ground below it
   kUnevenGround,  // the ground has no one colour
+  kSmall,         // the paint is less than 30 pixels across
 };
 
 // A painted sphere, which fills a square picture exactly; or any painted scene with its guides.

@@ -53,6 +53,9 @@ std::string WhyNone(const FoundSphere& found, bool is_square) {
       return "its ground has several colours, as paper that is lit unevenly: cut the sphere out onto transparency, or "
              "crop the picture to the square around it; or give the guides of the scene that it shows" +
              fills;
+    case SphereDoubt::kSmall:
+      return "its paint is less than 30 pixels across, too small to find a sphere in: paint it larger, or crop the "
+             "picture to the square around the sphere";
     case SphereDoubt::kNone:
     case SphereDoubt::kNoCircle:
       break;

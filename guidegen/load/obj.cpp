@@ -11,11 +11,13 @@
 #include <numeric>
 #include <span>
 #include <unordered_map>
+#include <utility>
 
 #include "core/image/color.h"
 #include "core/image/hash.h"
 #include "core/io/picture_file.h"
 #include "guidegen/load/auto_smooth.h"
+#include "guidegen/load/doubled_faces.h"
 #include "guidegen/load/loader_util.h"
 #include "guidegen/load/mesh_normals.h"
 #include "guidegen/load/mtl_materials.h"
@@ -95,7 +97,8 @@ class ObjLoader {
   Expected<Scene> Load() {
     SCUMBLE_RETURN_IF_ERROR(ParseObj(path_, warnings_, contents_));
     SCUMBLE_RETURN_IF_ERROR(CheckAttributes());
-    for (const tinyobj::shape_t& shape : shapes_) SCUMBLE_RETURN_IF_ERROR(CheckShape(shape));
+    DropNormalsOfNone();
+    for (std::size_t s = 0; s < shapes_.size(); ++s) SCUMBLE_RETURN_IF_ERROR(CheckShape(s));
     ChooseOrigins();
     PlacePositions();
     for (std::size_t s = 0; s < shapes_.size(); ++s) AddShape(s);
@@ -117,6 +120,21 @@ class ObjLoader {
       }
     }
     return Ok();
+  }
+
+  // Shapes of subdivision libraries name a normal at each corner, and hold none.
+  void DropNormalsOfNone() {
+    if (!attributes_.normals.empty()) return;
+    for (tinyobj::shape_t& shape : shapes_) {
+      bool is_named = false;
+      for (tinyobj::index_t& index : shape.mesh.indices) {
+        is_named |= index.normal_index >= 0;
+        index.normal_index = -1;
+      }
+      if (!is_named) continue;
+      warnings_.Add("faces name normals, but the file has none: they are taken for faces without",
+                    "'" + Excerpt(shape.name, 80) + "'");
+    }
   }
 
   glm::dvec3 PlaceOf(std::size_t vertex) const {
@@ -212,13 +230,25 @@ class ObjLoader {
                       "; the file is corrupt or was cut short");
   }
 
-  Status CheckShape(const tinyobj::shape_t& shape) {
+  // The corners of each of a shape's faces. Shapes and their faces are in the file's order.
+  std::vector<std::uint32_t> CornerCounts(const tinyobj::mesh_t& mesh) {
+    const std::size_t first = counted_faces_, faces = mesh.num_face_vertices.size();
+    counted_faces_ += faces;
+    if (counted_faces_ > contents_.corner_counts.size()) {
+      return {mesh.num_face_vertices.begin(), mesh.num_face_vertices.end()};
+    }
+    const auto begin = contents_.corner_counts.begin() + static_cast<std::ptrdiff_t>(first);
+    return {begin, begin + static_cast<std::ptrdiff_t>(faces)};
+  }
+
+  Status CheckShape(std::size_t shape_index) {
+    const tinyobj::shape_t& shape = shapes_[shape_index];
     const tinyobj::mesh_t& mesh = shape.mesh;
-    const std::size_t corners =
-        std::accumulate(mesh.num_face_vertices.begin(), mesh.num_face_vertices.end(), std::size_t(0));
-    if (corners != mesh.indices.size()) {
-      return InputError(file_ + ": '" + Excerpt(shape.name, 80) +
-                        "' has a face of more than 255 corners: " + "triangulate it before exporting");
+    const std::vector<std::uint32_t>& counts = corner_counts_.emplace_back(CornerCounts(mesh));
+    if (std::accumulate(counts.begin(), counts.end(), std::size_t(0)) != mesh.indices.size()) {
+      return InputError(
+          file_ + ": '" + Excerpt(shape.name, 80) +
+          "' has a face of more than 255 corners that cannot be counted: triangulate it before exporting");
     }
     if (!shape.lines.indices.empty() || !shape.points.indices.empty()) {
       warnings_.Add("points and lines are left out, only faces are seen", "'" + Excerpt(shape.name, 80) + "'");
@@ -231,18 +261,17 @@ class ObjLoader {
       SCUMBLE_RETURN_IF_ERROR(CheckIndex(index.texcoord_index, uvs, shape.name));
       SCUMBLE_RETURN_IF_ERROR(CheckIndex(index.normal_index, normals, shape.name));
     }
-    for (const std::size_t count : mesh.num_face_vertices) {
+    for (const std::size_t count : counts) {
       if (count >= 3) SCUMBLE_RETURN_IF_ERROR(budget_.Take(file_, count, count - 2));
     }
     return Ok();
   }
 
   void AddShape(std::size_t shape_index) {
-    const tinyobj::mesh_t& mesh = shapes_[shape_index].mesh;
     std::size_t first = 0;
-    for (std::size_t f = 0; f < mesh.num_face_vertices.size(); ++f) {
-      AddFace(shape_index, f, first, mesh.num_face_vertices[f]);
-      first += mesh.num_face_vertices[f];
+    for (std::size_t f = 0; f < corner_counts_[shape_index].size(); ++f) {
+      AddFace(shape_index, f, first, corner_counts_[shape_index][f]);
+      first += corner_counts_[shape_index][f];
     }
   }
 
@@ -302,45 +331,82 @@ class ObjLoader {
     const auto rule = contents_.has_smoothing ? MissingNormals::Rule::kGroups : MissingNormals::Rule::kAngle;
     const std::optional<double> degrees = missing_.Take(rule, without_normals_);
     const std::vector<std::uint32_t> weld = WeldFrames();
-    std::vector<glm::uvec3> triangles;
+    std::vector<glm::uvec3> triangles, places;
     std::vector<std::uint32_t> faces;
     for (const Triangle& triangle : triangles_) {
       const Corner* const c = triangle.corners;
       triangles.emplace_back(c[0].position, c[1].position, c[2].position);
+      places.emplace_back(weld[triangles.back().x], weld[triangles.back().y], weld[triangles.back().z]);
       faces.push_back(static_cast<std::uint32_t>(triangle.face));
     }
+    const std::vector<DoubledFace> doubled = FindDoubledFaces(positions_, places, faces);
+    const auto is_kept = [&](std::size_t t) { return doubled.empty() || doubled[faces[t]].under == faces[t]; };
+    std::vector<std::size_t> kept;
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+      if (!is_kept(t)) continue;
+      triangles[kept.size()] = triangles[t], faces[kept.size()] = faces[t];
+      kept.push_back(t);
+    }
+    triangles.resize(kept.size()), faces.resize(kept.size());
     const SmoothingInput input{positions_, triangles, weld, faces};
     // Where there are groups, these are the normals of faces outside of all groups.
     CornerNormals normals = AutoSmoothNormals(input, degrees.value_or(0.0));
-    if (!degrees) SmoothInsideGroups(weld, normals);
-    for (std::size_t t = 0; t < triangles_.size(); ++t) {
+    if (!degrees) SmoothInsideGroups(kept, weld, normals);
+    for (std::size_t k = 0; k < kept.size(); ++k) {
       for (int i = 0; i < 3; ++i) {
-        Corner& corner = triangles_[t].corners[i];
-        if (corner.normal < 0) corner.normal = -1 - std::int64_t(normals.of_corners[t][i]);
+        Corner& corner = triangles_[kept[k]].corners[i];
+        if (corner.normal < 0) corner.normal = -1 - std::int64_t(normals.of_corners[k][i]);
       }
     }
     made_normals_ = std::move(normals.normals);
+    if (!doubled.empty()) TakeNormalsFromUnder(doubled, weld);
   }
 
-  // All faces of a group at one place share a normal there.
-  void SmoothInsideGroups(std::span<const std::uint32_t> weld, CornerNormals& normals) const {
+  // Faces that lie on others have the normals of those, turned over as they are.
+  void TakeNormalsFromUnder(std::span<const DoubledFace> doubled, std::span<const std::uint32_t> weld) {
+    std::vector<bool> is_under(doubled.size(), false);
+    for (std::size_t f = 0; f < doubled.size(); ++f) {
+      if (doubled[f].under != f) is_under[doubled[f].under] = true;
+    }
+    std::map<std::pair<std::size_t, std::uint32_t>, Corner> corners;  // by face and place
+    std::map<std::int64_t, std::int64_t> turned;
+    for (Triangle& triangle : triangles_) {
+      const DoubledFace& face = doubled[triangle.face];
+      for (Corner& corner : triangle.corners) {
+        const std::uint32_t place = weld[std::size_t(corner.position)];
+        if (is_under[triangle.face]) corners.try_emplace({triangle.face, place}, corner);
+        if (face.under == triangle.face || corner.normal >= 0) continue;
+        const Corner& under = corners.at({face.under, place});
+        corner.normal = under.normal;
+        if (!face.is_turned) continue;
+        const auto [found, is_new] = turned.try_emplace(under.normal, -1 - std::int64_t(made_normals_.size()));
+        if (is_new) made_normals_.push_back(-NormalAt(under));
+        corner.normal = found->second;
+      }
+    }
+  }
+
+  // All faces of a group at one place share a normal there. `normals` are those of the triangles in `kept`.
+  void SmoothInsideGroups(std::span<const std::size_t> kept, std::span<const std::uint32_t> weld,
+                          CornerNormals& normals) const {
     std::unordered_map<SmoothKey, std::uint32_t, SmoothKeyHash> ids;
     std::vector<glm::vec3> positions;
     std::vector<glm::uvec3> triangles;
     const auto first = static_cast<std::uint32_t>(normals.normals.size());
-    for (std::size_t t = 0; t < triangles_.size(); ++t) {
-      const unsigned group = triangles_[t].smoothing_group;
+    for (std::size_t k = 0; k < kept.size(); ++k) {
+      const Triangle& triangle = triangles_[kept[k]];
+      const unsigned group = triangle.smoothing_group;
       if (group == 0) continue;
       glm::uvec3 indices(0);
       for (int i = 0; i < 3; ++i) {
-        const std::uint32_t place = weld[std::size_t(triangles_[t].corners[i].position)];
+        const std::uint32_t place = weld[std::size_t(triangle.corners[i].position)];
         const auto [it, is_new] =
             ids.try_emplace(SmoothKey{place, group}, static_cast<std::uint32_t>(positions.size()));
         if (is_new) positions.push_back(positions_[place]);
         indices[i] = it->second;
       }
       triangles.push_back(indices);
-      normals.of_corners[t] = indices + first;
+      normals.of_corners[k] = indices + first;
     }
     std::vector<std::uint32_t> own(positions.size());
     std::iota(own.begin(), own.end(), 0u);
@@ -504,6 +570,8 @@ class ObjLoader {
   MissingNormals missing_;
   std::size_t without_normals_ = 0;  // triangles with a corner without a normal
   std::vector<glm::vec3> made_normals_;
+  std::vector<std::vector<std::uint32_t>> corner_counts_;  // of the faces of each shape
+  std::size_t counted_faces_ = 0;
   std::size_t faces_ = 0;
 };
 

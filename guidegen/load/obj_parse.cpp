@@ -1,23 +1,57 @@
 #include "guidegen/load/obj_parse.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdlib>
 #include <exception>
 #include <map>
 #include <new>
 #include <set>
 #include <sstream>
 #include <system_error>
+#include <utility>
 
 namespace scumble {
 namespace {
 
 bool IsBlank(char c) { return c == ' ' || c == '\t'; }
 
+// Corners such as `6/7/`, whose last index is left out with its slash kept, are read as `6/7`.
+void DropEmptyIndices(std::string::iterator begin, std::string::iterator end) {
+  bool at_end = true;
+  for (auto c = end; c != begin;) {
+    --c;
+    if (*c == '/' && at_end) *c = ' ';
+    at_end = IsBlank(*c);
+  }
+}
+
+// The corners of each face, of which it takes three at least; empty if none has more than 255.
+class CornerCounter {
+ public:
+  void Add(std::string::const_iterator begin, std::string::const_iterator end) {
+    std::uint32_t corners = 0;
+    bool in_word = false;
+    for (auto c = begin; c != end; ++c) {
+      corners += !IsBlank(*c) && !in_word;
+      in_word = !IsBlank(*c);
+    }
+    if (corners < 3) return;
+    most_ = std::max(most_, corners);
+    counts_.push_back(corners);
+  }
+  std::vector<std::uint32_t> Take() { return most_ > 255 ? std::move(counts_) : std::vector<std::uint32_t>(); }
+
+ private:
+  std::vector<std::uint32_t> counts_;
+  std::uint32_t most_ = 0;
+};
+
 // Turns lines into comments that tinyobjloader would store but no code here reads; line numbers stay. A subdivision tag
 // of 20 bytes becomes 360 KB, and again in each shape. The lines and points of an object are copied at each change of
 // material; the first index of each kind shows that they exist. Returns whether smoothing groups are mentioned, `s off`
 // included, which tinyobjloader does not tell from silence.
-bool BlankUnused(std::string& text) {
+bool PrepareText(std::string& text, CornerCounter& faces) {
   bool has_smoothing = false;
   const auto ends_line = [](char c) { return c == '\n' || c == '\r'; };
   bool has_lines = false, has_points = false;  // in this object or group
@@ -26,6 +60,10 @@ bool BlankUnused(std::string& text) {
     const auto what = std::find_if_not(begin, end, IsBlank);
     begin = end == text.end() ? end : end + 1;
     if (what == end || what + 1 == end || !IsBlank(what[1])) continue;
+    if (*what == 'f') {
+      DropEmptyIndices(what, end);
+      faces.Add(what + 1, end);
+    }
     if (*what == 'o' || *what == 'g') has_lines = has_points = false;
     has_smoothing |= *what == 's';
     if (*what == 't') *what = '#';
@@ -40,6 +78,40 @@ bool BlankUnused(std::string& text) {
     }
   }
   return has_smoothing;
+}
+
+// The words of a line, at most two.
+std::array<std::string, 2> FirstWords(const std::string& text, std::size_t begin, std::size_t end) {
+  std::istringstream line(text.substr(begin, std::min<std::size_t>(end - begin, 256)));
+  std::array<std::string, 2> words;
+  line >> words[0] >> words[1];
+  return words;
+}
+
+// MeshLab means opacity by `Tr`, which is transparency, and writes `Tr 1` for all that it draws. Read to the letter,
+// nothing of the model would be seen. Such lines become comments; where `d` stands beside them it counts anyway.
+void DropWholeTransparency(std::string& library, WarningCounter& warnings) {
+  std::string material;
+  bool is_dropped = false, has_dissolve = false;
+  const auto tell = [&] {
+    if (is_dropped && !has_dissolve) {
+      warnings.Add("'Tr 1' is taken for opaque, as MeshLab means it; 'd 0' makes a material invisible",
+                   "material '" + Excerpt(material, 80) + "'");
+    }
+    is_dropped = has_dissolve = false;
+  };
+  for (std::size_t begin = 0; begin < library.size();) {
+    const std::size_t end = std::min(library.find_first_of("\r\n", begin), library.size());
+    const auto [key, value] = FirstWords(library, begin, end);
+    if (key == "newmtl") tell(), material = value;
+    has_dissolve |= key == "d";
+    if (key == "Tr" && std::strtod(value.c_str(), nullptr) >= 1.0) {
+      library[library.find('T', begin)] = '#';
+      is_dropped = true;
+    }
+    begin = end + 1;
+  }
+  tell();
 }
 
 // Reads material libraries from regular files only, each file once, and names missing ones.
@@ -63,7 +135,9 @@ class LibraryReader : public tinyobj::MaterialReader {
       if (fault_) fault_ = readable;
       return false;
     }
-    std::istringstream stream(AsTextWithoutMark(*bytes));
+    std::string text = AsTextWithoutMark(*bytes);
+    DropWholeTransparency(text, warnings_);
+    std::istringstream stream(std::move(text));
     tinyobj::LoadMtl(indices, materials, &stream, warning, error);
     return true;
   }
@@ -78,6 +152,21 @@ class LibraryReader : public tinyobj::MaterialReader {
   std::set<std::filesystem::path> read_;
 };
 
+// What tinyobjloader says of a line that it cannot read ends with "line 16.)"; the line itself says more.
+std::string WhyUnreadable(const std::string& error, const std::string& text) {
+  const std::string said = Excerpt(error.empty() ? "no reason given" : error, 300);
+  const std::size_t at = error.rfind("line ");
+  if (at == std::string::npos || error.find("`f' line") == std::string::npos) return said;
+  const long number = std::strtol(error.c_str() + at + 5, nullptr, 10);
+  std::istringstream lines(text);
+  std::string line;
+  for (long i = 0; i < number; ++i) {
+    if (!std::getline(lines, line)) return said;
+  }
+  return "line " + std::to_string(number) + " is '" + Excerpt(line, 80) +
+         "', a face whose corners are no indices: they count from 1, or back from -1; export it again";
+}
+
 }  // namespace
 
 std::filesystem::path BesideScene(const std::filesystem::path& scene, std::string name) {
@@ -91,7 +180,9 @@ Status ParseObj(const std::filesystem::path& path, WarningCounter& warnings, Obj
   if (bytes.empty()) return InputError(file + " is empty; expected a Wavefront OBJ scene");
   SCUMBLE_RETURN_IF_ERROR(CheckTextEncoding(file, bytes));
   std::string text = AsTextWithoutMark(bytes);
-  contents.has_smoothing = BlankUnused(text);
+  CornerCounter faces;
+  contents.has_smoothing = PrepareText(text, faces);
+  contents.corner_counts = faces.Take();
   std::istringstream stream(std::move(text));
   LibraryReader library(path, warnings);
   std::string warning, error;
@@ -109,7 +200,7 @@ Status ParseObj(const std::filesystem::path& path, WarningCounter& warnings, Obj
   }
   SCUMBLE_RETURN_IF_ERROR(library.fault());
   if (ok) return Ok();
-  return InputError(file + " is not a valid OBJ file: " + Excerpt(error.empty() ? "no reason given" : error, 300));
+  return InputError(file + " is not a valid OBJ file: " + WhyUnreadable(error, stream.str()));
 }
 
 }  // namespace scumble

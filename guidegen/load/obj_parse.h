@@ -3,6 +3,7 @@
 
 #include <tiny_obj_loader.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -16,6 +17,9 @@ struct ObjContents {
   tinyobj::attrib_t attributes;
   std::vector<tinyobj::shape_t> shapes;  // faces are polygons; indices are not checked
   std::vector<tinyobj::material_t> materials;
+  // Corners of each face of the file, in order, where a face has more than 255: tinyobjloader of Debian 12 counts them
+  // in a byte. Empty: its own counts are right.
+  std::vector<std::uint32_t> corner_counts;
   bool has_smoothing = false;  // there are lines `s`; faces before the first one are in no smoothing group
 };
 

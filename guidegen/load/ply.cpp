@@ -207,8 +207,12 @@ class PlyLoader {
   Status ParseHeader(std::span<const unsigned char> bytes) {
     std::size_t at = 0;
     bool has_format = false;
+    // Rhinoceros ends lines by a carriage return alone; binary values may begin with any byte after it.
+    constexpr std::size_t kMagic = 3;
+    const bool returns_alone = bytes.size() > kMagic + 1 && bytes[kMagic] == '\r' && bytes[kMagic + 1] != '\n';
+    const unsigned char end_of_line = returns_alone ? '\r' : '\n';
     for (int line_number = 1; at < bytes.size(); ++line_number) {
-      const auto end = std::find(bytes.begin() + static_cast<std::ptrdiff_t>(at), bytes.end(), '\n');
+      const auto end = std::find(bytes.begin() + static_cast<std::ptrdiff_t>(at), bytes.end(), end_of_line);
       std::string line(bytes.begin() + static_cast<std::ptrdiff_t>(at), end);
       at += line.size() + (end == bytes.end() ? 0 : 1);
       if (!line.empty() && line.back() == '\r') line.pop_back();

@@ -110,12 +110,20 @@ Light KeyLight(const Camera& camera, double azimuth, double elevation) {
 
 namespace {
 
-// Whether the scene has a light, a surface that emits, or a world that does.
-bool HasLight(const Scene& scene) {
-  if (!scene.lights.empty() || scene.world_radiance != glm::vec3(0.0f)) return true;
-  return std::any_of(scene.instances.begin(), scene.instances.end(), [&](const Instance& instance) {
-    return scene.materials[scene.meshes[instance.mesh].material].emission != glm::vec3(0.0f);
-  });
+enum class LightOf { kNone, kGlow, kLamps };
+
+// Surfaces that emit are lamps. Where a texture says at which places a surface glows, as a helmet's lights, they hardly
+// light anything; all of Blender's Emission does.
+LightOf FindLight(const Scene& scene) {
+  if (!scene.lights.empty() || scene.world_radiance != glm::vec3(0.0f)) return LightOf::kLamps;
+  LightOf found = LightOf::kNone;
+  for (const Instance& instance : scene.instances) {
+    const Material& material = scene.materials[scene.meshes[instance.mesh].material];
+    if (material.emission == glm::vec3(0.0f)) continue;
+    if (material.emission_texture.texture < 0 || material.bsdf == Bsdf::kEmission) return LightOf::kLamps;
+    found = LightOf::kGlow;
+  }
+  return found;
 }
 
 }  // namespace
@@ -144,11 +152,13 @@ Expected<PreparedView> PrepareView(Scene& scene, const std::string& camera_name,
     }
   }
   if (prepared.camera.border) prepared.notes.push_back(BorderNote(prepared.camera));
-  if (needs_light && !HasLight(scene)) {
+  const LightOf light = needs_light ? FindLight(scene) : LightOf::kLamps;
+  if (light != LightOf::kLamps) {
     scene.lights.push_back(KeyLight(prepared.camera));
     std::ostringstream note;
-    note << scene.name << " has no light: lit by a sun at azimuth " << kKeyLightAzimuth << "°, elevation "
-         << kKeyLightElevation << "° of the view";
+    note << scene.name << (light == LightOf::kGlow ? " has no light but textures that glow" : " has no light")
+         << ": lit by a sun at azimuth " << kKeyLightAzimuth << "°, elevation " << kKeyLightElevation
+         << "° of the view";
     prepared.notes.push_back(note.str());
   }
   return prepared;

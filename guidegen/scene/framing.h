@@ -26,8 +26,9 @@ Camera FramingCamera(const Scene& scene, const ViewAngles& view, double aspect);
 Light KeyLight(const Camera& camera, double azimuth = kKeyLightAzimuth, double elevation = kKeyLightElevation);
 
 // Prepares the scene for rendering. Picks the camera by name (empty: the first; none in the file or `view` given: a
-// framing one). Adds the key light to the scene if it has no light and `needs_light`. Each such decision is one line of
-// `notes`, for stderr. An unknown camera name is a usage error that lists the names in the file.
+// framing one). Adds the key light to the scene if it has no light and `needs_light`; a surface that glows by a texture
+// is no light. Each such decision is one line of `notes`, for stderr. An unknown camera name is a usage error that
+// lists the names in the file.
 struct PreparedView {
   Camera camera;
   std::vector<std::string> notes;

@@ -105,11 +105,13 @@ fs::path In(const ScratchFolder& scratch, const char* name) {
 
 constexpr const char *kStartFile = "start.glb", *kRateFile = "fps", *kFilesFile = "files";
 
-void RequestBlenderAnimation(const ScratchFolder& scratch, const BlenderRequest& options,
+// A frame that is named may be one of a range, and is seen as that is. A still is seen as it stands.
+void RequestBlenderAnimation(const ScratchFolder& scratch, const BlenderRequest& options, bool is_of_range,
                              std::vector<std::string>& arguments) {
   arguments.insert(arguments.end(),
-                   {"--fps-file", In(scratch, kRateFile).string(), "--files-file", In(scratch, kFilesFile).string(),
-                    "--start-file", In(scratch, kStartFile).string()});
+                   {"--fps-file", In(scratch, kRateFile).string(), "--files-file", In(scratch, kFilesFile).string()});
+  if (!is_of_range) return;
+  arguments.insert(arguments.end(), {"--start-file", In(scratch, kStartFile).string()});
   if (options.wants_start) arguments.push_back("--start-always");
 }
 
@@ -148,7 +150,7 @@ Expected<Scene> LoadBlenderScene(const std::string& path, const BlenderRequest& 
   const ScratchFolder scratch(context);
   const fs::path exported = In(scratch, "scene.glb"), log = In(scratch, "log");
   SCUMBLE_ASSIGN(std::vector<std::string> arguments, ExportCommand(path, options, exported, context));
-  if (animation) RequestBlenderAnimation(scratch, options, arguments);
+  if (animation) RequestBlenderAnimation(scratch, options, options.frame.has_value(), arguments);
   if (options.frame) arguments.insert(arguments.end(), {"--frame", std::to_string(*options.frame)});
   context.Note(path + ": " + arguments.front() + " exports it" +
                (options.frame ? " at frame " + std::to_string(*options.frame) : std::string()));
@@ -176,7 +178,7 @@ Expected<std::unique_ptr<BlenderRange>> BlenderRange::Start(const std::string& p
   // With an equals sign: a range that starts at a negative frame would look like an option.
   arguments.push_back("--frames=" + FramesToText(frames));
   arguments.insert(arguments.end(), {"--ahead", std::to_string(kFramesAhead)});
-  RequestBlenderAnimation(*range->scratch_, options, arguments);
+  RequestBlenderAnimation(*range->scratch_, options, true, arguments);
   context.Note(path + ": " + arguments.front() + " exports frame" + (frames.size() == 1 ? " " : "s ") +
                FramesToText(frames));
   const fs::path log = In(*range->scratch_, "log");

@@ -25,8 +25,8 @@ bool IsBlenderScene(const std::string& path);
 struct BlenderAnimation {
   std::string fps;                 // frames a second, as ParseFrameRate takes them; empty: unknown
   std::vector<std::string> files;  // that it reads besides itself: linked libraries, pictures, caches
-  std::optional<Scene> start;  // the scene at its first frame, where that decides how all frames are seen: it has no
-                               // camera, perhaps no lamp, or it was asked for
+  std::optional<Scene> start;  // the scene at its first frame, where that decides how a frame with a number is seen: it
+                               // has no camera, perhaps no lamp, or it was asked for
 };
 
 // Adds the request's scene and view layer to the arguments of one of our scripts.

@@ -22,7 +22,8 @@ class BlenderCases : public testing::Environment {
     folder_ = new TemporaryFolder;
     Shell(kHeadlessBlender + ("-P " + Source("tests/blender/make_cases.py")) + " -- --output " +
           folder_->path().string());
-    for (const char* name : {"lamps", "materials", "objects", "deformed", "cameras", "rendered", "broken", "bordered"})
+    for (const char* name :
+         {"lamps", "materials", "objects", "deformed", "cameras", "rendered", "broken", "bordered", "old"})
       Export(name, "", name);
     Export("bordered", " --scene Cropped", "cropped");
     Export("objects", " --frame 6", "objects6");

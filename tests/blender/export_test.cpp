@@ -238,6 +238,14 @@ TEST(BlenderMaterials, PrincipledAndNone) {
   ExpectColor(Named(scene.materials, "default").base_color, {0.8f, 0.8f, 0.8f}, "faces without a material");
 }
 
+// Blender takes them from old files as they are, though its own properties end at 1.
+TEST(BlenderMaterials, NumbersBeyondOneOfOldFilesAreOne) {
+  const Scene scene = Loaded("old");
+  const Material& ground = Named(scene.materials, "Ground");
+  EXPECT_EQ(ground.bsdf, Bsdf::kDiffuse);
+  EXPECT_EQ(scene.instances.size(), 1u);
+}
+
 TEST(BlenderMaterials, TexturesAndPaintStay) {
   const Scene scene = Loaded("materials");
   for (const char* name : {"DiffuseTextured", "GlossyTextured", "EmissionTextured", "PrincipledTextured"}) {

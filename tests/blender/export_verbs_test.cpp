@@ -49,6 +49,18 @@ TEST_F(BlenderVerbs, GuidegenExportsByItself) {
   EXPECT_TRUE(fs::is_empty(At("tmp"))) << "a temporary export is left behind";
 }
 
+// Without a camera, a still is framed as it stands at the frame that it was saved at, and a frame that is named as its
+// range is.
+TEST_F(BlenderVerbs, AStillIsFramedAsItStands) {
+  const Arguments tail = {"--size", "96x54", "-o"};
+  RunOk(With(With({"guidegen", BlenderCases::File("old.glb").string()}, tail), {"glb.exr"}));
+  ASSERT_EQ(RunHere(With(With({"guidegen", Blend("old")}, tail), {"still.exr"})).code, 0);
+  EXPECT_EQ(Run({"compare", "still.exr", "glb.exr"}).code, 0);
+  const CommandResult named = RunHere(With(With({"guidegen", Blend("old"), "--frame", "9"}, tail), {"9.exr"}));
+  ASSERT_EQ(named.code, 0);
+  EXPECT_THAT(named.err, HasSubstr("the camera sees nothing")) << "it left the view of the range's start";
+}
+
 TEST_F(BlenderVerbs, StylizeToo) {
   WriteStyle("style");
   const CommandResult run = RunHere({"stylize", Blend("cameras"), "--style", "style", "--size", "64", "-o", "p.png"});

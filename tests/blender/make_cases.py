@@ -6,6 +6,7 @@
 import argparse
 import json
 import math
+import struct
 import sys
 import traceback
 from pathlib import Path
@@ -584,9 +585,35 @@ def broken(folder):
     return {}
 
 
+def patched(path, value, other):
+    """Puts a number into a file that Blender's own properties do not take; `value` stands in it once at least."""
+    old, new = struct.pack("<f", value), struct.pack("<f", other)
+    content = path.read_bytes()
+    if old not in content:
+        raise ValueError(f"{path.name} does not hold {value}")
+    path.write_bytes(content.replace(old, new))
+
+
+def old(folder):
+    """As files of Blender 2.4 to 2.7 are now: a material without nodes whose roughness is beyond 1, no camera. What
+    moves was saved far from where it starts."""
+    clear()
+    material = bpy.data.materials.new("Ground")
+    material.roughness, material.metallic = 0.718281, 0.618033
+    thing = cube("Wanderer", material=material)
+    for frame, x in ((1, 0.0), (9, 40.0)):
+        thing.location.x = x
+        thing.keyframe_insert("location", frame=frame)
+    bpy.context.scene.frame_set(9)
+    save(folder, "old")
+    for value in (material.roughness, material.metallic):
+        patched(folder / "old.blend", value, 1.542585)
+    return {}
+
+
 CASES = {"lamps": lamps, "materials": materials, "objects": objects, "deformed": deformed, "cameras": cameras,
          "rendered": rendered, "bordered": bordered, "layers": layers}
-FILES = {"broken": broken}  # these write their files themselves
+FILES = {"broken": broken, "old": old}  # these write their files themselves
 
 
 def main():

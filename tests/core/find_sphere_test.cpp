@@ -90,6 +90,22 @@ TEST(FindSphere, PicturesOfAnyShape) {
   EXPECT_EQ(FindSphere(noise).kind, Kind::kNoGround);
 }
 
+// Cropped by hand, a picture is a pixel more one way than the other, and no ground shows where the sphere meets it.
+TEST(FindSphere, CroppedToTheSphereButNoSquare) {
+  for (const auto& [width, height] : {std::pair{222, 221}, {90, 89}, {128, 127}, {60, 64}, {300, 301}}) {
+    for (const double ground : {kWhite, kNothing}) {
+      SCOPED_TRACE(std::to_string(width) + " " + std::to_string(ground));
+      const Ball ball{0.5 * width, 0.5 * height, 0.5 * std::min(width, height)};
+      ExpectFound(Drawn(width, height, ground, {ball}), ball, 1.5);
+    }
+  }
+  // What only nearly fills it is no sphere for that.
+  Ball blob{50, 49, 49};
+  blob.reach = [](double angle) { return 1.0 - 0.1 * (0.5 - 0.5 * std::cos(4.0 * angle)); };
+  EXPECT_EQ(FindSphere(Drawn(100, 98, kNothing, {blob})).kind, Kind::kUnclear);
+  EXPECT_EQ(FindSphere(Drawn(100, 90, kNothing, {{50, 45, 54}})).kind, Kind::kUnclear) << "cut off on all sides";
+}
+
 // The rougher the outline, the smaller a sphere has to be.
 TEST(FindSphere, UnevenOutlines) {
   Ball rough{250, 270, 170};
@@ -255,7 +271,8 @@ TEST(FindSphere, EllipsesSeveralAndCutOffSpheresAreNone) {
   }
   EXPECT_EQ(FindSphere(square).kind, Kind::kUnclear);
   const FoundSphere tiny = FindSphere(Drawn(200, 200, kWhite, {{100, 100, 9}}));
-  EXPECT_EQ(tiny.kind, Kind::kUnclear) << "too small, " << tiny.circle.radius;
+  EXPECT_EQ(tiny.kind, Kind::kUnclear) << tiny.circle.radius;
+  EXPECT_EQ(tiny.doubt, SphereDoubt::kSmall);
 }
 
 // Whatever painters do to a sphere that fills its square, it stays where it is.

@@ -23,7 +23,9 @@ constexpr double kTooSmall = 0.985;                   // of the radius
 constexpr double kOffCentre = 0.01, kCovers = 0.995;  // of the width, of the radius
 constexpr double kLeastTolerance = 0.004;             // of the width
 constexpr double kMostTolerance = 0.025;              // of the radius
-constexpr double kLeastOutline = 0.8;                 // of all directions
+constexpr double kLeastOutline = 0.8;                 // of the directions in which it can be seen
+constexpr double kLeastSeen = 0.25;                   // of all directions
+constexpr double kSeenFrom = 4.5;                     // pixels of ground between the circle and the picture's side
 constexpr double kMostBeyond = 0.04;                  // of the circle's area
 constexpr double kMostCut = 0.015;                    // of the radius, beyond the picture's sides
 constexpr double kLeastRadius = 15.0;                 // pixels
@@ -145,7 +147,9 @@ class OutlineFit {
 
   // Whether the circle is sure: on it lies the outline, and beyond it hardly any paint.
   bool IsSure() const {
-    const bool is_circle = circle_ && outline_radius_ >= kLeastRadius && agree_ >= kLeastOutline * kOutlineDirections;
+    if (!circle_ || outline_radius_ < kLeastRadius) return false;
+    const auto agree = static_cast<double>(agree_), seen = static_cast<double>(SeenDirections());
+    const bool is_circle = agree >= kLeastOutline * seen && agree >= kLeastSeen * kOutlineDirections;
     return is_circle && IsInPicture() && IsAlone();
   }
 
@@ -190,6 +194,18 @@ class OutlineFit {
     const auto low = distances.begin() + std::ptrdiff_t(distances.size() / 20);
     std::nth_element(distances.begin(), low, distances.end());
     circle_->radius = *low;
+  }
+
+  // A sphere that reaches the sides of a picture that is no square shows no ground there.
+  std::size_t SeenDirections() const {
+    if (width_ == height_) return kOutlineDirections;
+    const double reach = outline_radius_ + kSeenFrom;
+    std::size_t seen = 0;
+    for (int i = 0; i < kOutlineDirections; ++i) {
+      const glm::dvec2 at = glm::dvec2(circle_->x, circle_->y) + reach * OutlineDirection(i);
+      seen += at.x >= 0.0 && at.y >= 0.0 && at.x < width_ && at.y < height_;
+    }
+    return seen;
   }
 
   bool IsInPicture() const {
@@ -244,6 +260,12 @@ std::optional<FoundSphere> TwoSpheres(const PaintMask& mask) {
   return found;
 }
 
+// Whether all paint but specks lies within so many pixels.
+bool IsSmall(const Gaps& gaps, int width, int height) {
+  return (1.0 - gaps.of[0] - gaps.of[1]) * width < 2.0 * kLeastRadius &&
+         (1.0 - gaps.of[2] - gaps.of[3]) * height < 2.0 * kLeastRadius;
+}
+
 FoundSphere Empty(bool is_square) {
   FoundSphere found{is_square ? FoundSphere::Kind::kFills : FoundSphere::Kind::kUnclear};
   if (!is_square) found.doubt = SphereDoubt::kNoCircle;
@@ -291,7 +313,7 @@ FoundSphere FindSphere(const Picture& picture) {
   if (!outline.IsSure()) {
     if (!clearly_inside) return {Kind::kFills};
     FoundSphere unclear{Kind::kUnclear};
-    unclear.doubt = SphereDoubt::kNoCircle;
+    unclear.doubt = IsSmall(gaps, width, height) ? SphereDoubt::kSmall : SphereDoubt::kNoCircle;
     if (outline.IsLikely()) {
       unclear.circle = *outline.circle();
       unclear.doubt = DoubtAbout(picture, mask, unclear.circle, 2.0 * outline.tolerance());

@@ -118,6 +118,8 @@ TEST_F(PlaceSphereTest, RefusesInWords) {
     for (int x = 200; x < 600; ++x) SetGrey(bar, x, y, 0.3);
   }
   expect(bar, {"odd.png is 640×360", "shows no clear sphere", "crop it to the sphere"});
+  painted.size = 20;
+  expect(Laid(PaintSphere(painted), 60, 60, 20, 20, 1.0), {"odd.png is 60×60", "less than 30 pixels across"});
 }
 
 // What keeps a sphere from being found is named where it can be told, with what to do.

@@ -384,6 +384,17 @@ TEST_F(MissingNormalsTest, EachFormatHasItsRule) {
   EXPECT_NEAR(LargestBend(Load(Write("box.ply", ply), 90.0).meshes[0]), 45.0, 0.001);
 }
 
+// Two-sided surfaces are often modelled by each face twice, in one smoothing group: the two would cancel each other.
+TEST_F(MissingNormalsTest, FacesThatLieOnOthersAreSmoothAsThose) {
+  for (const char* again : {"f 4 3 2 1\n", "f 2 1 4 3\n", "f 1 2 3 4\n"}) {
+    EXPECT_NEAR(LargestBend(Load(Roof(70, "s 3\n", again)).meshes[0]), 35.0, 0.01) << again;
+    EXPECT_NEAR(LargestBend(Load(Roof(50, "", again)).meshes[0]), 25.0, 0.01) << again;
+    EXPECT_LT(LargestBend(Load(Roof(70, "s off\n", again)).meshes[0]), 0.03) << again;
+  }
+  EXPECT_NEAR(LargestBend(Load(Roof(50, "", "f 4 3 2 1\n"), 180.0).meshes[0]), 25.0, 0.01);
+  EXPECT_EQ(Load(Roof(70, "s 3\n", "f 4 3 2 1\n")).meshes[0].triangles.size(), 6u);
+}
+
 TEST_F(MissingNormalsTest, TheNotesSayWhatWasDone) {
   EXPECT_THAT(Load(Write("box.glb", Box().Glb())).notes,
               ElementsAre("12 triangles without normals are flat, as glTF demands; --auto-smooth DEGREES changes it"));

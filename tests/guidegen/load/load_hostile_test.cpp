@@ -265,7 +265,7 @@ TEST_F(Hostile, ObjAndPlyCutShortAndFlipped) {
 }
 
 TEST_F(Hostile, ObjIndicesBeyondTheVertices) {
-  const std::string vertices = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 2 0\n";
+  const std::string vertices = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 2 0\nvn 0 0 1\n";
   for (const char* face : {"f 1 2 9", "f 1 2 3 4 9", "f 1 2 -9", "f 1/7 2 3", "f 1//2 2 3", "f 0 1 2",
                            "f 1 2 3 4 5 99999999999999", "f 1 2 3 4 -99"}) {
     EXPECT_NE(Refusal(Write("bad.obj", vertices + face + "\n")), "") << face;

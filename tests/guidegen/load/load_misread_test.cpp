@@ -2,6 +2,9 @@
 // 1.0, textures without an index. Each is refused or warned of, by what the file really has.
 #include <gmock/gmock.h>
 
+#include <map>
+#include <string>
+
 #include "guidegen/load/load_scene.h"
 #include "guidegen/load/loader_util.h"
 #include "tests/support/gltf_builder.h"
@@ -51,6 +54,50 @@ TEST_F(Misread, ObjOfPointsAndLinesAlone) {
   EXPECT_THAT(Refusal(Write("dot.obj", std::string("v 0 0 0\np 1\n"))), HasSubstr("has 1 point and no triangles"));
   EXPECT_THAT(Refusal(Write("wire.obj", std::string("v 0 0 0\nv 1 0 0\nv 1 1 0\nl 1 2 3\n"))),
               HasSubstr("has 3 points, lines and no triangles"));
+}
+
+const std::string kObjTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+
+// Shapes of subdivision libraries name a normal at each corner, but hold none; some writers keep the slash of an index
+// that they leave out.
+TEST_F(Misread, ObjCornersThatNameWhatTheFileLacks) {
+  const Scene none = Load(Write("none.obj", kObjTriangle + "vt 0 0\nf 1/1/1 2/1/2 3/1/3\n"));
+  EXPECT_THAT(none.warnings, ElementsAre(HasSubstr("faces name normals, but the file has none")));
+  EXPECT_THAT(none.notes, ElementsAre(HasSubstr("1 triangle without normals")));
+  EXPECT_THAT(Refusal(Write("few.obj", kObjTriangle + "vn 0 0 1\nf 1//1 2//1 3//2\n")), HasSubstr("uses normal 2"));
+  const Scene slashes = Load(Write("slashes.obj", kObjTriangle + "vt 0 0\nvt 1 0\nf 1/1/ 2/2/ 3//\n"));
+  EXPECT_THAT(slashes.warnings, IsEmpty());
+  EXPECT_EQ(slashes.meshes.at(0).triangles.size(), 1u);
+  EXPECT_THAT(Refusal(Write("zero.obj", kObjTriangle + "f 0 1 2\n")),
+              AllOf(HasSubstr("line 4 is 'f 0 1 2'"), HasSubstr("count from 1")));
+}
+
+// MeshLab writes `Tr 1` for what is opaque; to the letter it is what cannot be seen.
+TEST_F(Misread, MtlThatMeansOpacityByTr) {
+  Write("scene.mtl", std::string("newmtl opaque\nKd 1 0 0\nTr 1.000000\nnewmtl glass\nTr 0.75\n"
+                                 "newmtl hidden\nTr 1\nd 0\n"));
+  const Scene scene = Load(Write("scene.obj", "mtllib scene.mtl\n" + kObjTriangle +
+                                                  "usemtl opaque\nf 1 2 3\nusemtl glass\nf 1 2 3\n"
+                                                  "usemtl hidden\nf 1 2 3\n"));
+  EXPECT_THAT(scene.warnings, ElementsAre(AllOf(HasSubstr("'Tr 1' is taken for opaque"), HasSubstr("'opaque'"))));
+  std::map<std::string, float> alphas;
+  for (const Material& material : scene.materials) alphas[material.name] = material.base_color.a;
+  EXPECT_EQ(alphas["opaque"], 1.0f);
+  EXPECT_EQ(alphas["glass"], 0.25f);
+  EXPECT_EQ(alphas["hidden"], 0.0f);
+}
+
+// Rhinoceros ends the lines of a header by a carriage return alone, also before binary values.
+TEST_F(Misread, PlyWithLinesThatEndInACarriageReturn) {
+  const std::string header =
+      "ply\rformat binary_little_endian 1.0\relement vertex 3\rproperty uchar x\rproperty uchar y\r"
+      "property uchar z\relement face 1\rproperty list uchar uchar vertex_indices\rend_header\r";
+  // The first value is a line feed.
+  const std::string body{'\n', 0, 0, 12, 0, 0, '\n', 2, 0, 3, 0, 1, 2};
+  const Scene scene = Load(Write("rhino.ply", header + body));
+  ASSERT_EQ(scene.meshes.size(), 1u);
+  EXPECT_EQ(scene.meshes[0].triangles.size(), 1u);
+  EXPECT_EQ(scene.meshes[0].positions.at(0).x, 10.0f);
 }
 
 TEST_F(Misread, GltfOfPointsAndLinesAlone) {

@@ -275,6 +275,29 @@ TEST_F(LoadText, ObjNormalsAreSmoothAcrossMaterialsAndInsideGroups) {
   for (int i = 4; i < 8; ++i) ExpectNear(scene.meshes[0].normals[i], {half, half, 0}, 1e-6);
 }
 
+// The cap of a cylinder, as modellers leave it.
+TEST_F(LoadText, ObjFacesOfManyCorners) {
+  std::string text;
+  const int corners = 600;
+  for (int i = 0; i < corners; ++i) {
+    const double turn = 2.0 * kPi * i / corners;
+    text += "v " + std::to_string(std::cos(turn)) + " " + std::to_string(std::sin(turn)) + " 0\n";
+  }
+  text += "o Leaf\nf 1 2 3\nf 1 2\no Cap\nf 1 2 3 4\nf";
+  for (int i = 1; i <= corners; ++i) text += " " + std::to_string(i);
+  text += "\nf 4 5 6 \t\r\n";
+  const Scene scene = Load("caps.obj", text);
+  ASSERT_EQ(scene.meshes.size(), 2u);
+  EXPECT_EQ(scene.meshes[0].triangles.size(), 1u);
+  ASSERT_EQ(scene.meshes[1].triangles.size(), std::size_t(2 + corners - 2 + 1));
+  double area = 0.0;
+  for (const glm::uvec3& t : scene.meshes[1].triangles) {
+    const auto& p = scene.meshes[1].positions;
+    area += 0.5 * glm::length(glm::cross(p[t.y] - p[t.x], p[t.z] - p[t.x]));
+  }
+  EXPECT_NEAR(area, kPi, 0.001);
+}
+
 TEST_F(LoadText, ObjWithoutContent) {
   const Scene scene = Load("a.obj", "# nothing\n");
   EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("no geometry")));
@@ -408,6 +431,22 @@ TEST(PrepareView, ChoosesCameraAndLight) {
   view = PrepareView(scene, "", std::nullopt, 1.5, true);
   EXPECT_EQ(scene.lights.size(), 1u);
   EXPECT_THAT(view->notes, ElementsAre(HasSubstr("no camera"), HasSubstr("no light")));
+
+  // A surface that emits is a lamp; a lantern whose texture shows where it glows is none.
+  const Material matt = scene.materials[0];
+  scene.materials[0].emission = glm::vec3(1.0f);
+  scene.lights.clear();
+  EXPECT_THAT(PrepareView(scene, "", std::nullopt, 1.5, true)->notes, ElementsAre(HasSubstr("no camera")));
+  EXPECT_TRUE(scene.lights.empty());
+  scene.materials[0].emission_texture.texture = 0;
+  EXPECT_THAT(PrepareView(scene, "", std::nullopt, 1.5, true)->notes,
+              ElementsAre(HasSubstr("no camera"), HasSubstr("no light but textures that glow: lit by a sun")));
+  EXPECT_EQ(scene.lights.size(), 1u);
+  scene.materials[0].bsdf = Bsdf::kEmission;
+  scene.lights.clear();
+  EXPECT_THAT(PrepareView(scene, "", std::nullopt, 1.5, true)->notes, ElementsAre(HasSubstr("no camera")));
+  scene.materials[0] = matt;
+  scene.lights.resize(1);
 
   Camera camera;
   camera.name = "A";
