@@ -6,7 +6,7 @@
     /usr/bin/python3 bench/paint_pairs.py --read FILE     # adds one reading: {"1": ["A", "why"], …}
     /usr/bin/python3 bench/paint_pairs.py                 # agreement of the readings; of figures, on the open half
     /usr/bin/python3 bench/paint_pairs.py --measure       # anew: the figures of all pictures (build/bench/paint_figures)
-    /usr/bin/python3 bench/paint_pairs.py --locked        # of figures, on the locked half: once, at the end
+    /usr/bin/python3 bench/paint_pairs.py --locked        # of figures, on the locked half: has been used
 
 Ten paintings on four scenes; of each twelve pairs of ways to draw it, good ones and deliberately bad ones. Every third
 pair holds the style as it is. Which pairs, which side is A, what part is shown, and which half is locked away is

@@ -146,11 +146,13 @@ Distributions DistributionsOf(const FeatureGroup& group, std::size_t number, con
   return result;
 }
 
-// The sum over the pixels of a picture of their cells' distances, and the number of pixels.
+// The sum over the cells of a picture of their distances. A cell weighs what the root of its area does: a wall has one
+// normal however large it is, and round things have few pixels for each of theirs.
 struct Sum {
-  double distance = 0.0, pixels = 0.0;
+  double distance = 0.0, weight = 0.0;
+  std::size_t blocks = 0;
 
-  void Add(const Distributions& exemplar, const FeatureGroup& group, const CellPixels& cells) {
+  void Add(const Distributions& exemplar, const FeatureGroup& group, const CellPixels& cells, int octave) {
     std::array<double, kCells> of_cell = {};
     tbb::parallel_for(std::size_t{0}, kCells, [&](std::size_t cell) {
       if (cells[cell].size() < kLeastPixels || exemplar.cells[cell].empty()) return;
@@ -162,22 +164,22 @@ struct Sum {
     });
     for (std::size_t cell = 0; cell < kCells; ++cell) {
       if (cells[cell].size() < kLeastPixels || exemplar.cells[cell].empty()) continue;
-      distance += double(cells[cell].size()) * of_cell[cell], pixels += double(cells[cell].size());
+      const double root = std::sqrt(double(cells[cell].size())) * double(1 << octave);  // of pixels, not of blocks
+      distance += root * of_cell[cell], weight += root, blocks += cells[cell].size();
     }
   }
-  double Mean() const { return pixels > 0.0 ? distance / pixels : 0.0; }
+  double Mean() const { return weight > 0.0 ? distance / weight : 0.0; }
 };
 
 using Sums = std::array<Sum, kGroups>;
 
-// Of the groups that were measured.
 double MeanOf(const Sums& sums) {
-  double sum = 0.0, count = 0.0;
-  for (const Sum& one : sums) {
-    if (one.pixels > 0.0) sum += one.Mean(), count += 1.0;
-  }
-  return count > 0.0 ? sum / count : 0.0;
+  Sum all;
+  for (const Sum& one : sums) all.distance += one.distance, all.weight += one.weight;
+  return all.Mean();
 }
+
+int OctaveOf(std::size_t group) { return group == 0 ? 0 : int(group) - 1; }
 
 }  // namespace
 
@@ -218,13 +220,13 @@ Expected<GuidedTexture> GuidedTexture::Of(std::span<const EnergyExemplar> exempl
         }
       }
       for (std::size_t g = 0; g < kGroups; ++g) {
-        const int octave = g == 0 ? 0 : int(g) - 1;
+        const int octave = OctaveOf(g);
         const auto width = std::size_t(exemplar.picture->width >> octave), block = std::size_t(kBlock >> octave);
         const auto half = [&](std::size_t i) { return (i % width / block + i / width / block) % 2; };
         one.groups[g] = DistributionsOf(features[g], g, PixelsOf(features[g], [](std::size_t) { return true; }));
         const Distributions first =
             DistributionsOf(features[g], g, PixelsOf(features[g], [&](std::size_t i) { return half(i) == 0; }));
-        halves[g].Add(first, features[g], PixelsOf(features[g], [&](std::size_t i) { return half(i) == 1; }));
+        halves[g].Add(first, features[g], PixelsOf(features[g], [&](std::size_t i) { return half(i) == 1; }), octave);
       }
       impl->exemplars.push_back(std::move(one));
     }
@@ -263,7 +265,8 @@ Expected<GuidedTextureReport> GuidedTexture::Measure(const EnergyTarget& target,
       if (!any) continue;
       const PaintFeatures features = FeaturesOf(*target.picture, target.normal, std::move(own), exemplar.tone);
       for (std::size_t g = 0; g < kGroups; ++g) {
-        sums[g].Add(exemplar.groups[g], features[g], PixelsOf(features[g], [](std::size_t) { return true; }));
+        sums[g].Add(exemplar.groups[g], features[g], PixelsOf(features[g], [](std::size_t) { return true; }),
+                    OctaveOf(g));
       }
     }
   });
@@ -271,7 +274,7 @@ Expected<GuidedTextureReport> GuidedTexture::Measure(const EnergyTarget& target,
   report.distance = MeanOf(sums);
   report.tone = sums[0].Mean();
   for (std::size_t octave = 0; octave < kOctaves; ++octave) report.strokes[octave] = sums[1 + octave].Mean();
-  report.measured = std::size_t(sums[0].pixels);
+  report.measured = sums[0].blocks;
   return report;
 }
 

@@ -5,8 +5,8 @@
 // (paint_pyramid.h) over the picture's pixels is compared with that over the exemplar's by a sliced Wasserstein
 // distance (Rabin, Peyré, Delon, Bernot 2012): features are divided by their standard deviation over the exemplar,
 // projected on fixed directions, and sorted; the distance is the mean difference of 64 quantiles, over all slices, and
-// over all cells by the picture's pixels. Cells of guide space take the place of the spatial tags of Heitz, Vanhoey,
-// Chambon, Belcour 2021.
+// over all cells by the root of the picture's area in them. Cells of guide space take the place of the spatial tags of
+// Heitz, Vanhoey, Chambon, Belcour 2021.
 //
 // Any arrangement that keeps the exemplar's strokes scores little, whatever pixel lies where. Flat, smeared, blurred,
 // noisy and rescaled paint does not have the distributions, and the borders of a mosaic add bars that the exemplar does
@@ -24,7 +24,7 @@
 namespace scumble {
 
 struct GuidedTextureReport {
-  double distance = 0.0;  // the mean of tone and of each octave that could be measured; 0: the same distributions
+  double distance = 0.0;  // over the cells of tone and of all octaves; 0: the same distributions
   double tone = 0.0;
   std::array<double, 4> strokes = {};  // by octave, the finest first; 0: too few pixels
   std::size_t measured = 0;            // pixels of the picture whose tone counts
@@ -43,7 +43,7 @@ class GuidedTexture {
 
   // `surface`: by pixel of the target the number of its surface, not below 0: strokes are not measured across its
   // border. Pixels with a coverage below 0.999 are left out, `free` is not read. Errors (kInput): planes of a wrong
-  // size. O(pixels); about 150 bytes for each.
+  // size. O(pixels); about 180 bytes for each.
   Expected<GuidedTextureReport> Measure(const EnergyTarget& target, std::span<const float> surface,
                                         int threads = 0) const;
 

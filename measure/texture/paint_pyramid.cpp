@@ -85,24 +85,14 @@ Plane SecondDifference(const Plane& plane, const Level& level, int dx, int dy) {
 }
 
 FeatureGroup StrokesOf(const Level& level) {
+  constexpr int kReach = 3;  // two deviations of the Gaussian, and the neighbour
   FeatureGroup group;
-  std::array<Plane, 3> fine;
-  std::array<Plane, 2> wide;  // of a and b
-  tbb::parallel_for(0, 5, [&](int k) {
-    if (k < 3) {
-      fine[std::size_t(k)] = GaussianBlur(level.detail[std::size_t(k)], level.width, level.height, 1.0);
-    } else {
-      wide[std::size_t(k - 3)] = GaussianBlur(level.detail[std::size_t(k - 2)], level.width, level.height, 2.0);
+  for (const Plane& plane : level.detail) {
+    const Plane fine = GaussianBlur(plane, level.width, level.height, 1.0);
+    for (const auto& [dx, dy] : {std::pair(1, 0), {0, 1}, {1, 1}, {1, -1}}) {
+      group.planes.push_back(SecondDifference(fine, level, dx, dy));
     }
-  });
-  for (const auto& [dx, dy] : {std::pair(1, 0), {0, 1}, {1, 1}, {1, -1}}) {
-    group.planes.push_back(SecondDifference(fine[0], level, dx, dy));
   }
-  for (std::size_t c = 0; c < 2; ++c) {
-    Plane& band = group.planes.emplace_back(std::move(fine[c + 1]));
-    for (std::size_t i = 0; i < band.size(); ++i) band[i] -= wide[c][i];
-  }
-  constexpr int kReach = 4;  // two deviations of the wider Gaussian
   group.valid = ValidWithin(level, kReach);
   group.normal = level.normal;
   return group;

@@ -23,9 +23,10 @@ struct FeatureGroup {
 
 // The first group is tone: Oklab's L, a and b of each pixel. The others are strokes: what the picture has beside the
 // exemplar's tone under its normal, so that bends of the surface do not count. Octave o is the mean of blocks of 2^o ×
-// 2^o pixels, under a Gaussian of one pixel of its own. Its features are second differences of L in four directions,
-// the answers of a bank of bars (after the steerable pyramids of Heeger, Bergen 1995, and Portilla, Simoncelli 2000),
-// and what a Gaussian of two pixels takes from a and b.
+// 2^o pixels, under a Gaussian of one pixel of its own. Its features are second differences of L, a and b in four
+// directions each, the answers of a bank of bars (after the steerable pyramids of Heeger, Bergen 1995, and Portilla,
+// Simoncelli 2000). Colours are as sharp as lightness: where dabs of one lightness lie side by side, they alone show
+// that the paint is blurred.
 using PaintFeatures = std::array<FeatureGroup, 1 + kOctaves>;
 
 // `surface`: by pixel the number of its surface, below 0 where nothing is measured; features are valid where all pixels

@@ -106,6 +106,34 @@ TEST(GuidedTexture, WhatSpoilsPaintCosts) {
   EXPECT_GT(DistanceOf(texture, mosaic), 1.3 * other) << "cut strokes";
 }
 
+// A wall with the exemplar's paint does not hide that a ball before it has none, though it has five times the pixels.
+TEST(GuidedTexture, FormsCountBesideWalls) {
+  const GuidedTexture texture = MustPrepare(PaintedBall(1));
+  constexpr int kBall = 120;
+  const EnergyScene ball = Ball(kBall);
+  const auto of = [&](bool has_wall) {
+    EnergyScene scene(kSize, kSize);
+    std::vector<float> surface(scene.coverage.size());
+    const auto on_ball = [&](int x, int y) { return x < kBall && y < kBall && ball.coverage[ball.Index(x, y)] > 0.0f; };
+    scene.ForEach([&](int x, int y) {
+      const bool is_ball = on_ball(x, y);
+      surface[scene.Index(x, y)] = is_ball ? 1.0f : 2.0f;
+      scene.coverage[scene.Index(x, y)] = is_ball || has_wall;
+      scene.SetNormal(x, y, is_ball ? glm::vec3(ball.Normal(x, y)) : glm::vec3(0.5f, 0.0f, std::sqrt(0.75f)));
+    });
+    scene.Paint([&](int x, int y) {
+      const double tone = on_ball(x, y) ? 0.375 + 0.4 * x / kBall : 0.55 + 0.25 * Stroke(3, x, y, 6.0);
+      return std::array<int, 3>{int(65535 * tone), int(60000 * tone), int(40000 * tone)};
+    });
+    const auto report = texture.Measure(scene.Target(), surface);
+    EXPECT_TRUE(report.ok());
+    return report.ok() ? report->distance : 0.0;
+  };
+  const double alone = of(false), before_wall = of(true);
+  EXPECT_LT(before_wall, alone);
+  EXPECT_GT(before_wall, 0.5 * alone);
+}
+
 // The paint of a flat wall that is turned like a place of the ball is what that place shows, not the whole ball's.
 TEST(GuidedTexture, PaintIsComparedWhereTheSurfaceIsTurnedAlike) {
   const EnergyScene exemplar = PaintedBall(1);
