@@ -106,6 +106,32 @@ TEST(GuidedTexture, WhatSpoilsPaintCosts) {
   EXPECT_GT(DistanceOf(texture, mosaic), 1.3 * other) << "cut strokes";
 }
 
+// Dabs of one lightness, in red and green: what blurs them shows in colour alone.
+TEST(GuidedTexture, DabsOfOneLightnessAreSharpToo) {
+  const auto dab = [](std::uint64_t seed, int x, int y) {
+    const double share = Stroke(seed, x, y, 2.5) > 0.5 ? 1.0 : 0.0;
+    return std::array<double, 3>{26000.0 + 14000.0 * share, 33000.0 - 8000.0 * share, 20000.0};
+  };
+  const auto of = [&](std::uint64_t seed, int reach) {
+    EnergyScene ball = Ball(kSize);
+    ball.Paint([&](int x, int y) {
+      std::array<double, 3> sum = {};
+      for (int v = y - reach; v <= y + reach; ++v) {
+        for (int u = x - reach; u <= x + reach; ++u) {
+          const auto one = dab(seed, u, v);
+          for (std::size_t c = 0; c < 3; ++c) sum[c] += one[c] / ((2 * reach + 1) * (2 * reach + 1));
+        }
+      }
+      return std::array<int, 3>{int(sum[0]), int(sum[1]), int(sum[2])};
+    });
+    return ball;
+  };
+  const GuidedTexture texture = MustPrepare(of(1, 0));
+  const GuidedTextureReport sharp = MustMeasure(texture, of(2, 0)), blurred = MustMeasure(texture, of(2, 1));
+  EXPECT_GT(blurred.strokes[0], 1.5 * sharp.strokes[0]);
+  EXPECT_GT(blurred.distance, 1.2 * sharp.distance);
+}
+
 // A wall with the exemplar's paint does not hide that a ball before it has none, though it has five times the pixels.
 TEST(GuidedTexture, FormsCountBesideWalls) {
   const GuidedTexture texture = MustPrepare(PaintedBall(1));
