@@ -399,10 +399,10 @@ DIFFUSE_LAYERS = ["full", "LDE", "LDDE", "LD12E"]
 SCENES = {  # builder, layers, size, samples
     "emissive": (emissive, DIFFUSE_LAYERS, LANDSCAPE, 256),
     "rough": (rough, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 128),
-    "coarse": (coarse, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 256),
+    "coarse": (coarse, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 128),
     "bent": (bent, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 128),
     "world": (world_only, DIFFUSE_LAYERS, LANDSCAPE, 128),
-    "mixed": (mixed, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 128),
+    "mixed": (mixed, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 256),
     "stretched": (stretched, DIFFUSE_LAYERS, LANDSCAPE, 64),
     "instances": (instances, DIFFUSE_LAYERS, LANDSCAPE, 64),
     "principled": (principled, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 128),
