@@ -15,6 +15,7 @@
 
 #include "bench/or_stop.h"
 #include "bench/performance/repeats.h"
+#include "core/filter/resample.h"
 #include "core/image/stopwatch.h"
 #include "core/style/style_file.h"
 #include "guidegen/guidegen.h"
@@ -34,7 +35,7 @@ constexpr std::array<int, 4> kUpsampling{1, 2, 4, 8};
 
 struct Arguments {
   int width = 1280, height = 720, runs = 5;
-  std::size_t samples = 512;
+  bool energy = false;
   std::vector<std::string> scenes{"suzanne", "stilllife", "toys"};
   std::vector<std::string> styles{"oil", "charcoal", "woodcut", "sumi-e", "chiaroscuro", "scene-oil"};
 };
@@ -42,7 +43,7 @@ struct Arguments {
 // The settings of a variant that replace the style's own.
 struct Candidate {
   std::string name;
-  int upsample = 1;
+  int upsample = 1, enlarge = 1;
   std::vector<std::string> settings;
 };
 
@@ -50,28 +51,33 @@ struct Candidate {
 std::vector<Candidate> Candidates(const Style& style, const Arguments& arguments) {
   const std::string less = "transfer.method=litsphere", crisp = "transfer.blend_radius=0";
   std::vector<Candidate> all;
-  for (const int upsample : kUpsampling) {
-    if (arguments.width % upsample || arguments.height % upsample) continue;
-    const std::string name = upsample > 1 ? fmt::format("upsample {}", upsample) : "";
+  const bool splits = style.transfer.hybrid > 0.0;
+  const auto add_all = [&](const std::string& name, int upsample, int enlarge) {
     const auto add = [&](const std::string& what, std::vector<std::string> settings) {
-      all.push_back({name + (name.empty() || what.empty() ? "" : ", ") + what, upsample, std::move(settings)});
+      all.push_back({name + (name.empty() || what.empty() ? "" : ", ") + what, upsample, enlarge, std::move(settings)});
     };
     add("", {});
-    if (style.transfer.hybrid > 0.0) add("hybrid 0", {"transfer.hybrid=0"});
-    add("litsphere", {less});
-    if (upsample == 1 || upsample == kUpsampling.back()) add("litsphere, radius 0", {less, crisp});
-    if (upsample == 1) add("radius 0", {crisp});
-    if (upsample == 1)
-      add("4 levels fewer", {fmt::format("transfer.levels={}", std::max(1, style.transfer.levels - 4))});
+    if (splits) add("hybrid 0", {"transfer.hybrid=0"});
+    add("hybrid 0, radius 0", {"transfer.hybrid=0", crisp});
+    add("litsphere", {less, "transfer.hybrid=0"});
+    add("litsphere, radius 0", {less, "transfer.hybrid=0", crisp});
+    if (upsample > 1 || enlarge > 1) return;
+    add("radius 0", {crisp});
+    add("4 levels fewer", {fmt::format("transfer.levels={}", std::max(1, style.transfer.levels - 4))});
     add("match_step 4", {"transfer.match_step=4"});
+  };
+  for (const int factor : kUpsampling) {
+    if (arguments.width % factor || arguments.height % factor) continue;
+    add_all(factor > 1 ? fmt::format("upsample {}", factor) : "", factor, 1);
+    if (factor > 1 && factor < 8) add_all(fmt::format("enlarge {}", factor), 1, factor);
   }
   all.front().name = "the style";
   return all;
 }
 
 struct MadeGuides {
-  GuideSet guides;
-  std::vector<double> ms;
+  GuideSet guides, small;  // upsampled, and as cast
+  std::vector<double> ms, small_ms;
 };
 
 void Measure(const std::string& scene_name, const std::string& style_name, const Arguments& arguments) {
@@ -90,53 +96,58 @@ void Measure(const std::string& scene_name, const std::string& style_name, const
       options.layers = RequiredLayers(style);
       Stopwatch watch;
       GuideSet made = OrStop(RenderGuides(scene, view.camera, options)).guides;
-      if (factor > 1) made = OrStop(UpsampleGuides(made, factor));
-      const double ms = watch.Lap();
-      if (run > 0) guides[factor].ms.push_back(ms);
-      guides[factor].guides = std::move(made);
+      const double small_ms = watch.Lap();
+      GuideSet large = factor > 1 ? OrStop(UpsampleGuides(made, factor)) : made;
+      const double ms = small_ms + (factor > 1 ? watch.Lap() : 0.0);
+      if (run > 0 || arguments.runs == 0) guides[factor].ms.push_back(ms), guides[factor].small_ms.push_back(small_ms);
+      guides[factor].guides = std::move(large), guides[factor].small = std::move(made);
     }
   }
   std::vector<PreparedStyle> prepared;
   for (const Candidate& candidate : candidates) {
     Style one = OrStop(LoadStyle(folder, candidate.settings));
     one.paper = {};
-    prepared.push_back(OrStop(Prepare(one, arguments.height)));
+    prepared.push_back(OrStop(Prepare(one, arguments.height / candidate.enlarge)));
   }
   TransferOptions options;
   options.exposure = MeasureExposure({prepared.data(), 1}, guides[1].guides).value_or(0.0);
   const TradeReference judge(std::make_shared<const GuideSet>(guides[1].guides), prepared.front(), options.exposure, 0);
+  const GuidedTexture texture = OrStop(judge.Texture());
   std::vector<std::vector<double>> ms(candidates.size());
-  std::vector<TradeMeasure> energy(candidates.size());
+  std::vector<TradeMeasure> error(candidates.size());
   for (int run = 0; run <= arguments.runs;
        ++run) {  // in turns, so that other load of the machine affects all of them alike
     for (std::size_t i = 0; i < candidates.size(); ++i) {
+      const Candidate& candidate = candidates[i];
+      const int factor = candidate.upsample * candidate.enlarge;
+      const GuideSet& taken = candidate.enlarge > 1 ? guides[factor].small : guides[factor].guides;
       TransferScratch scratch;
       Picture picture;
-      options.keep_field = run == 0;
       Stopwatch watch;
-      OrStop(Transfer(prepared[i], guides[candidates[i].upsample].guides, options, scratch, picture));
-      if (run > 0) ms[i].push_back(watch.Lap());
-      EnergyOptions patches;
-      patches.samples = arguments.samples;
-      if (run == 0) OrStop(judge.MeasurePaint(picture, &scratch.field, patches, energy[i]));
+      OrStop(Transfer(prepared[i], taken, options, scratch, picture));
+      if (candidate.enlarge > 1) picture = Resample(picture, arguments.width, arguments.height);
+      if (run > 0 || arguments.runs == 0) ms[i].push_back(watch.Lap());
+      if (run == 0) OrStop(judge.MeasureTexture(texture, picture, error[i]));
+      if (run == 0 && arguments.energy) OrStop(judge.MeasurePaint(picture, nullptr, EnergyOptions(), error[i]));
     }
   }
   std::vector<TradePoint> whole, transfer_alone;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const MadeGuides& made = guides[candidates[i].upsample * candidates[i].enlarge];
     const double painting = SpreadOf(ms[i]).median;
-    const double casting = SpreadOf(guides[candidates[i].upsample].ms).median;
-    whole.push_back({casting + painting, energy[i].both.mean});
-    transfer_alone.push_back({candidates[i].upsample > 1 ? NAN : painting, energy[i].both.mean});
+    const double casting = SpreadOf(candidates[i].enlarge > 1 ? made.small_ms : made.ms).median;
+    const double off = error[i].texture.value_or(NAN);
+    whole.push_back({casting + painting, off});
+    transfer_alone.push_back({candidates[i].upsample * candidates[i].enlarge > 1 ? NAN : painting, off});
   }
   const auto on = [](const std::vector<std::size_t>& front, std::size_t i) {
     return std::find(front.begin(), front.end(), i) != front.end();
   };
   const std::vector<std::size_t> front = ParetoFront(whole), alone = ParetoFront(transfer_alone);
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    std::fputs(fmt::format("{}\t{}\t{}\t{:.1f}\t{:.1f}\t{:.4f}\t{:.4f}\t{:.4f}\t{:.4f}\t{}\t{}\n", scene_name,
-                           style_name, candidates[i].name, whole[i].time, SpreadOf(ms[i]).median, energy[i].both.mean,
-                           energy[i].both.standard_error, energy[i].energy.mean, energy[i].missing.mean,
-                           on(front, i) ? "*" : "", on(alone, i) ? "*" : "")
+    std::fputs(fmt::format("{}\t{}\t{}\t{:.1f}\t{:.1f}\t{:.4f}\t{:.4f}\t{:.4f}\t{}\t{}\n", scene_name, style_name,
+                           candidates[i].name, whole[i].time, SpreadOf(ms[i]).median, whole[i].error, texture.floor(),
+                           error[i].both.mean, on(front, i) ? "*" : "", on(alone, i) ? "*" : "")
                    .c_str(),
                stdout);
   }
@@ -148,14 +159,15 @@ int Main(int argc, char** argv) {
   CLI::App app("time and energy of every way to do it with less");
   app.add_option("--width", arguments.width);
   app.add_option("--height", arguments.height);
-  app.add_option("--samples", arguments.samples, "patches that the energy looks at");
+  app.add_flag("--energy", arguments.energy, "also `both`, which takes long");
   app.add_option("--runs", arguments.runs);
   app.add_option("--scenes", arguments.scenes)->delimiter(',');
   app.add_option("--styles", arguments.styles)->delimiter(',');
   CLI11_PARSE(app, argc, argv);
   std::puts(
-      "scene\tstyle\tway\tguides and transfer, ms\ttransfer, ms\tboth\tstandard error\tenergy\tmissing\tfront\tfront "
-      "of transfer");
+      "scene\tstyle\tway\tguides and transfer, ms\ttransfer, ms\ttexture\thalves of the exemplar\tboth\tfront\tfront "
+      "of "
+      "transfer");
   for (const std::string& scene : arguments.scenes) {
     for (const std::string& style : arguments.styles) Measure(scene, style, arguments);
   }

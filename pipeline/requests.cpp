@@ -46,4 +46,16 @@ bool HasEnding(const std::string& path, std::initializer_list<const char*> endin
   return std::find(endings.begin(), endings.end(), ending) != endings.end();
 }
 
+Status CheckPictureRequest(const PictureRequest& request) {
+  if (!request.upscale) return Ok();
+  if (request.upsample == 1) return UsageError("--upscale: it needs --upsample N, by which the picture is scaled up");
+  if (!request.over.empty()) {
+    return UsageError("--upscale with --over: the picture underneath has its full size, leave --upscale out");
+  }
+  if (request.show) {
+    return UsageError("--upscale with --show: what is shown is by pixel of the small picture, leave --upscale out");
+  }
+  return Ok();
+}
+
 }  // namespace scumble

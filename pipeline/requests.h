@@ -102,12 +102,19 @@ struct PictureRequest {
   std::uint64_t seed = 0;
   int repeat = 1;                   // times to run the transfer, for the spread of its times
   int upsample = 1;                 // the picture is so many times as wide and high as the guides
+  bool upscale = false;             // with upsample: it is painted at their size and scaled up; without `over`
   std::optional<Explanation> show;  // this explanation instead of the picture
   bool measure_chunks = false;      // report coherence and chunks, for which the source field is kept
 
   // Whether the source field outlives the transfer, which takes more time.
   bool KeepsField() const { return measure_chunks || show.has_value(); }
+  // How many times the guides are upsampled, and the painted picture is scaled up.
+  int GuideFactor() const { return upscale ? 1 : upsample; }
+  int PictureFactor() const { return upscale ? upsample : 1; }
 };
+
+// That the options of a request fit together.
+Status CheckPictureRequest(const PictureRequest& request);
 
 // A range of frames.
 struct SequenceRequest {

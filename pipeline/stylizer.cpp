@@ -83,6 +83,7 @@ Expected<Picture> Stylizer::Paint(const SceneSettings& scene, const StyleSetting
   style_request.assigned = style.assignments, style_request.scene_styles = style.follow_scene;
   PictureRequest picture;
   picture.seed = paint.seed, picture.exposure = paint.exposure, picture.upsample = paint.upsample;
+  picture.upscale = paint.upscale;
   picture.frame = scene.frame, picture.fps = request.fps;
   SCUMBLE_ASSIGN(PaintedFrame painted, state_->workspace.Paint(request, style_request, picture));
   return std::move(painted.picture);

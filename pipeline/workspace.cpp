@@ -262,6 +262,7 @@ Status Workspace::State::Cast(SceneRequest request, std::optional<int> frame, co
 Expected<PaintedFrame> Workspace::State::Paint(SceneRequest scene, const StyleRequest& style,
                                                const PictureRequest& request) {
   scene.seed = request.seed, scene.fps = request.fps;
+  SCUMBLE_RETURN_IF_ERROR(CheckPictureRequest(request));
   SCUMBLE_ASSIGN(scene.size, GuideSizeFor(scene.size, request.upsample));
   const Progress progress = context.StartProgress("stylize");
   SCUMBLE_RETURN_IF_ERROR(CheckArguments(scene, request.frame));

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/filter/edge_test.h"
+#include "core/filter/resample.h"
 #include "core/image/check.h"
 #include "core/image/fragments.h"
 
@@ -293,6 +294,11 @@ Expected<GuideSet> UpsampleGuides(const GuideSet& guides, int factor, int thread
     larger.fragments = upsampler.LargeFragments();
   });
   return larger;
+}
+
+Picture UpscalePicture(const Picture& picture, int factor, int threads) {
+  tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+  return arena.execute([&] { return Resample(picture, picture.width * factor, picture.height * factor); });
 }
 
 }  // namespace scumble

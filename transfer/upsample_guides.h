@@ -1,7 +1,9 @@
-// Upsamples the guides of a small picture, so that the paint has full resolution where the guides have not.
+// Larger pictures from small guides: guides are upsampled, so that the paint has full resolution where they have not,
+// or the picture that was painted at their size is scaled up, which is quicker and softer.
 #pragma once
 
 #include "core/image/guides.h"
+#include "scumble/picture.h"
 
 namespace scumble {
 
@@ -26,5 +28,8 @@ inline constexpr int kMaxUpsampling = 8;
 // whole block, but for `motion`, as above. A kUsage error where a side would have more than kMaxImageSide pixels, or
 // all more than 2^28. `threads` 0: all; the bytes do not depend on it.
 Expected<GuideSet> UpsampleGuides(const GuideSet& guides, int factor, int threads = 0);
+
+// Every side `factor` times as long, by Lanczos-3 (core/filter/resample.h). `threads` 0: all.
+Picture UpscalePicture(const Picture& picture, int factor, int threads = 0);
 
 }  // namespace scumble

@@ -1,17 +1,22 @@
 #include "core/filter/resample.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
 #include <vector>
 
+#include "core/filter/weighted_rows.h"
 #include "core/image/exact_math.h"
 
 namespace scumble {
 namespace {
 
-constexpr int kWeightBits = 14;
+using internal::kWeightBits;
+
 constexpr double kLobes = 3.0;
 
 double Lanczos(double x) {
@@ -50,59 +55,48 @@ std::vector<Taps> MakeTaps(int from, int to) {
   return all;
 }
 
-// Sums of colour · alpha, so that transparent texels add no colour. Not divided yet, so that no precision is lost.
-struct Sums {
-  std::int64_t color[3] = {0, 0, 0};
-  std::int64_t alpha = 0;
-};
-
-std::uint16_t Clamp16(std::int64_t value) {
-  return static_cast<std::uint16_t>(std::clamp<std::int64_t>(value, 0, 65535));
+// Calls work(begin, end) for ranges of rows, on the threads of the caller's arena.
+template <class Work>
+void ForRows(int rows, const Work& work) {
+  constexpr int kRowsPerTask = 16;
+  tbb::parallel_for(tbb::blocked_range<int>(0, rows, kRowsPerTask),
+                    [&](const auto& range) { work(range.begin(), range.end()); });
 }
 
-void Store(const Sums& sums, std::uint16_t* out) {
-  constexpr std::int64_t kHalf = 1 << (kWeightBits - 1);
-  out[3] = Clamp16((sums.alpha + kHalf) >> kWeightBits);
-  for (int c = 0; c < 3; ++c) {
-    out[c] = sums.alpha > 0 ? Clamp16((sums.color[c] + sums.alpha / 2) / sums.alpha) : 0;
-  }
-}
-
-// Along x only.
-Picture ResampleRows(const Picture& source, int width) {
-  const std::vector<Taps> taps = MakeTaps(source.width, width);
-  Picture result(width, source.height);
-  for (int y = 0; y < source.height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      Sums sums;
-      for (std::size_t t = 0; t < taps[x].weights.size(); ++t) {
-        const int from = std::clamp(taps[x].first + static_cast<int>(t), 0, source.width - 1);
-        const std::uint16_t* texel = source.At(from, y);
-        const std::int64_t weight = std::int64_t(taps[x].weights[t]) * texel[3];
-        sums.alpha += weight;
-        for (int c = 0; c < 3; ++c) sums.color[c] += weight * texel[c];
+// Along y only. Edges are repeated.
+Picture ResampleColumns(const Picture& source, int height) {
+  const std::vector<Taps> taps = MakeTaps(source.height, height);
+  Picture result(source.width, height);
+  ForRows(height, [&](int begin, int end) {
+    std::vector<const std::uint16_t*> rows;
+    for (int y = begin; y < end; ++y) {
+      rows.clear();
+      for (std::size_t t = 0; t < taps[y].weights.size(); ++t) {
+        rows.push_back(source.At(0, std::clamp(taps[y].first + static_cast<int>(t), 0, source.height - 1)));
       }
-      Store(sums, result.At(x, y));
+      internal::SumRows(taps[y].weights, rows, source.width, result.At(0, y));
     }
-  }
+  });
   return result;
 }
 
 Picture Transpose(const Picture& source) {
   Picture result(source.height, source.width);
-  for (int y = 0; y < source.height; ++y) {
-    for (int x = 0; x < source.width; ++x) std::copy_n(source.At(x, y), 4, result.At(y, x));
-  }
+  ForRows(source.width, [&](int begin, int end) {  // ranges of columns, a few cache lines wide
+    for (int y = 0; y < source.height; ++y) {
+      for (int x = begin; x < end; ++x) std::copy_n(source.At(x, y), 4, result.At(y, x));
+    }
+  });
   return result;
 }
 
 }  // namespace
 
 Picture Resample(const Picture& source, int width, int height) {
-  Picture result = source;
-  if (width != source.width) result = ResampleRows(result, width);
-  if (height != source.height) result = Transpose(ResampleRows(Transpose(result), height));
-  return result;
+  const bool is_wide = width != source.width;
+  const Picture rows = is_wide ? Transpose(ResampleColumns(Transpose(source), width)) : Picture();
+  const Picture& stretched = is_wide ? rows : source;
+  return height != source.height ? ResampleColumns(stretched, height) : stretched;
 }
 
 }  // namespace scumble

@@ -152,12 +152,13 @@ class LibraryReader : public tinyobj::MaterialReader {
   std::set<std::filesystem::path> read_;
 };
 
-// What tinyobjloader says of a line that it cannot read ends with "line 16.)"; the line itself says more.
+// What tinyobjloader says of a line that it cannot read ends with "line 16.)" or "Line 16)"; the line itself says more.
 std::string WhyUnreadable(const std::string& error, const std::string& text) {
   const std::string said = Excerpt(error.empty() ? "no reason given" : error, 300);
-  const std::size_t at = error.rfind("line ");
+  const std::size_t at = error.rfind("ine ");
   if (at == std::string::npos || error.find("`f' line") == std::string::npos) return said;
-  const long number = std::strtol(error.c_str() + at + 5, nullptr, 10);
+  const long number = std::strtol(error.c_str() + at + 4, nullptr, 10);
+  if (number < 1) return said;
   std::istringstream lines(text);
   std::string line;
   for (long i = 0; i < number; ++i) {

@@ -55,7 +55,9 @@ Quartiles TimeOf(const TradeMeasure& variant, ChartTime time) {
   return {megabytes, megabytes, megabytes};
 }
 
-const Estimate& ErrorOf(const TradeMeasure& variant, ChartError error) {
+Estimate ErrorOf(const TradeMeasure& variant, ChartError error) {
+  constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
+  if (error == ChartError::kTexture) return {variant.texture.value_or(kNotMeasured), 0.0};
   return error == ChartError::kBoth ? variant.both : error == ChartError::kEnergy ? variant.energy : variant.missing;
 }
 
@@ -65,6 +67,7 @@ const char* TimeName(ChartTime time) {
 }
 
 const char* ErrorName(ChartError error) {
+  if (error == ChartError::kTexture) return "texture";
   if (error == ChartError::kBoth) return "both: energy + missing";
   return error == ChartError::kEnergy ? "energy" : "missing";
 }
@@ -75,7 +78,7 @@ std::vector<Point> PointsOf(const TradeReport& report, const ChartLook& look) {
   for (std::size_t i = 0; i < report.variants.size(); ++i) {
     const TradeMeasure& variant = report.variants[i];
     const Quartiles time = TimeOf(variant, look.time);
-    const Estimate& error = ErrorOf(variant, look.error);
+    const Estimate error = ErrorOf(variant, look.error);
     if (!Taken(time.median) || !std::isfinite(time.median) || !std::isfinite(error.mean)) continue;
     const auto axis = std::find(axes.begin(), axes.end(), variant.axis) - axes.begin();
     points.push_back({i, static_cast<std::size_t>(axis), time, error});
@@ -100,9 +103,10 @@ Chart ChartOf(const TradeReport& report, const ChartLook& look) {
     const bool counts = look.time != ChartTime::kMemory && may[point.variant];
     trade.push_back({counts ? point.time.median : std::numeric_limits<double>::quiet_NaN(), point.error.mean});
   }
+  if (look.error == ChartError::kTexture && report.texture_floor) errors.push_back(*report.texture_floor);
   chart.across = ScaleFor(times, true, kLeft, chart.right);
   chart.up = ScaleFor(errors, false, kHeight - kBottom, chart.top);
-  chart.front = ParetoFront(trade);
+  chart.front = ParetoFront(trade, look.error == ChartError::kTexture ? ChanceOf(report) : 0.0);
   for (const std::size_t i : chart.front) chart.points[i].front = true;
   for (Point& point : chart.points) {
     point.x = chart.across.At(point.time.median);
@@ -134,6 +138,16 @@ std::string Grid(const Chart& chart, const ChartLook& look) {
                    "<text x=\"15\" y=\"{0:.1f}\" text-anchor=\"middle\" transform=\"rotate(-90 15 {0:.1f})\">"
                    "{1}; less is nearer to the exemplar</text>\n",
                    (chart.top + bottom) / 2, ErrorName(look.error));
+}
+
+// What halves of the exemplar differ by: no picture need be nearer.
+std::string Floor(const Chart& chart, const TradeReport& report, const ChartLook& look) {
+  if (look.error != ChartError::kTexture || !report.texture_floor) return "";
+  const double y = chart.up.At(*report.texture_floor);
+  return fmt::format(
+      "<line x1=\"{0}\" x2=\"{1}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\" class=\"bar floor\"/>"
+      "<text x=\"{0}\" y=\"{3:.1f}\" dx=\"6\">halves of the exemplar</text>\n",
+      kLeft, chart.right, y, y - 4);
 }
 
 // Steps: between two points of the front only the cheaper one is available.
@@ -171,8 +185,8 @@ std::string Words(const TradeMeasure& variant, bool front) {
       "\ntime " + ShortTime(variant.total_ms) + " ms, of which the transfer " + ShortTime(variant.transfer_ms) + " ms";
   if (variant.prepare_ms > 0.0) words += "\npreparing the style " + ShortFigure(variant.prepare_ms) + " ms, once";
   if (variant.memory_bytes > 0) words += "\nmemory " + ShortMegabytes(variant.memory_bytes) + " MB";
-  words += "\nboth " + ShortEstimate(variant.both) + ", energy " + ShortEstimate(variant.energy) + ", missing " +
-           ShortEstimate(variant.missing);
+  words += "\ntexture " + ShortFigure(variant.texture) + ", both " + ShortEstimate(variant.both) + ", energy " +
+           ShortEstimate(variant.energy) + ", missing " + ShortEstimate(variant.missing);
   if (variant.guide_degrees) words += "\nguides off by " + ShortFigure(variant.guide_degrees) + "°";
   if (!variant.options.empty()) words += "\n" + variant.options;
   return words + (variant.note.empty() ? "" : "\n" + variant.note);
@@ -272,7 +286,7 @@ std::string DrawTradeChart(const TradeReport& report, const ChartLook& look) {
     svg += fmt::format("<text x=\"{}\" y=\"28\" class=\"title\">{}</text><text x=\"{}\" y=\"48\">{}</text>\n", kLeft,
                        EscapeHtml(TradeTitle(report)), kLeft, EscapeHtml(TradeSetup(report)));
   }
-  svg += Grid(chart, look) + FrontLine(chart);
+  svg += Grid(chart, look) + Floor(chart, report, look) + FrontLine(chart);
   // Points of the front lie above the others.
   for (const bool front : {false, true}) {
     for (const Point& point : chart.points) {

@@ -18,29 +18,30 @@ using internal::ShortFigure;
 using internal::ShortTime;
 
 constexpr const char* kTimes[] = {"guides and transfer", "transfer alone", "memory"};
-constexpr const char* kErrors[] = {"both", "energy", "missing"};
+constexpr const char* kErrors[] = {"texture", "both", "energy", "missing"};
 
 std::string LinkTo(const TradeReport& report, std::size_t i) {
   return fmt::format("<a href=\"#way-{}\">{}</a>", i + 1, EscapeHtml(report.variants[i].name));
 }
 
 std::string Costs(const TradeMeasure& variant) {
-  return fmt::format("{} ms, both {}", ShortFigure(variant.total_ms.median), ShortEstimate(variant.both));
+  return fmt::format("{} ms, texture {}", ShortFigure(variant.total_ms.median), ShortFigure(variant.texture));
 }
 
 // The place of the unchanged style.
 std::string OwnPlace(const TradeReport& report, const std::vector<std::size_t>& front) {
   const auto own =
       std::find_if(report.variants.begin(), report.variants.end(), [](const auto& variant) { return variant.chosen; });
-  if (own == report.variants.end() || !internal::Taken(own->total_ms.median) || !internal::Taken(own->both)) return "";
+  if (own == report.variants.end() || !internal::Taken(own->total_ms.median) || !own->texture) return "";
   const std::size_t place = static_cast<std::size_t>(own - report.variants.begin());
   std::string text = "The style as it is takes " + Costs(*own);
   if (std::find(front.begin(), front.end(), place) != front.end()) return text + ", and is on the front.";
-  text += ". Faster, and no farther from the exemplar by “both”:";
+  text += ". Faster, and no farther from the exemplar but by chance:";
+  const double most = *own->texture + ChanceOf(report);
   const char* comma = " ";
   for (const std::size_t i : front) {
     const TradeMeasure& variant = report.variants[i];
-    if (variant.total_ms.median > own->total_ms.median || variant.both.mean > own->both.mean) continue;
+    if (variant.total_ms.median > own->total_ms.median || variant.texture.value_or(most) > most) continue;
     text += comma + LinkTo(report, i) + " (" + Costs(variant) + ")";
     comma = ", ";
   }
@@ -60,10 +61,11 @@ std::string Header(const TradeReport& report) {
                      ".</p>\n";
   if (!report.command.empty()) html += "<p>Repeat with <code>" + EscapeHtml(report.command) + "</code></p>\n";
   if (report.variants.empty()) return html + "<p>Nothing was measured.</p>\n";
-  html += fmt::format("<p>{} of {} ways are on the front: nothing else is as fast and nearer to the exemplar. ",
-                      front.size(), report.variants.size());
-  return html + OwnPlace(report, front) + " " + internal::kMindBlending +
-         " What ways of the axis <code>seed</code> differ by is chance.</p>\n" + LeftOut(report);
+  html += fmt::format(
+      "<p>{} of {} ways are on the front: nothing else is as fast and has paint that looks more like "
+      "the exemplar's, by more than chance ({}: what other seeds of the style differ by). ",
+      front.size(), report.variants.size(), ShortFigure(ChanceOf(report)));
+  return html + OwnPlace(report, front) + "</p>\n" + LeftOut(report);
 }
 
 std::string Choice(const char* name, std::size_t i, const char* label) {
@@ -129,7 +131,7 @@ struct Column {
 constexpr Column kColumns[] = {
     {"front", "", false},     {"way", "", false},        {"changes", "", false},    {"time", "ms", true},
     {"guides", "ms", true},   {"transfer", "ms", true},  {"prepare", "ms", true},   {"memory", "MB", true},
-    {"both", "", true},       {"energy", "", true},      {"missing", "", true},     {"texture", "", true},
+    {"texture", "", true},    {"both", "", true},        {"energy", "", true},      {"missing", "", true},
     {"off by", "°", true},    {"coherence", "%", true},  {"chunk", "px", true},     {"seam excess", "", true},
     {"repetition", "", true}, {"guides' RMS", "", true}, {"guides' FLIP", "", true}};
 
@@ -153,9 +155,9 @@ std::string VariantRow(const TradeReport& report, std::size_t i, bool front) {
   html += FigureCell(internal::Taken(variant.prepare_ms));
   html +=
       Cell(internal::Taken(static_cast<double>(variant.memory_bytes)), internal::ShortMegabytes(variant.memory_bytes));
+  html += FigureCell(variant.texture);
   html += EstimateCell(variant.both) + EstimateCell(variant.energy) + EstimateCell(variant.missing);
-  html += FigureCell(variant.texture) + FigureCell(variant.guide_degrees) +
-          Cell(variant.coherence, internal::ShortPercent(variant.coherence));
+  html += FigureCell(variant.guide_degrees) + Cell(variant.coherence, internal::ShortPercent(variant.coherence));
   for (const auto& value :
        {variant.chunk_area, variant.seam_excess, variant.repetition, variant.guide_rms, variant.guide_flip}) {
     html += FigureCell(value);
@@ -182,8 +184,9 @@ std::string Caption(const TradeReport& report, std::size_t i, bool front) {
   if (variant.chosen) html += ", the style as it is";
   if (variant.exact) html += ", what the others are measured against";
   if (front) html += ", <span class=\"star\">★ on the front</span>";
-  html += fmt::format("<br>{} ms; both {}, energy {}, missing {}", ShortTime(variant.total_ms),
-                      ShortEstimate(variant.both), ShortEstimate(variant.energy), ShortEstimate(variant.missing));
+  html += fmt::format("<br>{} ms; texture {}, both {}, energy {}, missing {}", ShortTime(variant.total_ms),
+                      ShortFigure(variant.texture), ShortEstimate(variant.both), ShortEstimate(variant.energy),
+                      ShortEstimate(variant.missing));
   if (!variant.options.empty()) html += "<br><code>" + EscapeHtml(variant.options) + "</code>";
   if (!variant.note.empty()) html += "<br>" + EscapeHtml(variant.note);
   return html + "</figcaption>";

@@ -33,10 +33,10 @@ Json VariantJson(const TradeReport& report, std::size_t i, bool front) {
   json["total_ms"] = TimeJson(variant.total_ms);
   json["prepare_ms"] = NumberJson(internal::Taken(variant.prepare_ms));
   json["memory_bytes"] = variant.memory_bytes > 0 ? Json(variant.memory_bytes) : Json();
+  json["texture"] = NumberJson(variant.texture);
   json["both"] = EstimateJson(variant.both);
   json["energy"] = EstimateJson(variant.energy);
   json["missing"] = EstimateJson(variant.missing);
-  json["texture"] = NumberJson(variant.texture);
   json["guide_degrees"] = NumberJson(variant.guide_degrees);
   json["coherence"] = NumberJson(variant.coherence);
   json["chunk_area_pixels"] = NumberJson(variant.chunk_area);
@@ -60,7 +60,10 @@ std::string TradeJson(const TradeReport& report) {
             {"machine", report.machine},
             {"repeats", report.repeats},
             {"lambda", JsonNumber(report.lambda)},
-            {"command", report.command}};
+            {"command", report.command},
+            {"ranked_by", kRankedBy},
+            {"texture_floor", NumberJson(report.texture_floor)},
+            {"texture_chance", JsonNumber(ChanceOf(report))}};
   json["front"] = Json::array();
   for (const std::size_t i : FrontOf(report)) json["front"].push_back(report.variants[i].name);
   json["left_out"] = report.left_out;

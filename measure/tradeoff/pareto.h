@@ -17,6 +17,9 @@ struct TradePoint {
 // better in one. Points that are equal in both do not beat each other: all are on the front if one is, in the order
 // given. So the errors along the front fall strictly from each time to the next longer one. A point with a NaN was not
 // measured: it is never on the front and beats no point. Infinities are numbers like others. O(n log n).
-std::vector<std::size_t> ParetoFront(std::span<const TradePoint> points);
+//
+// `chance` (0 or more): errors that differ by no more are taken for equal, so a slower point is on the front only where
+// its error is less by more than that than those of all quicker points on it.
+std::vector<std::size_t> ParetoFront(std::span<const TradePoint> points, double chance = 0.0);
 
 }  // namespace scumble

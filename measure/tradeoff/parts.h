@@ -31,17 +31,13 @@ std::string ShortPercent(const std::optional<double>& share);  // 0.897 is "89.7
 std::string TradeTitle(const TradeReport& report);  // "suzanne in oil"
 std::string TradeSetup(const TradeReport& report);  // "960×540 pixels, AMD …, 2 threads; medians of 5 runs; λ = 10"
 
-// A note to show wherever variants are ranked.
-inline constexpr const char* kMindBlending =
-    "Blending mostly scores better and makes strokes soft: compare ways of one blend_radius and one edge_aware.";
-
 // The quantity on a chart's time axis.
 enum class ChartTime { kTotal, kTransfer, kMemory };
-enum class ChartError { kBoth, kEnergy, kMissing };
+enum class ChartError { kTexture, kBoth, kEnergy, kMissing };
 
 struct ChartLook {
   ChartTime time = ChartTime::kTotal;
-  ChartError error = ChartError::kBoth;
+  ChartError error = ChartError::kTexture;
   bool page = false;  // for the page: colours of its style sheet, links from points to pictures; else a separate file
 };
 

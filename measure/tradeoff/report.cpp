@@ -114,14 +114,26 @@ std::vector<bool> MayBeOnFront(const TradeReport& report) {
 
 }  // namespace internal
 
+double ChanceOf(const TradeReport& report) {
+  const auto own =
+      std::find_if(report.variants.begin(), report.variants.end(), [](const auto& variant) { return variant.chosen; });
+  double chance = 0.0;
+  if (own == report.variants.end() || !own->texture) return chance;
+  for (const TradeMeasure& variant : report.variants) {
+    if (variant.by_chance && variant.texture) chance = std::max(chance, std::abs(*variant.texture - *own->texture));
+  }
+  return chance;
+}
+
 std::vector<std::size_t> FrontOf(const TradeReport& report) {
   constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
   std::vector<TradePoint> points;
   const std::vector<bool> may = internal::MayBeOnFront(report);
   for (std::size_t i = 0; i < report.variants.size(); ++i) {
-    points.push_back({may[i] ? report.variants[i].total_ms.median : kNotMeasured, report.variants[i].both.mean});
+    points.push_back({may[i] ? report.variants[i].total_ms.median : kNotMeasured,
+                      report.variants[i].texture.value_or(kNotMeasured)});
   }
-  return ParetoFront(points);
+  return ParetoFront(points, ChanceOf(report));
 }
 
 std::vector<std::size_t> ByAxis(const TradeReport& report) {

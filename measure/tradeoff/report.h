@@ -31,8 +31,8 @@ struct TradeMeasure {
   Quartiles guides_ms, transfer_ms, total_ms;  // wall clock
   double prepare_ms = 0.0;              // the style, once, with empty caches: tables, trees, exemplars at this size
   std::size_t memory_bytes = 0;         // the peak
-  Estimate both, energy, missing;       // measure/energy/energy.h; `both` ranks
-  std::optional<double> texture;        // measure/texture/guided_texture.h
+  std::optional<double> texture;        // measure/texture/guided_texture.h; ranks
+  Estimate both, energy, missing;       // measure/energy/energy.h
   std::optional<double> guide_degrees;  // mean angle between a pixel's normal and that of its source, exact guides
   std::optional<double> coherence;      // 0 … 1
   std::optional<double> chunk_area;     // mean, pixels
@@ -54,17 +54,27 @@ struct TradeReport {
   std::optional<int> frame = {};  // of the scene and the style; none: static
   // Stops that brighten the light of the unchanged style's picture, given or fitted; none: the style uses no light.
   std::optional<double> exposure = {};
+  // Of halves of the exemplar from each other: what paint of one kind differs by. None: not measured.
+  std::optional<double> texture_floor = {};
   std::vector<TradeMeasure> variants;
   std::vector<std::string> left_out = {};  // variants or figures that were not measured, in words and with the reason
 };
 
-// Places in `ways` of the Pareto front of median total time and `both`, by rising time. Left out are variants that were
-// not measured, that differ from the style by their random seed alone, or that `stylize` has no options for. Of several
-// with equal pictures one represents them: the first, unless a later one is faster in total by more than the quartiles
-// of both, because otherwise timing noise would choose. One run has no quartiles.
+// The figure that ranks variants, and its name in files.
+inline constexpr const char* kRankedBy = "texture";
+
+// How far `texture` differs by chance: the largest difference between the unchanged style and itself with another
+// random seed. 0 where none was measured.
+double ChanceOf(const TradeReport& report);
+
+// Places in `variants` of the Pareto front of median total time and `texture`, by rising time: what is slower is on it
+// only where it is nearer to the exemplar by more than chance. Left out are variants that were not measured, that
+// differ from the style by their random seed alone, or that `stylize` has no options for. Of several with equal
+// pictures one represents them: the first, unless a later one is faster in total by more than the quartiles of both,
+// because otherwise timing noise would choose. One run has no quartiles.
 std::vector<std::size_t> FrontOf(const TradeReport& report);
 
-// Places in `ways`, axes in the order of their first variants, variants of one axis in the order given.
+// Places in `variants`, axes in the order of their first variants, variants of one axis in the order given.
 std::vector<std::size_t> ByAxis(const TradeReport& report);
 
 // A unique name for the picture of variants[i]: "03-levels-4.png". Letters, digits and hyphens alone.
@@ -82,8 +92,9 @@ std::string TradeCsv(const TradeReport& report);
 // The figures as JSON; docs/tradeoff.md has the schema. Figures that were not measured are null.
 std::string TradeJson(const TradeReport& report);
 
-// A self-contained SVG on white: time (logarithmic) against `both`, quartiles and standard errors as bars, the front as
-// a line with its names, a colour and shape for each axis. Variants without a time or without `both` are not drawn.
+// A self-contained SVG on white: time (logarithmic) against `texture`, quartiles as bars, the front as a line with its
+// names, a colour and shape for each axis, and what halves of the exemplar differ by. Variants without a time or
+// without `texture` are not drawn.
 std::string TradeChart(const TradeReport& report);
 
 // One HTML page that loads nothing: the charts, the table, and every picture, embedded. Without scripts it still has

@@ -47,10 +47,10 @@ Row RowOf(const TradeMeasure& variant, bool front) {
           variant.name,
           internal::ShortTime(variant.total_ms),
           internal::ShortMegabytes(variant.memory_bytes),
+          ShortFigure(variant.texture),
           Narrow(variant.both),
           Narrow(variant.energy),
           Narrow(variant.missing),
-          ShortFigure(variant.texture),
           ShortFigure(variant.guide_degrees),
           internal::ShortPercent(variant.coherence),
           ShortFigure(variant.chunk_area),
@@ -58,9 +58,9 @@ Row RowOf(const TradeMeasure& variant, bool front) {
           ShortFigure(variant.repetition)};
 }
 
-const Row kHeadAbove = {"", "", "time, ms", "memory", "", "", "", "tex-", "off by", "coher.", "chunk", "seam", "repe-"};
-const Row kHeadBelow = {"",     "way", "(quartiles)", "MB", "both",   "energy", "missing",
-                        "ture", "°",   "%",           "px", "excess", "tition"};
+const Row kHeadAbove = {"", "", "time, ms", "memory", "tex-", "", "", "", "off by", "coher.", "chunk", "seam", "repe-"};
+const Row kHeadBelow = {"",        "way", "(quartiles)", "MB", "ture",   "both",  "energy",
+                        "missing", "°",   "%",           "px", "excess", "tition"};
 
 std::string Line(const Row& row, const std::array<std::size_t, kTableCells>& widths) {
   std::string line;
@@ -126,12 +126,17 @@ std::string TradeTable(const TradeReport& report) {
     text += Line(rows[line], widths);
   }
   text +=
-      "\n* nothing else is as fast and nearer to the exemplar by `both`, the error: what of the picture is not the "
-      "exemplar's\n"
-      "  (energy) and what of the exemplar is not in the picture (missing). coher.: neighbours whose paint was side by "
-      "side;\n"
-      "  seam: larger steps across pieces than inside; repetition: how often a shown pixel of the exemplar shows.\n  ";
-  text += internal::kMindBlending + std::string("\n");
+      "\n* nothing else is as fast and has paint that looks more like the exemplar's, by `texture` and more than "
+      "chance:\n";
+  if (report.texture_floor) {
+    text += fmt::format("  halves of the exemplar differ by {}, other seeds of the style by {}.\n",
+                        ShortFigure(report.texture_floor), ShortFigure(ChanceOf(report)));
+  }
+  text +=
+      "  both: what of the picture is not the exemplar's (energy) and what of the exemplar is not in the picture "
+      "(missing).\n"
+      "  coher.: neighbours whose paint was side by side; seam: larger steps across pieces than inside;\n"
+      "  repetition: how often a shown pixel of the exemplar shows.\n";
   return text + GuideTable(report) + Notes(report);
 }
 

@@ -43,7 +43,9 @@ struct ChunksReport {
 struct PictureReport {
   std::string output;
   int width = 0, height = 0;
-  int upsample = 1, repeat = 1;
+  int upsample = 1;
+  bool upscale = false;
+  int repeat = 1;
   std::uint64_t seed = 0;
   std::vector<StyleInReport> styles;  // the default first
   std::optional<double> exposure;     // stops, where some style looks at light

@@ -149,7 +149,7 @@ Status ReadOver(const std::string& file, PictureState& state) {
 
 PictureSettings SettingsOf(const PictureRequest& request, std::optional<FrameRate> fps, std::optional<double> exposure,
                            const std::string& samples) {
-  return {request.seed, !request.over.empty(), request.show, request.upsample, fps,
+  return {request.seed, !request.over.empty(), request.show, request.upsample, request.upscale, fps,
           exposure,     !request.exposure,     samples};
 }
 
@@ -170,7 +170,7 @@ bool IsReadEachFrame(const std::string& key) {
 
 Status PrepareFrame(StyleSet& styles, const GuideSet& guides, const PictureRequest& request, const RunContext& context,
                     PictureState& state) {
-  const int height = guides.height() * request.upsample;
+  const int height = guides.height() * request.GuideFactor();
   const bool all = state.prepared.empty() || state.prepared.front().output_height != height;
   for (std::size_t i = 0; i < styles.styles.size(); ++i) {
     SCUMBLE_ASSIGN(const auto changed, SetStyleFrame(styles.styles[i], request.frame.value_or(0)));
@@ -241,8 +241,8 @@ Expected<PaintedPicture> PaintInMemory(StyleSet& styles, const GuideSet& given, 
   Stopwatch watch;
   WarnOfOtherSize(given, source.name, context, state);
   std::optional<GuideSet> larger;
-  if (request.upsample > 1) {
-    SCUMBLE_ASSIGN(larger, UpsampleGuides(given, request.upsample, context.threads));
+  if (request.GuideFactor() > 1) {
+    SCUMBLE_ASSIGN(larger, UpsampleGuides(given, request.GuideFactor(), context.threads));
     times.emplace_back("upsample", watch.Lap());
   }
   const GuideSet& guides = larger ? *larger : given;
@@ -262,7 +262,7 @@ Expected<PaintedPicture> PaintInMemory(StyleSet& styles, const GuideSet& given, 
                                over,         request.KeepsField()};
   TransferScratch& scratch = state.scratch;
   Picture picture;
-  std::vector<double> match, vote, compose;
+  std::vector<double> match, vote, compose, upscale;
   for (int run = 0; run < request.repeat; ++run) {
     const double begin = double(run) / request.repeat, end = double(run + 1) / request.repeat;
     SCUMBLE_RETURN_IF_ERROR(PaintFrame(state.prepared, needs_map ? &map : nullptr, guides, settings, context,
@@ -270,19 +270,33 @@ Expected<PaintedPicture> PaintInMemory(StyleSet& styles, const GuideSet& given, 
     match.push_back(scratch.times.match_ms);
     vote.push_back(scratch.times.vote_ms);
     compose.push_back(scratch.times.compose_ms);
+    if (request.PictureFactor() == 1) continue;
+    watch.Lap();
+    picture = UpscalePicture(picture, request.PictureFactor(), context.threads);
+    upscale.push_back(watch.Lap());
   }
   if (request.show)
     picture = Show(*request.show, {state.prepared, map, guides, scratch.field, settings.exposure, picture});
   const auto sum = [](const std::vector<double>& ms) { return std::accumulate(ms.begin(), ms.end(), 0.0); };
-  context.EndStage("transfer", {{"match", sum(match)}, {"vote", sum(vote)}, {"compose", sum(compose)}});
+  context.EndStage("transfer",
+                   {{"match", sum(match)}, {"vote", sum(vote)}, {"compose", sum(compose)}, {"upscale", sum(upscale)}});
 
   PaintedPicture made;
   made.write = {request.bits, request.png_level};
   made.write.fast = request.fast_io;
   made.write.settings = SettingsText(
       styles, SettingsOf(request, settings.fps, settings.exposure, SamplesAsked(given.attributes)), state.hashes);
-  PictureReport report{
-      request.output, guides.width(), guides.height(), request.upsample, request.repeat, request.seed, {}, {}, {}, {}};
+  PictureReport report{request.output,
+                       picture.width,
+                       picture.height,
+                       request.upsample,
+                       request.upscale,
+                       request.repeat,
+                       request.seed,
+                       {},
+                       {},
+                       {},
+                       {}};
   for (std::size_t i = 0; i < state.prepared.size(); ++i) {
     report.styles.push_back(ReportOf(styles.given[i], styles.styles[i], state.prepared[i]));
   }
@@ -294,6 +308,7 @@ Expected<PaintedPicture> PaintInMemory(StyleSet& styles, const GuideSet& given, 
   report.steps.push_back(SpreadOf("match", match));
   report.steps.push_back(SpreadOf("vote", vote));
   report.steps.push_back(SpreadOf("compose", compose));
+  if (!upscale.empty()) report.steps.push_back(SpreadOf("upscale", upscale));
   made.report = {std::move(report), source.plan, source.memory, source.cost, 0, 0.0};
   made.picture = std::move(picture);
   return made;

@@ -84,11 +84,12 @@ std::uint64_t HashOfStyles(const StyleSet& styles, std::size_t count, ExemplarHa
 }
 
 std::string SettingsText(const StyleSet& styles, const PictureSettings& settings, ExemplarHashes& known) {
-  const auto& [seed, over, show, upsample, fps, exposure, measured, samples] =
+  const auto& [seed, over, show, upsample, upscale, fps, exposure, measured, samples] =
       settings;  // all: each makes another picture
   std::string text = fmt::format("scumble {}; style {:016x}; seed {}; over {}; show {}; upsample {}", SCUMBLE_VERSION,
                                  HashOfStyles(styles, styles.chosen, known), seed, over ? "a picture" : "nothing",
                                  show ? ExplanationNames()[std::size_t(*show)] : "result", upsample);
+  if (upscale) text += ", of the picture";
   const auto chosen = std::span(styles.styles).first(styles.chosen);
   if (!samples.empty() && std::any_of(chosen.begin(), chosen.end(), AsksForLight)) text += "; samples " + samples;
   text += "; fps " + (fps ? fmt::format("{}", double(fps->numerator) / double(fps->denominator)) : kAnySetting);

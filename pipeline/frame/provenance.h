@@ -22,6 +22,7 @@ struct PictureSettings {
   bool over = false;  // something lies underneath
   std::optional<Explanation> show;
   int upsample = 1;
+  bool upscale = false;
   std::optional<FrameRate> fps;    // where it is known
   std::optional<double> exposure;  // where it is known; counts for styles of several exemplars, as does the next
   std::optional<bool> measured;    // whether --exposure auto found it; empty: the stops alone count

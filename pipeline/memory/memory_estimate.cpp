@@ -235,14 +235,16 @@ void AddGuidesRead(const GuideFileInfo& info, const GuideReadOptions& read, Memo
 }
 
 void AddPicture(const PictureWork& work, const PictureRequest& options, MemoryNeed& need) {
-  const Size size{work.guides.width * options.upsample, work.guides.height * options.upsample};
+  const int factor = options.GuideFactor();
+  const Size size{work.guides.width * factor, work.guides.height * factor};  // as it is painted
   const Bytes pixels = PixelsOf(size), encoded = EncodedBytes(options);
-  if (work.is_sequence) need.Take("frame that is written", (kPaint + encoded) * pixels);
-  if (options.upsample > 1) {
+  const Bytes larger = Bytes(options.PictureFactor()) * Bytes(options.PictureFactor());
+  if (work.is_sequence) need.Take("frame that is written", (kPaint + encoded) * pixels * larger);
+  if (factor > 1) {
     const Bytes of_pixel = kFloat * ChannelsOf(Made(work.layers));
     // A list of them that may have grown to twice its content, their index and colour.
     const Bytes of_fragment = of_pixel + 2 * kPlacedFragment + kFloat + kPaint;
-    const Bytes fragments = Bytes(work.fragments) * Bytes(options.upsample) * Bytes(options.upsample);
+    const Bytes fragments = Bytes(work.fragments) * Bytes(factor) * Bytes(factor);
     need.Take("upsampled guides", of_pixel * pixels + of_fragment * fragments);
   }
   if (!options.over.empty()) {
@@ -257,7 +259,10 @@ void AddPicture(const PictureWork& work, const PictureRequest& options, MemoryNe
   else if (work.keeps_field)
     need.TakeTransient("figures", kCoherence * pixels);
   if (NeedsModule(options.output)) need.Take("writer", kFormatsModule);
-  need.TakeTransient("picture file", encoded * pixels);
+  // Scaled up along x, then along y.
+  if (larger > 1) need.Take("scaled picture", kPaint * pixels * larger);
+  if (larger > 1) need.TakeTransient("scaling it", kPaint * pixels * Bytes(options.PictureFactor()));
+  need.TakeTransient("picture file", encoded * pixels * larger);
 }
 
 void AddKit(int size, std::size_t lights, const LayerSet& layers, bool has_layers_file, MemoryNeed& need) {

@@ -31,12 +31,8 @@ namespace {
 // About as many samples of luminance and shadow as pixels choose, at most, in the mean of a picture.
 constexpr int kChosenSamples = 16;
 
-// One frame by the variant at a place of the ladder.
+// Milliseconds that one frame takes by a variant of the ladder.
 using PaintVariant = std::function<Expected<double>(const Variant& variant)>;
-struct Trials {
-  PaintVariant paint;  // milliseconds
-  PaintVariant judge;  // its error: TrialPainter::MeasureError
-};
 
 FileCache TimesCache(const RunContext& context) {
   return FileCache(context.cache_folder.empty() ? std::filesystem::path() : context.cache_folder / "times");
@@ -53,6 +49,7 @@ std::vector<std::string> OptionsListOf(const Variant& variant) {
     options.push_back(option), options.push_back(value);
   };
   if (UpsampleOf(variant) > 1) add("--upsample", std::to_string(UpsampleOf(variant)));
+  if (variant.upscale) options.emplace_back("--upscale");
   if (variant.samples > 0) add("--samples", std::to_string(variant.samples));
   for (const std::string& setting : variant.settings) add("--set", setting);
   return options;
@@ -60,6 +57,7 @@ std::vector<std::string> OptionsListOf(const Variant& variant) {
 
 Status Take(const Variant& variant, StyleSet& styles, PictureRequest& picture) {
   picture.upsample *= UpsampleOf(variant);
+  picture.upscale = picture.upscale || variant.upscale;
   return ApplyVariant(variant, styles);
 }
 
@@ -75,23 +73,15 @@ Variant NamedVariant(Quality quality, const LadderFrame& frame, const StyleSet& 
 }
 
 Expected<Variant> VariantWithin(const BudgetRequest& options, const LadderFrame& frame,
-                                const std::string& circumstances, const std::string& judged, const StyleSet& styles,
-                                const RunContext& context, const Trials& trials, BudgetChoice& choice) {
+                                const std::string& circumstances, const StyleSet& styles, const RunContext& context,
+                                const PaintVariant& paint, BudgetChoice& choice) {
   const std::vector<Variant> variants = QualityLadder(styles, frame);
   FileCache cache = TimesCache(context);
   Calibration calibration{circumstances, {}, &cache, options.recalibrate};
   for (const Variant& variant : variants) calibration.variants.push_back(variant.name);
-  calibration.judged = judged;
-  const bool one_style = styles.styles.size() == 1 && styles.assigned.empty();  // of several no error is known
-  for (std::size_t i = 0; one_style && i < variants.size(); ++i) {
-    for (std::size_t j = i + 1; j < variants.size(); ++j) {
-      if (AreContenders(variants[i], variants[j])) calibration.contenders[i] = j;
-    }
-  }
   Progress progress = context.StartProgress("calibration");
-  // Each variant once; the one that is taken nine times, and its contender, if it has one; the last twice more for a
-  // cold start; and two errors.
-  const double usual_runs = static_cast<double>(variants.size()) + kCalibrationRuns + 2.0 + 2.0;
+  // Each variant once; the one that is taken nine times; the last twice more for a cold start.
+  const double usual_runs = static_cast<double>(variants.size()) + kCalibrationRuns + 2.0;
   int runs = 0;
   const auto begin_run = [&]() -> Status {
     SCUMBLE_RETURN_IF_ERROR(context.CheckNotCancelled());
@@ -102,17 +92,9 @@ Expected<Variant> VariantWithin(const BudgetRequest& options, const LadderFrame&
     if (runs == 0)
       context.Note(fmt::format("--budget-ms: measuring up to {} ways on this machine, once", variants.size()));
     SCUMBLE_RETURN_IF_ERROR(begin_run());
-    return trials.paint(variants[place]);
+    return paint(variants[place]);
   };
-  bool judges = false;
-  const MeasureErrorOf judge = [&](std::size_t place) -> Expected<double> {
-    if (!std::exchange(judges, true)) {
-      context.Note("--budget-ms: two ways fit whose order differs by style; which is nearer is measured here, once");
-    }
-    SCUMBLE_RETURN_IF_ERROR(begin_run());
-    return trials.judge(variants[place]);
-  };
-  SCUMBLE_ASSIGN(const PickedVariant picked, PickVariant(calibration, options.budget_ms, measure, judge));
+  SCUMBLE_ASSIGN(const PickedVariant picked, PickVariant(calibration, options.budget_ms, measure));
   progress = nullptr;
   context.EndStage("calibration");
   const Variant& variant = variants[picked.variant];
@@ -129,9 +111,6 @@ Expected<Variant> VariantWithin(const BudgetRequest& options, const LadderFrame&
   choice.fits = picked.fits;
   choice.measured_runs = picked.measured;
   choice.options = OptionsListOf(variant);
-  for (const auto& [place, off] : picked.compared) {
-    if (std::isfinite(off)) choice.compared.emplace_back(variants[place].name, off);
-  }
   return variant;
 }
 
@@ -239,12 +218,6 @@ class SceneTrials {
     return casting_ms + painting_ms;
   }
 
-  Expected<double> MeasureError(const Variant& variant) {
-    double casting_ms = 0.0;
-    SCUMBLE_ASSIGN(const GuideSet guides, Cast(variant, casting_ms));
-    return painter_.MeasureError(variant, guides);
-  }
-
  private:
   Status Open() {
     if (opened_) return Ok();
@@ -271,21 +244,6 @@ class SceneTrials {
   std::optional<StaticScene> opened_;
   TrialPainter painter_;
 };
-
-std::string ExposureText(const PictureRequest& picture) {
-  return picture.exposure ? fmt::format("{}", *picture.exposure) : "auto";
-}
-
-// What the guides of a picture show beside their size and coverage: their normals and light.
-std::string PictureText(const GuideSet& guides, const PictureRequest& picture) {
-  std::uint64_t hash = 0;
-  for (const Layer layer : {Layer::kCoverage, Layer::kNormal, Layer::kLuminance}) {
-    if (!guides.Has(layer)) continue;
-    const auto plane = guides.Plane(layer);
-    hash = Hash(hash, HashText({reinterpret_cast<const char*>(plane.data()), plane.size_bytes()}));
-  }
-  return fmt::format("guides {:016x}, exposure {}", hash, ExposureText(picture));
-}
 
 }  // namespace
 
@@ -318,11 +276,9 @@ Expected<std::optional<BudgetChoice>> ChooseForGuides(const BudgetRequest& optio
                   64.0 * double(covered) / double(std::max<std::size_t>(1, guides.pixel_count())),
                   guides.layers().ToString(), CommonCircumstances(styles, picture, context));
   TrialPainter trial(styles, picture, frame, name, over, context);
-  SCUMBLE_ASSIGN(const Variant variant,
-                 VariantWithin(options, ladder, circumstances, PictureText(guides, picture), styles, context,
-                               {[&](const Variant& one) { return trial.Paint(one, guides); },
-                                [&](const Variant& one) { return trial.MeasureError(one, guides); }},
-                               choice));
+  SCUMBLE_ASSIGN(const Variant variant, VariantWithin(
+                                            options, ladder, circumstances, styles, context,
+                                            [&](const Variant& one) { return trial.Paint(one, guides); }, choice));
   SCUMBLE_RETURN_IF_ERROR(Take(variant, styles, picture));
   return std::optional(std::move(choice));
 }
@@ -336,8 +292,12 @@ Expected<std::optional<BudgetChoice>> ChooseForScene(const BudgetRequest& option
   // Named points do not look at the scene: where its light takes no samples, fewer make no difference.
   const bool may_have_fewer =
       !scene.samples_given && std::any_of(styles.styles.begin(), styles.styles.end(), AsksForLight);
-  LadderFrame ladder{true, scene.size.width, scene.size.height, options.guides_are_fixed,
-                     may_have_fewer ? scene.samples : 0};
+  LadderFrame ladder{true,
+                     scene.size.width,
+                     scene.size.height,
+                     options.guides_are_fixed,
+                     may_have_fewer ? scene.samples : 0,
+                     !picture.over.empty() || !over.empty() || picture.show};
   const auto take = [&](const Variant& variant) {
     TakeSamples(variant, scene);
     return Take(variant, styles, picture);
@@ -359,11 +319,9 @@ Expected<std::optional<BudgetChoice>> ChooseForScene(const BudgetRequest& option
     // Pixels that choose their samples take fewer than a step of many for each.
     ladder.samples = !needed ? 0 : paths ? ladder.samples : std::min(ladder.samples, kChosenSamples);
   }
-  SCUMBLE_ASSIGN(const Variant variant,
-                 VariantWithin(options, ladder, circumstances, "exposure " + ExposureText(picture), styles, context,
-                               {[&](const Variant& one) { return trials.Paint(one); },
-                                [&](const Variant& one) { return trials.MeasureError(one); }},
-                               choice));
+  SCUMBLE_ASSIGN(const Variant variant, VariantWithin(
+                                            options, ladder, circumstances, styles, context,
+                                            [&](const Variant& one) { return trials.Paint(one); }, choice));
   SCUMBLE_RETURN_IF_ERROR(take(variant));
   return std::optional(std::move(choice));
 }

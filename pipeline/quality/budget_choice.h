@@ -38,12 +38,11 @@ struct BudgetChoice {
   double predicted_ms = 0;
   bool fits = false;
   int measured_runs = 0;
-  std::vector<std::pair<std::string, double>> compared;  // contenders that were compared, and their errors
-  std::vector<std::string> options;                      // of the command line, that repeat it: "--upsample", "4", …
+  std::vector<std::string> options;  // of the command line, that repeat it: "--upsample", "4", …
 };
 
 // Chooses, puts the choice into `styles` and `picture`, and notes it; empty where nothing is to be chosen. Of the
-// guides only size and coverage count for times; what they show counts for which of two variants is nearer. `frame` is
+// guides only size and coverage count. `frame` is
 // theirs; none: 0. `over`: the picture underneath theirs; empty: none.
 Expected<std::optional<BudgetChoice>> ChooseForGuides(const BudgetRequest& options, const GuideSet& guides,
                                                       std::optional<int> frame, const std::string& name,

@@ -29,14 +29,11 @@ double Median(Runs runs) {
 // What is kept between runs.
 struct Known {
   std::map<std::string, Runs> variants;
-  std::map<std::string, double> off;  // of variants that had contenders; infinity where it cannot be known
-  std::string off_of;                 // Calibration::judged
   double cold_ms = 0.0;
 };
 
 // One fact a line: a word, then numbers, then a text up to the line's end.
-constexpr std::string_view kCircumstances = "circumstances", kCold = "cold_ms", kOffOf = "off_of", kRuns = "runs",
-                           kOff = "off";
+constexpr std::string_view kCircumstances = "circumstances", kCold = "cold_ms", kRuns = "runs";
 
 std::string OneLine(std::string text) {
   std::replace(text.begin(), text.end(), '\n', ' ');
@@ -44,12 +41,10 @@ std::string OneLine(std::string text) {
 }
 
 std::string ToText(const Known& known, const std::string& circumstances) {
-  std::string text = fmt::format("{} {}\n{} {}\n{} {}\n", kCircumstances, OneLine(circumstances), kCold, known.cold_ms,
-                                 kOffOf, OneLine(known.off_of));
+  std::string text = fmt::format("{} {}\n{} {}\n", kCircumstances, OneLine(circumstances), kCold, known.cold_ms);
   for (const auto& [name, runs] : known.variants) {
     if (!runs.empty()) text += fmt::format("{} {} {} {}\n", kRuns, runs.size(), fmt::join(runs, " "), name);
   }
-  for (const auto& [name, off] : known.off) text += fmt::format("{} {} {}\n", kOff, off, name);
   return text;
 }
 
@@ -81,8 +76,6 @@ std::optional<Known> ParseTimes(std::span<const std::byte> bytes, const std::str
       same = RestOf(line) == OneLine(circumstances);
     } else if (word == kCold) {
       cold = ReadNumber(line, known.cold_ms) && std::isfinite(known.cold_ms);
-    } else if (word == kOffOf) {
-      known.off_of = RestOf(line);
     } else if (word == kRuns) {
       if (!ReadNumber(line, number) || number > kCalibrationRuns) return std::nullopt;
       Runs runs(static_cast<std::size_t>(number));
@@ -90,9 +83,6 @@ std::optional<Known> ParseTimes(std::span<const std::byte> bytes, const std::str
         if (!ReadNumber(line, ms) || !std::isfinite(ms)) return std::nullopt;
       }
       known.variants[RestOf(line)] = std::move(runs);
-    } else if (word == kOff) {
-      if (!ReadNumber(line, number)) return std::nullopt;
-      known.off[RestOf(line)] = number;
     } else {
       return std::nullopt;
     }
@@ -102,14 +92,12 @@ std::optional<Known> ParseTimes(std::span<const std::byte> bytes, const std::str
 
 class Picker {
  public:
-  Picker(const Calibration& calibration, double budget_ms, const MeasureVariant& measure, const MeasureErrorOf& judge)
+  Picker(const Calibration& calibration, double budget_ms, const MeasureVariant& measure)
       : calibration_(calibration),
         budget_ms_(budget_ms),
         measure_(measure),
-        judge_(judge),
         runs_(calibration.variants.size()),
-        kept_(calibration.variants.size()),
-        off_(calibration.variants.size()) {}
+        kept_(calibration.variants.size()) {}
 
   void Load() {
     if (!calibration_.cache || calibration_.anew) return;
@@ -121,13 +109,11 @@ class Picker {
     for (std::size_t variant = 0; variant < runs_.size(); ++variant) {
       const auto found = known->variants.find(calibration_.variants[variant]);
       if (found != known->variants.end()) runs_[variant] = found->second, kept_[variant] = runs_[variant].size();
-      const auto off = known->off.find(calibration_.variants[variant]);
-      if (off != known->off.end() && known->off_of == calibration_.judged) off_[variant] = off->second;
     }
   }
 
   void Store() const {
-    if (!calibration_.cache || (measured_ == 0 && judged_.empty()) || !cold_ms_) return;
+    if (!calibration_.cache || measured_ == 0 || !cold_ms_) return;
     // Another process may have measured other variants meanwhile, or all of them anew: only what was found out here
     // joins what is kept.
     Known known;
@@ -138,8 +124,6 @@ class Picker {
         if (warmed_up_) known.cold_ms = *cold_ms_;
       }
     }
-    if (known.off_of != calibration_.judged) known.off.clear();
-    known.off_of = calibration_.judged;
     for (std::size_t variant = 0; variant < runs_.size(); ++variant) {
       const std::string& name = calibration_.variants[variant];
       Runs& runs = known.variants[name];
@@ -148,7 +132,6 @@ class Picker {
         runs.push_back(runs_[variant][run]);
       }
     }
-    for (const std::size_t variant : judged_) known.off[calibration_.variants[variant]] = *off_[variant];
     const std::string text = ToText(known, calibration_.circumstances);
     calibration_.cache->Store(Key(), std::as_bytes(std::span(text)));
   }
@@ -156,7 +139,7 @@ class Picker {
   Expected<PickedVariant> Pick() {
     for (std::size_t variant = 0; variant < runs_.size(); ++variant) {
       SCUMBLE_ASSIGN(const bool fits, Fits(variant));
-      if (fits) return NearerOf(variant);
+      if (fits) return Picked(variant, true);
     }
     // What was dropped at its first run may have been slow by chance: the least of its runs says how quick it can be.
     const auto least = [](const Runs& runs) { return *std::min_element(runs.begin(), runs.end()); };
@@ -174,29 +157,7 @@ class Picker {
   std::string Key() const { return fmt::format("{:016x}", HashText(calibration_.circumstances)); }
 
   double Predicted(std::size_t variant) const { return PredictedMs(runs_[variant], cold_ms_.value_or(0.0)); }
-  PickedVariant Picked(std::size_t variant, bool fits) const {
-    return {variant, Predicted(variant), fits, measured_, {}};
-  }
-
-  // Of a variant that fits and its contender, if there is one that does.
-  Expected<PickedVariant> NearerOf(std::size_t variant) {
-    const auto found = calibration_.contenders.find(variant);
-    if (found == calibration_.contenders.end()) return Picked(variant, true);
-    const std::size_t contender = found->second;
-    SCUMBLE_CHECK(contender > variant && contender < runs_.size());
-    SCUMBLE_ASSIGN(const bool fits, Fits(contender));
-    if (!fits) return Picked(variant, true);
-    for (const std::size_t one : {variant, contender}) {
-      if (off_[one]) continue;
-      SCUMBLE_ASSIGN(off_[one], judge_(one));
-      judged_.push_back(one);
-    }
-    const bool known = std::isfinite(*off_[variant]) && std::isfinite(*off_[contender]);
-    if (!known) return Picked(variant, true);
-    PickedVariant picked = Picked(*off_[contender] < *off_[variant] ? contender : variant, true);
-    picked.compared = {{variant, *off_[variant]}, {contender, *off_[contender]}};
-    return picked;
-  }
+  PickedVariant Picked(std::size_t variant, bool fits) const { return {variant, Predicted(variant), fits, measured_}; }
 
   Expected<bool> Fits(std::size_t variant) {
     const Runs& runs = runs_[variant];
@@ -236,11 +197,8 @@ class Picker {
   const Calibration& calibration_;
   const double budget_ms_;
   const MeasureVariant& measure_;
-  const MeasureErrorOf& judge_;
-  std::vector<Runs> runs_;                  // by variant
-  std::vector<std::size_t> kept_;           // likewise: how many of them were known
-  std::vector<std::optional<double>> off_;  // likewise, of those that were judged
-  std::vector<std::size_t> judged_;         // variants, now
+  std::vector<Runs> runs_;         // by variant
+  std::vector<std::size_t> kept_;  // likewise: how many of them were known
   std::optional<double> cold_ms_;
   bool warmed_up_ = false;  // now
   int measured_ = 0;
@@ -254,11 +212,9 @@ double PredictedMs(std::span<const double> runs_ms, double cold_ms) {
   return slowest + (slowest - Median({runs_ms.begin(), runs_ms.end()})) + cold_ms;
 }
 
-Expected<PickedVariant> PickVariant(const Calibration& calibration, double budget_ms, const MeasureVariant& measure,
-                                    const MeasureErrorOf& judge) {
+Expected<PickedVariant> PickVariant(const Calibration& calibration, double budget_ms, const MeasureVariant& measure) {
   SCUMBLE_CHECK(!calibration.variants.empty());
-  SCUMBLE_CHECK(judge || calibration.contenders.empty());
-  Picker picker(calibration, budget_ms, measure, judge);
+  Picker picker(calibration, budget_ms, measure);
   picker.Load();
   Expected<PickedVariant> picked = picker.Pick();
   picker.Store();

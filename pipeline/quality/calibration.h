@@ -11,10 +11,8 @@
 
 #include <cstddef>
 #include <functional>
-#include <map>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "core/image/status.h"
@@ -31,38 +29,27 @@ struct Calibration {
   std::vector<std::string> variants;  // by options, the most accurate first; at least one
   TableCache* cache = nullptr;        // where times are kept between runs; null: nowhere
   bool anew = false;                  // what is kept does not count
-  // By a variant's place, that of another one further down, which may be nearer in this scene and style. Where both
-  // fit, they are compared.
-  std::map<std::size_t, std::size_t> contenders = {};
-  std::string judged = {};  // what errors depend on beside the circumstances; those of anything else do not count
 };
 
 // Milliseconds that a variant takes once; by its place in Calibration::variants.
 using MeasureVariant = std::function<Expected<double>(std::size_t variant)>;
-// How far off its picture is, 0 or more; infinity where that cannot be known.
-using MeasureErrorOf = std::function<Expected<double>(std::size_t variant)>;
 
 struct PickedVariant {
   std::size_t variant = 0;    // its place in Calibration::variants
   double predicted_ms = 0.0;  // nine frames of ten take no longer
   bool fits = false;          // otherwise it is the quickest there is
   int measured = 0;           // runs that were made for it now; 0: all times were known
-  // Contenders that were compared, in their order, and how far off they are.
-  std::vector<std::pair<std::size_t, double>> compared = {};
 };
 
 // What is predicted from times of equal runs, where the first run of a process takes `cold_ms` longer; infinity without
 // any.
 double PredictedMs(std::span<const double> runs_ms, double cold_ms);
 
-// The first of the variants whose predicted time is within the budget. If its contender fits, too, and is known to be
-// nearer, it is the contender. Where none fits, it is the quickest.
+// The first of the variants whose predicted time is within the budget; where none fits, the quickest.
 //
 // A variant is dropped at its first run beyond the budget: what is too slow costs one run. The very first run is one of
-// the last variant, and is compared with the slower of two more. Errors are kept with the times, also that one cannot
-// be known. What was kept and makes no sense is measured again. Fails as `measure` and `judge` do; `judge` is needed
-// where there are contenders.
-Expected<PickedVariant> PickVariant(const Calibration& calibration, double budget_ms, const MeasureVariant& measure,
-                                    const MeasureErrorOf& judge = {});
+// the last variant, and is compared with the slower of two more. What was kept and makes no sense is measured again.
+// Fails as `measure` does.
+Expected<PickedVariant> PickVariant(const Calibration& calibration, double budget_ms, const MeasureVariant& measure);
 
 }  // namespace scumble

@@ -128,6 +128,7 @@ Expected<std::optional<BudgetChoice>> ChooseForStylize(StylizeRequest& request, 
 }  // namespace
 
 Expected<RunReport> RunStylize(StylizeRequest request, const SequenceListener& listener, const RunContext& context) {
+  SCUMBLE_RETURN_IF_ERROR(CheckPictureRequest(request.picture));
   SCUMBLE_RETURN_IF_ERROR(ShrinkGuides(request));
   if (request.picture.output.empty()) {
     if (!request.explain) {

@@ -145,6 +145,7 @@ Expected<RunReport> RunTransfer(TransferRequest request, const SequenceListener&
     return InputError(request.guides +
                       " is a scene: transfer takes guides; use `scumble stylize`, or `scumble guidegen` first");
   }
+  SCUMBLE_RETURN_IF_ERROR(CheckPictureRequest(request.picture));
   SCUMBLE_RETURN_IF_ERROR(CheckPictureTarget(request.picture.output, {request.picture.bits}));
   SCUMBLE_ASSIGN(const auto sequence, PlanSequence(request.sequence, request.picture.frame, request.picture.output));
   if (!sequence) {

@@ -159,6 +159,10 @@ class Grid {
       grid_.left_out.push_back("resolution 0.5, which needs a picture whose sides are even");
     }
     if (options_.quick) return;
+    if (HalfFits()) {
+      Variant& scaled = Add("resolution", "0.5 scaled up");
+      scaled.guide_scale = 0.5, scaled.upscale = true;
+    }
     Add("resolution", "2").guide_scale = 2.0;
     Add("robust", "no").robust = false;
     if (!options_.chance) return;

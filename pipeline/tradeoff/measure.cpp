@@ -22,6 +22,7 @@
 #include "pipeline/tradeoff/peak_process.h"
 #include "pipeline/tradeoff/stage.h"
 #include "pipeline/variant/variant_error.h"
+#include "transfer/upsample_guides.h"
 
 namespace scumble {
 namespace {
@@ -354,9 +355,12 @@ class Trade {
     RepeatOptions repeat = RepeatVariant(setup_, stage_, variant);
     measure.options = std::move(repeat.options), measure.note = std::move(repeat.note);
     const GuideSet& guides = painter.guides().guides;
-    const int super = SupersampleOf(variant);
-    SCUMBLE_ASSIGN(const GuideDifference off,
-                   super == 1 ? reference_->Compare(guides) : reference_->Compare(AveragedGuides(guides, super)));
+    std::optional<GuideSet> of_this_size;
+    if (SupersampleOf(variant) > 1) of_this_size = AveragedGuides(guides, SupersampleOf(variant));
+    if (PictureFactorOf(variant) > 1) {
+      SCUMBLE_ASSIGN(of_this_size, UpsampleGuides(guides, PictureFactorOf(variant), context_.threads));
+    }
+    SCUMBLE_ASSIGN(const GuideDifference off, reference_->Compare(of_this_size ? *of_this_size : guides));
     measure.guide_rms = off.rms, measure.guide_flip = off.flip;
     SCUMBLE_ASSIGN(const std::vector<std::byte> png, EncodePng(painter.picture()));
     measure.picture_png.resize(png.size());
@@ -377,7 +381,7 @@ class Trade {
     if (painter.field()) {
       SCUMBLE_RETURN_IF_ERROR(reference_->MeasureMosaic(picture, *painter.field(), measure));
     } else {
-      AddNote(measure, "its pieces are those of a larger picture, and were not measured");
+      AddNote(measure, "its pieces are those of a picture of another size, and were not measured");
     }
     // At some sizes settings round to the same: the same picture has the same energy.
     const std::string_view bytes(reinterpret_cast<const char*>(picture.rgba.data()),
@@ -393,6 +397,7 @@ class Trade {
     }
     if (!texture_) {
       SCUMBLE_ASSIGN(GuidedTexture texture, reference_->Texture());
+      report_.texture_floor = texture.floor();
       texture_.emplace(std::move(texture));
     }
     SCUMBLE_RETURN_IF_ERROR(reference_->MeasureTexture(*texture_, picture, measure));

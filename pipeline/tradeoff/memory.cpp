@@ -39,12 +39,12 @@ void TradeMemory::AddReport(std::size_t variants, MemoryNeed& need) const {
 
 void TradeMemory::AddVariant(const Variant& variant, const Style& style, const LayerSet& layers, bool own_guides,
                              MemoryNeed& need) const {
-  const int super = SupersampleOf(variant), up = UpsampleOf(variant);
-  const Size size{stage_.width * super, stage_.height * super};
+  const int super = SupersampleOf(variant), up = GuideFactorOf(variant), scaled = PictureFactorOf(variant);
+  const Size size{stage_.width * super / scaled, stage_.height * super / scaled};  // as it is painted
   if (own_guides) AddGuides(size, layers, setup_.scene, need);
   if (own_guides && up > 1) AddGuides({size.width / up, size.height / up}, layers, setup_.scene, need);
   AddPicture({{&style, 1}, false, size, layers, false, true, context_.threads}, {}, need);
-  if (super > 1) need.Take("picture", kPaint * Pixels());  // averaged
+  if (super > 1 || scaled > 1) need.Take("picture", kPaint * Pixels());  // averaged, or scaled up
   if (style.transfer.nearest == NearestSearch::kTable) {
     need.Take("exemplars", kCell * std::uint64_t(variant.table_resolution) * std::uint64_t(variant.table_resolution));
     need.TakeTransient("preparing exemplars", kTreePoint * Places());

@@ -13,6 +13,7 @@
 #include "pipeline/style/style_set.h"
 #include "pipeline/tradeoff/peak_process.h"
 #include "pipeline/variant/quality_ladder.h"
+#include "transfer/upsample_guides.h"
 
 namespace scumble {
 namespace {
@@ -98,6 +99,7 @@ RepeatOptions RepeatVariant(const TradeSetup& setup, const TradeStage& stage, co
   add("--size", fmt::format("{}x{}", stage.width, stage.height));
   for (const auto& [option, value] : SceneArguments(setup)) add(option, value);
   if (UpsampleOf(variant) > 1) add("--upsample", std::to_string(UpsampleOf(variant)));
+  if (variant.upscale) text += " --upscale";
   const int samples = variant.samples > 0 ? variant.samples : GivenSamples(setup);
   if (stage.chance && samples > 0) add("--samples", std::to_string(samples));
   if (setup.scene.max_bounces != SceneRequest().max_bounces) {
@@ -131,7 +133,7 @@ Expected<VariantPainter> VariantPainter::Prepare(const TradeSetup& setup, const 
       nullptr,
       false};
   painter.context_ = context;
-  painter.factor_ = SupersampleOf(variant);
+  painter.super_ = SupersampleOf(variant), painter.upscale_ = PictureFactorOf(variant);
   return painter;
 }
 
@@ -141,7 +143,8 @@ Expected<double> VariantPainter::Paint(bool keep_field) {
   Stopwatch watch;
   SCUMBLE_RETURN_IF_ERROR(
       PaintFrame({&prepared_, 1}, nullptr, guides_->guides, settings_, context_, {}, scratch_, picture_));
-  if (factor_ > 1) small_ = Averaged(picture_, factor_);
+  if (upscale_ > 1) picture_ = UpscalePicture(picture_, upscale_, context_.threads);
+  if (super_ > 1) small_ = Averaged(picture_, super_);
   return watch.Lap();
 }
 
@@ -154,7 +157,8 @@ Expected<Picture> VariantPainter::PaintUntinted() {
   Picture picture;
   SCUMBLE_RETURN_IF_ERROR(
       PaintFrame({&untinted, 1}, nullptr, guides_->guides, settings, context_, {}, scratch, picture));
-  return factor_ > 1 ? Averaged(picture, factor_) : picture;
+  if (upscale_ > 1) return UpscalePicture(picture, upscale_, context_.threads);
+  return super_ > 1 ? Averaged(picture, super_) : picture;
 }
 
 Picture Averaged(const Picture& picture, int factor) {

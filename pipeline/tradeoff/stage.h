@@ -53,8 +53,10 @@ class VariantPainter {
   bool is_tinted() const { return prepared_.settings.colorize > 0.0; }
   Expected<Picture> PaintUntinted();
 
-  const Picture& picture() const { return factor_ > 1 ? small_ : picture_; }
-  const SourceField* field() const { return factor_ > 1 ? nullptr : &scratch_.field; }  // after keep_field
+  const Picture& picture() const { return super_ > 1 ? small_ : picture_; }
+  const SourceField* field() const {
+    return super_ > 1 || upscale_ > 1 ? nullptr : &scratch_.field;
+  }  // after keep_field
   const PreparedStyle& prepared() const { return prepared_; }
   const VariantGuides& guides() const { return *guides_; }
   double exposure() const { return settings_.exposure; }
@@ -69,7 +71,7 @@ class VariantPainter {
   RunContext context_;
   TransferScratch scratch_;
   double prepare_ms_ = 0.0;
-  int factor_ = 1;
+  int super_ = 1, upscale_ = 1;
   Picture picture_, small_;
 };
 

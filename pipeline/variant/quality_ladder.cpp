@@ -45,37 +45,36 @@ const VariantSetting& SettingOf(const std::string& text) {
   return VariantSettings().front();
 }
 
-// Of a pixel. Fewer samples cost noise that the energy hardly measures, so they are dropped first, but for those that
-// the eye would miss.
+// Of a pixel. Fewer samples cost noise that hardly shows in paint, so they are dropped first, but for those that the
+// eye would miss.
 constexpr int kManySamples = std::numeric_limits<int>::max(), kSomeSamples = 16, kFewSamples = 4;
 
 struct LadderStep {
   int upsample;
   std::vector<std::string> settings;
   int samples = kFewSamples;  // at most
+  bool upscale = false;       // of the picture, not of its guides
 };
 
 constexpr const char *kStyleBlit = "transfer.method=styleblit", *kLitSphere = "transfer.method=litsphere",
                      *kUnsplit = "transfer.hybrid=0", *kCrisp = "transfer.blend_radius=0";
 
-// By rising energy, the mean over scenes and styles: docs/budget.md. Guides of an eighth are an exception, because the
-// energy hardly measures their stairs: they stand below no blending and the Lit Sphere, which have whole outlines.
+// By rising texture, the mean over scenes and styles: docs/budget.md. The Lit Sphere comes last, where nothing else is
+// quick enough.
 const std::vector<LadderStep>& LadderSteps() {
   static const std::vector<LadderStep> kSteps = {
       {1, {}, kManySamples},
       {1, {}, kSomeSamples},
       {1, {}},
       {1, {kStyleBlit}},
-      {1, {kStyleBlit, kUnsplit}},
-      {2, {kStyleBlit, kUnsplit}},
-      {4, {kStyleBlit, kUnsplit}},
+      {2, {kStyleBlit}},
+      {1, {kStyleBlit, kCrisp}},
+      {4, {kStyleBlit}},
+      {2, {kStyleBlit}, kFewSamples, true},
       {1, {kStyleBlit, kUnsplit, kCrisp}},
-      {1, {kLitSphere, kUnsplit}},
-      {8, {kStyleBlit, kUnsplit}},
-      {4, {kLitSphere, kUnsplit}},
-      {8, {kLitSphere, kUnsplit}},
+      {4, {kStyleBlit, kUnsplit, kCrisp}, kFewSamples, true},
       {1, {kLitSphere, kUnsplit, kCrisp}},
-      {8, {kLitSphere, kUnsplit, kCrisp}},
+      {4, {kLitSphere, kUnsplit, kCrisp}, kFewSamples, true},
   };
   return kSteps;
 }
@@ -125,6 +124,7 @@ int SmallerBy(int upsample, const LadderFrame& frame) {
 Variant MakeVariant(const LadderStep& step, const StyleSet& styles, const LadderFrame& frame) {
   Variant variant;
   variant.guide_scale = 1.0 / SmallerBy(step.upsample, frame);
+  variant.upscale = step.upscale && variant.guide_scale < 1.0 && !frame.full_size;
   if (step.samples < frame.samples) variant.samples = step.samples;
   for (std::string setting : step.settings) {
     if (setting == kLitSphere && WeighGuides(styles)) setting = kStyleBlit;
@@ -152,24 +152,16 @@ std::vector<Variant> QualityLadder(const StyleSet& styles, const LadderFrame& fr
   return variants;
 }
 
-bool AreContenders(const Variant& a, const Variant& b) {
-  const auto has = [](const Variant& variant, const char* setting) {
-    return std::find(variant.settings.begin(), variant.settings.end(), setting) != variant.settings.end();
-  };
-  const bool same_guides = a.guide_scale == b.guide_scale && a.samples == b.samples;
-  return same_guides && has(a, kCrisp) != has(a, kLitSphere) && has(b, kCrisp) != has(b, kLitSphere) &&
-         has(a, kCrisp) != has(b, kCrisp);
-}
-
 Variant VariantOf(Quality quality, const StyleSet& styles, const LadderFrame& frame) {
   if (quality == Quality::kFinal) return MakeVariant(LadderSteps().front(), styles, frame);
-  LadderStep step{4, {kLitSphere, kUnsplit}};
-  if (quality == Quality::kPreview) step = {2, {kStyleBlit, kUnsplit}};
+  LadderStep step{2, {kStyleBlit}};
+  step.upscale = quality == Quality::kDraft;
+  const bool full_size = SmallerBy(step.upsample, frame) == 1;
+  if (full_size && quality == Quality::kDraft) step.settings = {kStyleBlit, kUnsplit, kCrisp};
+  if (full_size && quality == Quality::kPreview) step.settings = {kStyleBlit, kCrisp};
   // Guides of normals alone take so little that nothing is gained which would not be seen.
   const bool lit = std::any_of(styles.styles.begin(), styles.styles.end(), LooksAtLight);
-  const bool drafts_guides = quality == Quality::kDraft && WeighGuides(styles);  // which keep their chunks
-  if (frame.casts && !lit && !drafts_guides) return MakeVariant({1, step.settings}, styles, frame);
-  if (SmallerBy(step.upsample, frame) == 1) step.settings.push_back(kCrisp);
+  if (frame.casts && !lit && quality == Quality::kPreview) step = {1, {kStyleBlit}};
   return MakeVariant(step, styles, frame);
 }
 
@@ -177,6 +169,7 @@ std::string OptionsOf(const Variant& variant) {
   std::string text;
   const auto add = [&](const std::string& option) { text += (text.empty() ? "" : " ") + option; };
   if (UpsampleOf(variant) > 1) add(fmt::format("--upsample {}", UpsampleOf(variant)));
+  if (variant.upscale) add("--upscale");
   if (variant.samples > 0) add(fmt::format("--samples {}", variant.samples));
   for (const std::string& setting : variant.settings) add("--set " + setting);
   return text;

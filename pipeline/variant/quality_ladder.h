@@ -21,25 +21,20 @@ struct LadderFrame {
   int width = 0, height = 0;
   bool fixed_guides = false;  // the user gave their size
   int samples = 0;  // of a pixel of light; 0: no choice, because no layer takes samples or the user gave their number
+  bool full_size = false;  // something lies underneath, or pixels are explained: no picture is scaled up
 };
 
 // The most accurate first: the style as it is. What a --set of the user decides stays so. Steps that change nothing, or
 // that equal another one then, are left out. Never empty.
 std::vector<Variant> QualityLadder(const StyleSet& styles, const LadderFrame& frame);
 
-// Whether it differs by style which of two steps is more accurate, so that their order in the ladder is little more
-// than chance: one is without blending, the other by the Lit Sphere, with guides of one size.
-bool AreContenders(const Variant& a, const Variant& b);
-
 // Named steps.
 enum class Quality {
-  // To find a camera: the Lit Sphere. Guides that hold light or are weighed are a quarter of the size, with few
-  // samples.
-  // Guides of normals alone keep their size: smaller ones save less than upsampling them takes.
+  // To find a camera: a picture of half the size, scaled up, of light with few samples. Where guides keep their size,
+  // nothing is blended or split.
   kDraft,
   // To judge a style: guides that hold light, which are slow, are half the size, with few samples. Where guides keep
-  // their size, nothing is blended. A picture without light in its guides is quick enough: only its hybrid base and
-  // detail layers are not split.
+  // their size, nothing is blended. A picture without light in its guides is quick enough as it is.
   kPreview,
   kFinal,  // the style as it is
 };

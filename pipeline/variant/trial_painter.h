@@ -25,24 +25,14 @@ class TrialPainter {
                const std::string& over, const RunContext& context)
       : styles_(styles), picture_(picture), frame_(frame), name_(name), over_file_(over), context_(context) {}
 
-  // Upsamples the guides, if the variant or the request asks for it, and paints into new memory, as the first picture
-  // of a run is painted. Returns the milliseconds of wall clock that both took. Preparing the style and reading the
-  // picture underneath are not counted. One of another size is left out; the run will refuse it.
+  // Upsamples the guides or scales up the picture, if the variant or the request asks for it, and paints into new
+  // memory, as the first picture of a run is painted. Returns the milliseconds of wall clock that all of it took.
+  // Preparing the style and reading the picture underneath are not counted. One of another size is left out; the run
+  // will refuse it.
   Expected<double> Paint(const Variant& variant, const GuideSet& guides);
 
-  // The error of a variant that keeps the guides' size: how far its picture is from what the painting shows under these
-  // guides, and what of the painting it misses. That is `both` of measure/energy/energy.h, at kErrorPatches patches,
-  // which do not differ by variant; without paper, the picture underneath and the scene's colours. 0 where nothing is
-  // covered. Infinity where several styles paint, memory is short or guides are no numbers. Errors as of Paint.
-  Expected<double> MeasureError(const Variant& variant, const GuideSet& guides);
-
-  // So few that measuring an error takes a second or two. Contenders that are closer than that shows are equally good.
-  static constexpr std::size_t kErrorPatches = 1024;
-
  private:
-  Status Prepare(const Variant& variant, const GuideSet& guides, int upsample, bool bare);
-  // Adds its time to `ms`. `bare`: without what is underneath, and with a field.
-  Status Transfer(const GuideSet& guides, bool bare, TransferScratch& scratch, Picture& picture, double& ms);
+  Status Prepare(const Variant& variant, const GuideSet& guides, int upsample);
   Expected<const Picture*> Over(const GuideSet& guides);
 
   StyleSet& styles_;
@@ -51,7 +41,7 @@ class TrialPainter {
   const std::string& name_;
   const std::string& over_file_;
   const RunContext& context_;
-  std::string prepared_for_;  // that variant's name, and what else
+  std::string prepared_for_;  // that variant's name
   std::vector<PreparedStyle> prepared_;
   double exposure_ = 0.0;
   std::optional<Picture> over_;

@@ -18,6 +18,7 @@ struct Variant {
   std::vector<std::string> settings;  // KEY=VALUE, as --set takes them, in this order
   GuidePrecision precision = GuidePrecision::kFloat;
   double guide_scale = 1.0;  // width and height of the guides against the picture's: 0.5 is upsampled, 2 is thinned out
+  bool upscale = false;      // with guide_scale < 1: painted at the guides' size and scaled up
   int samples = 0;           // of a pixel, for guides of light; 0: as many as --samples
   bool robust = true;        // Embree's robust mode, GuidegenOptions::robust
   int more_seed = 0;         // added to --seed
@@ -29,6 +30,9 @@ struct Variant {
 inline int UpsampleOf(const Variant& variant) {
   return variant.guide_scale < 1.0 ? static_cast<int>(std::lround(1.0 / variant.guide_scale)) : 1;
 }
+// The same, of the guides and of the painted picture.
+inline int GuideFactorOf(const Variant& variant) { return variant.upscale ? 1 : UpsampleOf(variant); }
+inline int PictureFactorOf(const Variant& variant) { return variant.upscale ? UpsampleOf(variant) : 1; }
 inline int SupersampleOf(const Variant& variant) {
   return variant.guide_scale > 1.0 ? static_cast<int>(std::lround(variant.guide_scale)) : 1;
 }

@@ -42,7 +42,7 @@ Expected<VariantGuides> MakeVariantGuides(StaticScene& scene, const SceneRequest
   }
   StoreFrameRate(options, scene.animation, made.guides);
   RoundGuides(variant.precision, made.guides);
-  if (up == 1) {
+  if (GuideFactorOf(variant) == 1) {
     result.guides = std::move(made.guides);
     return result;
   }
@@ -95,7 +95,8 @@ GuideSet AveragedGuides(const GuideSet& guides, int factor) {
 }
 
 std::string GuidesKey(const Variant& variant, const LayerSet& layers, bool rounded) {
-  std::string key = fmt::format("{} {} {} {}", variant.guide_scale, variant.samples, variant.robust, layers.ToString());
+  std::string key = fmt::format("{}{} {} {} {}", variant.guide_scale, variant.upscale ? " as cast" : "",
+                                variant.samples, variant.robust, layers.ToString());
   if (rounded) key += fmt::format(" {} {}", int(variant.precision), variant.more_seed);
   return key;
 }

@@ -278,55 +278,6 @@ TEST(Calibration, ABrokenCacheIsMeasuredOver) {
   }
 }
 
-// Variants 1 and 2 take 30 and 32 ms and are contenders; whichever is nearer is taken where both fit, and what was
-// found is kept.
-TEST(Calibration, OfRivalsThatFitTheNearerIsTaken) {
-  MemoryCache cache;
-  Calibration ladder = Ladder(4, &cache);
-  ladder.contenders = {{1, 2}};
-  std::vector<double> off = {0.0, 0.5, 0.4, 0.0};
-  int judged = 0;
-  const MeasureErrorOf judge = [&](std::size_t variant) -> Expected<double> { return ++judged, off[variant]; };
-  FakeClock clock{{{50.0}, {30.0}, {32.0}, {5.0}}};
-  const auto pick = [&](double budget_ms) {
-    const auto picked = PickVariant(ladder, budget_ms, clock.Measure(), judge);
-    EXPECT_TRUE(picked.ok());
-    return picked.ok() ? *picked : PickedVariant();
-  };
-  const PickedVariant nearer = pick(40.0);
-  EXPECT_EQ(nearer.variant, 2u);
-  EXPECT_EQ(nearer.predicted_ms, 32.0);
-  EXPECT_EQ(nearer.compared, (std::vector<std::pair<std::size_t, double>>{{1, 0.5}, {2, 0.4}}));
-  EXPECT_EQ(judged, 2);
-  const int runs = clock.Total();
-  EXPECT_EQ(pick(40.0).variant, 2u);
-  EXPECT_EQ(judged, 2) << "it is kept";
-  EXPECT_EQ(clock.Total(), runs);
-  EXPECT_EQ(pick(31.0).variant, 1u) << "the contender is too slow";
-  EXPECT_TRUE(pick(31.0).compared.empty());
-  EXPECT_EQ(pick(60.0).variant, 0u) << "what is above both is above the nearer, too";
-  ladder.anew = true;
-  off = {0.0, 0.4, 0.5, 0.0};
-  EXPECT_EQ(pick(40.0).variant, 1u);
-  off = {0.0, 0.4, 0.4, 0.0};
-  EXPECT_EQ(pick(40.0).variant, 1u) << "as near: the ladder's order";
-  const double unknown = std::numeric_limits<double>::infinity();
-  off = {0.0, unknown, unknown, 0.0};
-  EXPECT_EQ(pick(40.0).variant, 1u) << "not known: the ladder's order";
-  EXPECT_TRUE(pick(40.0).compared.empty());
-  off = {0.0, unknown, 0.4, 0.0};
-  EXPECT_EQ(pick(40.0).variant, 1u) << "one alone says nothing";
-  ladder.anew = false;
-  judged = 0, off = {0.0, 0.5, 0.4, 0.0};
-  EXPECT_EQ(pick(40.0).variant, 1u);
-  EXPECT_EQ(judged, 0) << "that it cannot be known is kept";
-  ladder.judged = "another picture of the same cost";
-  const int before = clock.Total();
-  EXPECT_EQ(pick(40.0).variant, 2u);
-  EXPECT_EQ(judged, 2);
-  EXPECT_EQ(clock.Total(), before) << "times are the same";
-}
-
 // A variant that the ladder no longer has does not matter.
 TEST(Calibration, TimesOfWaysThatThereAreNoMoreDoNotCount) {
   MemoryCache cache;

@@ -110,7 +110,9 @@ TEST(TradeGrid, OfASphereIsEveryAxisWithoutTheStylesOwnValues) {
   }
   EXPECT_EQ(nearest.size(), 10u);
   EXPECT_EQ(ValuesOf(grid, "precision"), (Values{"8 bits", "half floats"}));
-  EXPECT_EQ(ValuesOf(grid, "resolution"), (Values{"0.5", "2"}));
+  EXPECT_EQ(ValuesOf(grid, "resolution"), (Values{"0.5", "0.5 scaled up", "2"}));
+  EXPECT_EQ(Named(grid, "resolution 0.5 scaled up").guide_scale, 0.5);
+  EXPECT_TRUE(Named(grid, "resolution 0.5 scaled up").upscale);
   EXPECT_EQ(ValuesOf(grid, "robust"), Values{"no"});
   EXPECT_TRUE(ValuesOf(grid, "samples").empty()) << "nothing is left to chance";
   EXPECT_EQ(Named(grid, "nearest table 64").table_resolution, 64);

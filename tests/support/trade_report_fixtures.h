@@ -10,7 +10,7 @@ namespace scumble {
 
 inline constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
-inline TradeMeasure MadeUpVariant(const std::string& axis, const std::string& value, double total_ms, double both) {
+inline TradeMeasure MadeUpVariant(const std::string& axis, const std::string& value, double total_ms, double error) {
   TradeMeasure variant;
   variant.name = value.empty() ? axis : axis + " " + value;
   variant.axis = axis;
@@ -21,10 +21,10 @@ inline TradeMeasure MadeUpVariant(const std::string& axis, const std::string& va
   variant.total_ms = {total_ms, total_ms * 0.98, total_ms * 1.05};
   variant.prepare_ms = 12.5;
   variant.memory_bytes = 123456789;
-  variant.both = {both, 0.0123456789012345};
-  variant.energy = {both / 3, 0.004};
-  variant.missing = {both / 1.5, 0.008};
-  variant.texture = 0.1375;
+  variant.both = {error, 0.0123456789012345};
+  variant.energy = {error / 3, 0.004};
+  variant.missing = {error / 1.5, 0.008};
+  variant.texture = error;
   variant.guide_degrees = 2.25;
   variant.coherence = 0.897;
   variant.chunk_area = 153.25;
@@ -54,6 +54,7 @@ inline TradeReport MadeUpReport() {
   report.variants[5].exact = true;
   report.variants[3].guide_rms = 0.001;
   report.variants[3].guide_flip = 0.02;
+  report.texture_floor = 0.25;
   return report;
 }
 

@@ -45,6 +45,7 @@ void PictureToJson(const PictureReport& picture, const std::vector<PlanItem>& pl
   json["width"] = picture.width;
   json["height"] = picture.height;
   json["upsample"] = picture.upsample;
+  json["upscale"] = picture.upscale;
   json["exemplar_size"] = first.exemplar_size;
   json["exemplar_width"] = first.exemplar_width;
   json["exemplar_height"] = first.exemplar_height;
@@ -103,7 +104,6 @@ Json ChoiceToJson(const BudgetChoice& choice) {
             {"fits", choice.fits},
             {"measured_runs", choice.measured_runs},
             {"options", options}};
-  for (const auto& [name, error] : choice.compared) json["compared"][name] = error;
   return {{"budget", json}};
 }
 

@@ -57,6 +57,9 @@ void AddPictureOptions(CLI::App& verb, PictureOptions& options, bool needed) {
       ->type_name("N")
       ->check(CLI::Range(1, kMaxUpsampling))
       ->capture_default_str();
+  verb.add_flag("--upscale", options.request.upscale,
+                "with --upsample N: the picture is painted at the guides' size and scaled up, which is quicker still, "
+                "and softer");
   verb.add_option("--repeat", options.request.repeat,
                   "times to run the transfer, to report the median time and its spread")
       ->type_name("N")
@@ -119,7 +122,7 @@ void AddBudgetOptions(CLI::App& verb, BudgetOptions& options, bool casts) {
 
 Expected<BudgetRequest> ToRequest(const CLI::App& verb, const BudgetOptions& options) {
   BudgetRequest request = options.request;
-  request.guides_are_fixed = verb.count("--upsample") > 0;
+  request.guides_are_fixed = verb.count("--upsample") > 0;  // and --upscale with it
   request.quality = FindQuality(options.quality);
   if (request.quality && request.budget_ms > 0) {
     return UsageError("--quality " + options.quality + " and --budget-ms exclude each other: give one of them");

@@ -209,19 +209,17 @@ void AddTradeoffVerb(CLI::App& app, Globals& globals, Action& chosen) {
       "tradeoff",
       "what every way to stylise a scene costs on this machine, and how far off it is: a table, a chart, all pictures");
   sub->footer(
-      "Each way changes one thing of the style, or a few; the energy says how far its picture is from what the "
-      "exemplar shows:\n"
-      "`both` ranks, the less the better. Times are of the guides (with the acceleration structure) and of the "
-      "transfer, after a\n"
-      "run to warm up of which nothing is kept that a sequence would keep: they are those of a single picture. "
-      "Loading, preparing\n"
-      "the style and writing are not in them, and a run of more than 5 s is not repeated. Memory is the peak of a "
-      "process that\n"
-      "makes the one picture. Everything is measured without paper, and in the one style, whatever the scene\n"
-      "says; colorized styles are measured before the scene's colours are on them. Blending mostly scores better: it "
-      "takes\n"
-      "seams away, and strokes become soft. Memory is not measured of a .blend, which would be exported for each "
-      "way.\n");
+      "Each way changes one thing of the style, or a few. `texture` ranks, the less the better: how far the paint's "
+      "look\n"
+      "is from that of the exemplar where the surface is turned alike. Times are of the guides (with the acceleration\n"
+      "structure) and of the transfer, after a run to warm up of which nothing is kept that a sequence would keep: "
+      "they\n"
+      "are those of a single picture. Loading, preparing the style and writing are not in them, and a run of more "
+      "than\n"
+      "5 s is not repeated. Memory is the peak of a process that makes the one picture, and is not measured of a "
+      ".blend,\n"
+      "which would be exported for each way. Everything is measured without paper, and in the one style, whatever the\n"
+      "scene says; colorized styles are measured before the scene's colours are on them.\n");
   AddViewOptions(*sub, verb->scene);
   sub->add_option(
          "--frame", verb->setup.frame,

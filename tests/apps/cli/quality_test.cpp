@@ -58,7 +58,7 @@ TEST_F(CliQuality, GuidesThatAreThereKeepTheirSize) {
   WriteGuideFile("ball.exr", Ball(48));
   const Arguments transfer{"transfer", "ball.exr", "--style", "style"};
   const nlohmann::json report = RunOk(With(transfer, {"--quality", "draft", "--json", "-o", "draft.png"})).Json();
-  const Arguments options{"--set", "transfer.method=litsphere", "--set", "transfer.blend_radius=0"};
+  const Arguments options{"--set", "transfer.blend_radius=0"};
   EXPECT_EQ(Options(report.at("quality")), options);
   EXPECT_EQ(report.at("width"), 48);
   RunOk(With(With(transfer, options), {"-o", "again.png"}));

@@ -90,6 +90,7 @@ TEST_F(Tradeoff, WritesAPageFiguresAndPicturesThatAgree) {
     ASSERT_EQ(row.size(), rows[0].size());
     EXPECT_EQ(nlohmann::json(row[column["way"]]), way["way"]);
     EXPECT_EQ(nlohmann::json(row[column["options"]]), way["options"]);
+    EXPECT_EQ(std::stod(row[column["texture"]]), way["texture"].get<double>());
     EXPECT_EQ(std::stod(row[column["both"]]), way["both"]["mean"].get<double>());
     EXPECT_EQ(std::stod(row[column["total_ms_median"]]), way["total_ms"]["median"].get<double>());
     EXPECT_EQ(std::stod(row[column["memory_bytes"]]), way["memory_bytes"].get<double>());
@@ -131,7 +132,7 @@ TEST_F(Tradeoff, OptionsRepeatThePictureByteForByte) {
         << name << ": " << options;
     ++repeated;
   }
-  EXPECT_EQ(repeated, 14) << "all but the small table and twice the resolution";
+  EXPECT_EQ(repeated, 15) << "all but the small table and twice the resolution";
   const auto large = std::find_if(json["ways"].begin(), json["ways"].end(),
                                   [](const auto& way) { return way["way"] == "resolution 2"; });
   ASSERT_NE(large, json["ways"].end());
@@ -298,7 +299,7 @@ TEST_F(Tradeoff, AWayThatCannotBeMadeIsLeftOut) {
       RunOk(Small(Scene("suzanne.glb"), {"--only", "resolution,levels 1", "--json"}, "20000x4")).Json();
   std::set<std::string> ways;
   for (const auto& way : json["ways"]) ways.insert(way["way"]);
-  EXPECT_EQ(ways, (std::set<std::string>{"the style", "levels 1", "resolution 0.5"}));
+  EXPECT_EQ(ways, (std::set<std::string>{"the style", "levels 1", "resolution 0.5", "resolution 0.5 scaled up"}));
   ASSERT_EQ(json["left_out"].size(), 1u) << json["left_out"];
   EXPECT_EQ(json["left_out"][0].get<std::string>().find("resolution 2, as "), 0u) << json["left_out"];
 }
@@ -481,7 +482,7 @@ TEST_F(Tradeoff, KilledAmongItsPicturesItLeavesNoPage) {
 TEST_F(Tradeoff, HelpSaysWhatIsTimed) {
   const std::string help = RunOk({"help", "tradeoff"}).out;
   for (const char* word : {"--only", "--quick", "--repeat", "--samples", "--exposure", "--max-memory", "--no-memory",
-                           "both", "not in them", "FOLDER"}) {
+                           "texture", "not in them", "FOLDER"}) {
     EXPECT_NE(help.find(word), std::string::npos) << word;
   }
   EXPECT_EQ(help.find("--peak-of"), std::string::npos) << "for the program itself";

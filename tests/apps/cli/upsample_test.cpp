@@ -1,4 +1,5 @@
 // --upsample: pictures larger than their guides.
+#include "core/filter/resample.h"
 #include "tests/support/cli_harness.h"
 
 namespace scumble {
@@ -129,6 +130,41 @@ TEST_F(Upsample, TheStylesStepAndHybridAreKeysLikeOthers) {
   EXPECT_EQ(Bytes("k.2.png"), Bytes("two.png"));
   ExpectError(With(transfer, {"x.png", "--set", "transfer.match_step=9"}), 2, {"transfer.match_step", "1 to 8"});
   ExpectError(With(transfer, {"x.png", "--set", "transfer.hybrid=-1"}), 2, {"transfer.hybrid", "0 or more"});
+}
+
+// --upscale: the small picture itself, enlarged.
+TEST_F(Upsample, AnUpscaledPictureIsTheSmallOneEnlarged) {
+  WriteStyle("style");
+  const Arguments stylize{"stylize", Scene("suzanne.glb"), "--style", "style", "--bits", "16"};
+  RunOk(With(stylize, {"--size", "60x40", "-o", "small.png"}));
+  const Picture small = *ReadPicture(At("small.png"));
+  for (const int factor : {2, 3}) {
+    const std::string size = std::to_string(60 * factor) + "x" + std::to_string(40 * factor);
+    const CommandResult made = RunOk(With(
+        stylize, {"--size", size, "--upsample", std::to_string(factor), "--upscale", "--json", "-o", "large.png"}));
+    EXPECT_EQ(made.Json()["upscale"], true);
+    EXPECT_EQ(made.Json()["width"], 60 * factor);
+    EXPECT_EQ(ReadPicture(At("large.png"))->rgba, Resample(small, 60 * factor, 40 * factor).rgba);
+    RunOk({"guidegen", Scene("suzanne.glb"), "--style", "style", "--size", "60x40", "-o", "guides.exr"});
+    RunOk({"transfer", "guides.exr", "--style", "style", "--bits", "16", "--upsample", std::to_string(factor),
+           "--upscale", "--threads", "1", "-o", "again.png"});
+    EXPECT_EQ(ReadPicture(At("again.png"))->rgba, ReadPicture(At("large.png"))->rgba);
+  }
+}
+
+TEST_F(Upsample, UpscaleIsRefusedWhereItMeansNothing) {
+  WriteStyle("style");
+  const Arguments stylize{"stylize", Scene("suzanne.glb"), "--style", "style", "--size", "60x40", "-o",
+                          "p.png",   "--upscale"};
+  const auto refused = [&](const Arguments& more, const std::string& why) {
+    const CommandResult result = Run(With(stylize, more));
+    EXPECT_EQ(result.code, 2) << result.err;
+    EXPECT_NE(result.err.find(why), std::string::npos) << result.err;
+    EXPECT_FALSE(Exists("p.png"));
+  };
+  refused({}, "it needs --upsample N");
+  refused({"--upsample", "2", "--over", "under.png"}, "--upscale with --over");
+  refused({"--upsample", "2", "--show", "chunks"}, "--upscale with --show");
 }
 
 }  // namespace
