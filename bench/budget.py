@@ -18,7 +18,7 @@ import tempfile
 import runs
 
 SOURCE = pathlib.Path(__file__).resolve().parent.parent
-COUNTED = ("build", "rays", "upsample", "match", "vote", "compose")
+COUNTED = ("build", "rays", "upsample", "match", "vote", "compose", "upscale")
 TOLD = re.compile(r"budget [\d.]+ ms: at most (\d+) ms, nine times of ten, with (.+?)(, which repeats it)?$",
                   re.MULTILINE)
 

@@ -1,5 +1,5 @@
 // The measurements behind the ladder of --quality and --budget-ms: for sample scenes and bundled styles, time and
-// energy of every cheaper variant, and the Pareto front of both. Prints one line a variant, tab-separated:
+// texture of every cheaper variant, and the Pareto front of both. Prints one line a variant, tab-separated:
 // docs/budget.md has the table. --help lists the arguments.
 #include <fmt/format.h>
 
@@ -15,7 +15,6 @@
 
 #include "bench/or_stop.h"
 #include "bench/performance/repeats.h"
-#include "core/filter/resample.h"
 #include "core/image/stopwatch.h"
 #include "core/style/style_file.h"
 #include "guidegen/guidegen.h"
@@ -43,7 +42,7 @@ struct Arguments {
 // The settings of a variant that replace the style's own.
 struct Candidate {
   std::string name;
-  int upsample = 1, enlarge = 1;
+  int upsample = 1, upscale = 1;
   std::vector<std::string> settings;
 };
 
@@ -52,16 +51,16 @@ std::vector<Candidate> Candidates(const Style& style, const Arguments& arguments
   const std::string less = "transfer.method=litsphere", crisp = "transfer.blend_radius=0";
   std::vector<Candidate> all;
   const bool splits = style.transfer.hybrid > 0.0;
-  const auto add_all = [&](const std::string& name, int upsample, int enlarge) {
+  const auto add_all = [&](const std::string& name, int upsample, int upscale) {
     const auto add = [&](const std::string& what, std::vector<std::string> settings) {
-      all.push_back({name + (name.empty() || what.empty() ? "" : ", ") + what, upsample, enlarge, std::move(settings)});
+      all.push_back({name + (name.empty() || what.empty() ? "" : ", ") + what, upsample, upscale, std::move(settings)});
     };
     add("", {});
     if (splits) add("hybrid 0", {"transfer.hybrid=0"});
     add("hybrid 0, radius 0", {"transfer.hybrid=0", crisp});
     add("litsphere", {less, "transfer.hybrid=0"});
     add("litsphere, radius 0", {less, "transfer.hybrid=0", crisp});
-    if (upsample > 1 || enlarge > 1) return;
+    if (upsample > 1 || upscale > 1) return;
     add("radius 0", {crisp});
     add("4 levels fewer", {fmt::format("transfer.levels={}", std::max(1, style.transfer.levels - 4))});
     add("match_step 4", {"transfer.match_step=4"});
@@ -69,7 +68,7 @@ std::vector<Candidate> Candidates(const Style& style, const Arguments& arguments
   for (const int factor : kUpsampling) {
     if (arguments.width % factor || arguments.height % factor) continue;
     add_all(factor > 1 ? fmt::format("upsample {}", factor) : "", factor, 1);
-    if (factor > 1 && factor < 8) add_all(fmt::format("enlarge {}", factor), 1, factor);
+    if (factor > 1 && factor < 8) add_all(fmt::format("upsample {}, upscale", factor), 1, factor);
   }
   all.front().name = "the style";
   return all;
@@ -107,7 +106,7 @@ void Measure(const std::string& scene_name, const std::string& style_name, const
   for (const Candidate& candidate : candidates) {
     Style one = OrStop(LoadStyle(folder, candidate.settings));
     one.paper = {};
-    prepared.push_back(OrStop(Prepare(one, arguments.height / candidate.enlarge)));
+    prepared.push_back(OrStop(Prepare(one, arguments.height / candidate.upscale)));
   }
   TransferOptions options;
   options.exposure = MeasureExposure({prepared.data(), 1}, guides[1].guides).value_or(0.0);
@@ -119,13 +118,13 @@ void Measure(const std::string& scene_name, const std::string& style_name, const
        ++run) {  // in turns, so that other load of the machine affects all of them alike
     for (std::size_t i = 0; i < candidates.size(); ++i) {
       const Candidate& candidate = candidates[i];
-      const int factor = candidate.upsample * candidate.enlarge;
-      const GuideSet& taken = candidate.enlarge > 1 ? guides[factor].small : guides[factor].guides;
+      const int factor = candidate.upsample * candidate.upscale;
+      const GuideSet& taken = candidate.upscale > 1 ? guides[factor].small : guides[factor].guides;
       TransferScratch scratch;
       Picture picture;
       Stopwatch watch;
       OrStop(Transfer(prepared[i], taken, options, scratch, picture));
-      if (candidate.enlarge > 1) picture = Resample(picture, arguments.width, arguments.height);
+      if (candidate.upscale > 1) picture = UpscalePicture(picture, candidate.upscale);
       if (run > 0 || arguments.runs == 0) ms[i].push_back(watch.Lap());
       if (run == 0) OrStop(judge.MeasureTexture(texture, picture, error[i]));
       if (run == 0 && arguments.energy) OrStop(judge.MeasurePaint(picture, nullptr, EnergyOptions(), error[i]));
@@ -133,12 +132,12 @@ void Measure(const std::string& scene_name, const std::string& style_name, const
   }
   std::vector<TradePoint> whole, transfer_alone;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const MadeGuides& made = guides[candidates[i].upsample * candidates[i].enlarge];
+    const MadeGuides& made = guides[candidates[i].upsample * candidates[i].upscale];
     const double painting = SpreadOf(ms[i]).median;
-    const double casting = SpreadOf(candidates[i].enlarge > 1 ? made.small_ms : made.ms).median;
+    const double casting = SpreadOf(candidates[i].upscale > 1 ? made.small_ms : made.ms).median;
     const double off = error[i].texture.value_or(NAN);
     whole.push_back({casting + painting, off});
-    transfer_alone.push_back({candidates[i].upsample * candidates[i].enlarge > 1 ? NAN : painting, off});
+    transfer_alone.push_back({candidates[i].upsample * candidates[i].upscale > 1 ? NAN : painting, off});
   }
   const auto on = [](const std::vector<std::size_t>& front, std::size_t i) {
     return std::find(front.begin(), front.end(), i) != front.end();
@@ -156,7 +155,7 @@ void Measure(const std::string& scene_name, const std::string& style_name, const
 
 int Main(int argc, char** argv) {
   Arguments arguments;
-  CLI::App app("time and energy of every way to do it with less");
+  CLI::App app("time and texture of every way to do it with less");
   app.add_option("--width", arguments.width);
   app.add_option("--height", arguments.height);
   app.add_flag("--energy", arguments.energy, "also `both`, which takes long");

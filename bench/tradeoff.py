@@ -84,53 +84,33 @@ def row(way):
                                         else "")
     megabytes = None if way["memory_bytes"] is None else way["memory_bytes"] * 1e-6
     coherence = None if way["coherence"] is None else 100.0 * way["coherence"]
-    cells = ["★" if way["front"] else "", name, time(way["total_ms"]), figure(megabytes), estimate(way["both"]),
-             estimate(way["energy"]), estimate(way["missing"])]
-    cells += [figure(value) for value in (way["guide_degrees"], coherence, way["chunk_area_pixels"], way["seam_excess"],
-                                          way["repetition"])]
+    cells = ["★" if way["front"] else "", name, time(way["total_ms"]), figure(megabytes), figure(way["texture"]),
+             estimate(way["both"])]
+    cells += [figure(value) for value in (way["guide_degrees"], coherence, way["seam_excess"], way["repetition"])]
     return "| %s |" % " | ".join(cells)
 
 
 def table(ways):
-    head = ["", "way", "time, ms (quartiles)", "memory, MB", "both", "energy", "missing", "off by, °", "coherence, %",
-            "chunk, px", "seam excess", "repetition"]
+    head = ["", "way", "time, ms (quartiles)", "memory, MB", "texture", "both", "off by, °", "coherence, %",
+            "seam excess", "repetition"]
     return ["| %s |" % " | ".join(head), "|---" * len(head) + "|"] + [row(way) for way in ways]
 
 
-def guide_table(ways):
-    """The error of the guides of variants whose guides are not exact. Variants with equal guides share a line."""
-    measured = {}
-    for way in ways:
-        if way["guide_rms"] or way["guide_flip"]:
-            measured.setdefault((way["guide_rms"], way["guide_flip"]), []).append(way["way"])
-    if not measured:
-        return []
-    lines = ["", "Guides against the exact ones:", "", "| way | RMS | FLIP |", "|---|---|---|"]
-    for (rms, flip), names in measured.items():
-        more = ", and %d more with the same guides" % (len(names) - 1) if len(names) > 1 else ""
-        lines.append("| %s%s | %s | %s |" % (names[0], more, figure(rms), figure(flip)))
-    return lines
-
-
-def by_axis(ways):
-    axes = list(dict.fromkeys(way["axis"] for way in ways))
-    return sorted(ways, key=lambda way: axes.index(way["axis"]))  # a stable sort keeps the order within an axis
-
-
 def section(name, report):
+    """The front, the style as it is, the qualities, and a few others; all of them are in the report."""
     scene, style, what = SAMPLES[name][:3]
     front = [next(way for way in report["ways"] if way["way"] == each) for each in report["front"]]
-    own = [way for way in report["ways"] if way["chosen"] and not way["front"]]
+    others = [way for way in report["ways"] if not way["front"]
+              and (way["chosen"] or way["exact"] or way["axis"] in ("quality", "method", "resolution", "blend_radius"))]
     left_out = ["Left out: %s." % "; ".join(report["left_out"]), ""] if report["left_out"] else []
-    lines = ["### %s" % name, "", "*%s.* %d ways%s at %d×%d; %s; medians of %d runs." % (
-        what.capitalize(), len(report["ways"]), " (`--quick`)" if "--quick" in report["command"] else "",
-        report["width"],
-        report["height"], report["machine"], report["repeats"]), ""]
+    lines = ["### %s" % name, "", "*%s.* %d ways%s at %d×%d; %s; medians of %d runs. Halves of the exemplar differ by "
+             "%s, other seeds by %s." % (
+                 what.capitalize(), len(report["ways"]), " (`--quick`)" if "--quick" in report["command"] else "",
+                 report["width"], report["height"], report["machine"], report["repeats"],
+                 figure(report["texture_floor"]), figure(report["texture_chance"])), ""]
     lines += left_out
-    lines += ["![time against error of %s in %s](gallery/tradeoff-%s.svg)" % (scene, style, name), ""]
-    lines += ["The front%s:" % (", and below it the style as it is" if own else ""), ""] + table(front + own)
-    lines += ["", "<details><summary>All ways</summary>", ""] + table(by_axis(report["ways"]))
-    return "\n".join(lines + guide_table(report["ways"]) + ["", "</details>", ""])
+    lines += ["![time against texture of %s in %s](gallery/tradeoff-%s.svg)" % (scene, style, name), ""]
+    return "\n".join(lines + table(front + others) + [""])
 
 
 def parse():

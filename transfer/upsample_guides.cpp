@@ -270,16 +270,20 @@ class Upsampler {
 
 }  // namespace
 
+Status CheckLargerSize(int width, int height, int factor) {
+  if (std::max(width, height) <= kMaxImageSide / factor &&
+      std::int64_t(width) * height <= kMaxPixels / (factor * factor)) {
+    return Ok();
+  }
+  return UsageError("guides of " + std::to_string(width) + "×" + std::to_string(height) + " cannot be upsampled " +
+                    std::to_string(factor) + " times: a picture has at most " + std::to_string(kMaxPixels) +
+                    " pixels, " + std::to_string(kMaxImageSide) + " a side; take a smaller factor");
+}
+
 Expected<GuideSet> UpsampleGuides(const GuideSet& guides, int factor, int threads) {
   SCUMBLE_CHECK(factor >= 1 && factor <= kMaxUpsampling);
   if (factor == 1) return guides;
-  if (std::max(guides.width(), guides.height()) > kMaxImageSide / factor ||
-      std::int64_t(guides.pixel_count()) > kMaxPixels / (factor * factor)) {
-    return UsageError("guides of " + std::to_string(guides.width()) + "×" + std::to_string(guides.height()) +
-                      " cannot be upsampled " + std::to_string(factor) + " times: a picture has at most " +
-                      std::to_string(kMaxPixels) + " pixels, " + std::to_string(kMaxImageSide) +
-                      " a side; take a smaller factor");
-  }
+  SCUMBLE_RETURN_IF_ERROR(CheckLargerSize(guides.width(), guides.height(), factor));
   GuideSet larger(guides.width() * factor, guides.height() * factor);
   for (const LayerInfo& info : AllLayers()) {
     if (guides.Has(info.layer)) larger.Add(info.layer);

@@ -29,7 +29,11 @@ inline constexpr int kMaxUpsampling = 8;
 // all more than 2^28. `threads` 0: all; the bytes do not depend on it.
 Expected<GuideSet> UpsampleGuides(const GuideSet& guides, int factor, int threads = 0);
 
-// Every side `factor` times as long, by Lanczos-3 (core/filter/resample.h). `threads` 0: all.
+// A kUsage error where a picture `factor` times as wide and high would be too large, as above.
+Status CheckLargerSize(int width, int height, int factor);
+
+// Every side `factor` times as long, by Lanczos-3 (core/filter/resample.h). `threads` 0: all. The size is checked by
+// the caller.
 Picture UpscalePicture(const Picture& picture, int factor, int threads = 0);
 
 }  // namespace scumble

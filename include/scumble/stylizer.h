@@ -37,7 +37,7 @@ struct PaintSettings {
   std::uint64_t seed = 0;          // another seed, another pattern; the same seed, the same bytes
   std::optional<double> exposure;  // stops, for styles that look at light; empty: fitted to the brightest exemplar
   int upsample = 1;                // guides are so many times smaller than the picture
-  bool upscale = false;  // with upsample: the picture is painted at their size and scaled up, quicker and softer
+  bool upscale = false;  // with upsample above 1: painted at the guides' size and scaled up, quicker and softer
 };
 
 // How often each kind of work was done so far.

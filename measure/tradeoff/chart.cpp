@@ -106,7 +106,7 @@ Chart ChartOf(const TradeReport& report, const ChartLook& look) {
   if (look.error == ChartError::kTexture && report.texture_floor) errors.push_back(*report.texture_floor);
   chart.across = ScaleFor(times, true, kLeft, chart.right);
   chart.up = ScaleFor(errors, false, kHeight - kBottom, chart.top);
-  chart.front = ParetoFront(trade, look.error == ChartError::kTexture ? ChanceOf(report) : 0.0);
+  chart.front = ParetoFront(trade, look.error == ChartError::kTexture ? ChanceOf(report).value_or(0.0) : 0.0);
   for (const std::size_t i : chart.front) chart.points[i].front = true;
   for (Point& point : chart.points) {
     point.x = chart.across.At(point.time.median);

@@ -36,8 +36,8 @@ std::string OwnPlace(const TradeReport& report, const std::vector<std::size_t>& 
   const std::size_t place = static_cast<std::size_t>(own - report.variants.begin());
   std::string text = "The style as it is takes " + Costs(*own);
   if (std::find(front.begin(), front.end(), place) != front.end()) return text + ", and is on the front.";
-  text += ". Faster, and no farther from the exemplar but by chance:";
-  const double most = *own->texture + ChanceOf(report);
+  text += ". Faster, and farther from the exemplar by no more than chance:";
+  const double most = *own->texture + ChanceOf(report).value_or(0.0);
   const char* comma = " ";
   for (const std::size_t i : front) {
     const TradeMeasure& variant = report.variants[i];
@@ -61,10 +61,12 @@ std::string Header(const TradeReport& report) {
                      ".</p>\n";
   if (!report.command.empty()) html += "<p>Repeat with <code>" + EscapeHtml(report.command) + "</code></p>\n";
   if (report.variants.empty()) return html + "<p>Nothing was measured.</p>\n";
+  const std::optional<double> chance = ChanceOf(report);
   html += fmt::format(
-      "<p>{} of {} ways are on the front: nothing else is as fast and has paint that looks more like "
-      "the exemplar's, by more than chance ({}: what other seeds of the style differ by). ",
-      front.size(), report.variants.size(), ShortFigure(ChanceOf(report)));
+      "<p>{} of {} ways are on the front: nothing else is as fast and has paint that looks more like the "
+      "exemplar's{}. ",
+      front.size(), report.variants.size(),
+      chance ? fmt::format(", by more than other seeds of the style differ by, {}", ShortFigure(chance)) : "");
   return html + OwnPlace(report, front) + "</p>\n" + LeftOut(report);
 }
 
@@ -117,9 +119,9 @@ std::string Charts(const TradeReport& report) {
   return html +
          "<p id=\"told\" class=\"soft\">Dashed: the front, ringed its points; of memory none is drawn, as most ways "
          "differ "
-         "by less than two runs of one. Bars are quartiles of the time and "
-         "standard "
-         "errors of the sample. Each point leads to its picture.</p>\n</section>\n";
+         "by less than two runs of one. Bars are quartiles of the time and, of "
+         "energies, standard errors; the thin line is what halves of the exemplar differ by. Each point leads to its "
+         "picture.</p>\n</section>\n";
 }
 
 struct Column {

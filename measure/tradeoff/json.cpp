@@ -63,7 +63,7 @@ std::string TradeJson(const TradeReport& report) {
             {"command", report.command},
             {"ranked_by", kRankedBy},
             {"texture_floor", NumberJson(report.texture_floor)},
-            {"texture_chance", JsonNumber(ChanceOf(report))}};
+            {"texture_chance", NumberJson(ChanceOf(report))}};
   json["front"] = Json::array();
   for (const std::size_t i : FrontOf(report)) json["front"].push_back(report.variants[i].name);
   json["left_out"] = report.left_out;

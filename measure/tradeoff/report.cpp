@@ -114,13 +114,14 @@ std::vector<bool> MayBeOnFront(const TradeReport& report) {
 
 }  // namespace internal
 
-double ChanceOf(const TradeReport& report) {
+std::optional<double> ChanceOf(const TradeReport& report) {
   const auto own =
       std::find_if(report.variants.begin(), report.variants.end(), [](const auto& variant) { return variant.chosen; });
-  double chance = 0.0;
+  std::optional<double> chance;
   if (own == report.variants.end() || !own->texture) return chance;
   for (const TradeMeasure& variant : report.variants) {
-    if (variant.by_chance && variant.texture) chance = std::max(chance, std::abs(*variant.texture - *own->texture));
+    if (variant.by_chance && variant.texture)
+      chance = std::max(chance.value_or(0.0), std::abs(*variant.texture - *own->texture));
   }
   return chance;
 }
@@ -133,7 +134,7 @@ std::vector<std::size_t> FrontOf(const TradeReport& report) {
     points.push_back({may[i] ? report.variants[i].total_ms.median : kNotMeasured,
                       report.variants[i].texture.value_or(kNotMeasured)});
   }
-  return ParetoFront(points, ChanceOf(report));
+  return ParetoFront(points, ChanceOf(report).value_or(0.0));
 }
 
 std::vector<std::size_t> ByAxis(const TradeReport& report) {

@@ -64,8 +64,8 @@ struct TradeReport {
 inline constexpr const char* kRankedBy = "texture";
 
 // How far `texture` differs by chance: the largest difference between the unchanged style and itself with another
-// random seed. 0 where none was measured.
-double ChanceOf(const TradeReport& report);
+// random seed. None where no other seed was measured.
+std::optional<double> ChanceOf(const TradeReport& report);
 
 // Places in `variants` of the Pareto front of median total time and `texture`, by rising time: what is slower is on it
 // only where it is nearer to the exemplar by more than chance. Left out are variants that were not measured, that

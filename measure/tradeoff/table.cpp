@@ -129,8 +129,10 @@ std::string TradeTable(const TradeReport& report) {
       "\n* nothing else is as fast and has paint that looks more like the exemplar's, by `texture` and more than "
       "chance:\n";
   if (report.texture_floor) {
-    text += fmt::format("  halves of the exemplar differ by {}, other seeds of the style by {}.\n",
-                        ShortFigure(report.texture_floor), ShortFigure(ChanceOf(report)));
+    const std::optional<double> chance = ChanceOf(report);
+    text += fmt::format(
+        "  halves of the exemplar differ by {}, {}.\n", ShortFigure(report.texture_floor),
+        chance ? "other seeds of the style by " + ShortFigure(chance) : "what is chance was not measured (axis seed)");
   }
   text +=
       "  both: what of the picture is not the exemplar's (energy) and what of the exemplar is not in the picture "

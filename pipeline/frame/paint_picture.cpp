@@ -240,6 +240,7 @@ Expected<PaintedPicture> PaintInMemory(StyleSet& styles, const GuideSet& given, 
   StepTimes times = source.times;
   Stopwatch watch;
   WarnOfOtherSize(given, source.name, context, state);
+  SCUMBLE_RETURN_IF_ERROR(CheckLargerSize(given.width(), given.height(), request.upsample));
   std::optional<GuideSet> larger;
   if (request.GuideFactor() > 1) {
     SCUMBLE_ASSIGN(larger, UpsampleGuides(given, request.GuideFactor(), context.threads));
@@ -278,8 +279,10 @@ Expected<PaintedPicture> PaintInMemory(StyleSet& styles, const GuideSet& given, 
   if (request.show)
     picture = Show(*request.show, {state.prepared, map, guides, scratch.field, settings.exposure, picture});
   const auto sum = [](const std::vector<double>& ms) { return std::accumulate(ms.begin(), ms.end(), 0.0); };
-  context.EndStage("transfer",
-                   {{"match", sum(match)}, {"vote", sum(vote)}, {"compose", sum(compose)}, {"upscale", sum(upscale)}});
+  std::vector<std::pair<std::string, double>> inside{
+      {"match", sum(match)}, {"vote", sum(vote)}, {"compose", sum(compose)}};
+  if (!upscale.empty()) inside.emplace_back("upscale", sum(upscale));
+  context.EndStage("transfer", inside);
 
   PaintedPicture made;
   made.write = {request.bits, request.png_level};

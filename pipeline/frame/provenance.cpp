@@ -89,7 +89,7 @@ std::string SettingsText(const StyleSet& styles, const PictureSettings& settings
   std::string text = fmt::format("scumble {}; style {:016x}; seed {}; over {}; show {}; upsample {}", SCUMBLE_VERSION,
                                  HashOfStyles(styles, styles.chosen, known), seed, over ? "a picture" : "nothing",
                                  show ? ExplanationNames()[std::size_t(*show)] : "result", upsample);
-  if (upscale) text += ", of the picture";
+  if (upscale) text += " with --upscale";
   const auto chosen = std::span(styles.styles).first(styles.chosen);
   if (!samples.empty() && std::any_of(chosen.begin(), chosen.end(), AsksForLight)) text += "; samples " + samples;
   text += "; fps " + (fps ? fmt::format("{}", double(fps->numerator) / double(fps->denominator)) : kAnySetting);

@@ -78,9 +78,12 @@ Expected<Variant> VariantWithin(const BudgetRequest& options, const LadderFrame&
   const std::vector<Variant> variants = QualityLadder(styles, frame);
   FileCache cache = TimesCache(context);
   Calibration calibration{circumstances, {}, &cache, options.recalibrate};
-  for (const Variant& variant : variants) calibration.variants.push_back(variant.name);
+  for (const Variant& variant : variants) {
+    if (!variant.upscale) calibration.cold = calibration.variants.size();  // which touches a whole picture's memory
+    calibration.variants.push_back(variant.name);
+  }
   Progress progress = context.StartProgress("calibration");
-  // Each variant once; the one that is taken nine times; the last twice more for a cold start.
+  // Each variant once; the one that is taken nine times; one twice more for a cold start.
   const double usual_runs = static_cast<double>(variants.size()) + kCalibrationRuns + 2.0;
   int runs = 0;
   const auto begin_run = [&]() -> Status {

@@ -42,8 +42,7 @@ struct BudgetChoice {
 };
 
 // Chooses, puts the choice into `styles` and `picture`, and notes it; empty where nothing is to be chosen. Of the
-// guides only size and coverage count. `frame` is
-// theirs; none: 0. `over`: the picture underneath theirs; empty: none.
+// guides only size and coverage count. `frame` is theirs; none: 0. `over`: the picture underneath theirs; empty: none.
 Expected<std::optional<BudgetChoice>> ChooseForGuides(const BudgetRequest& options, const GuideSet& guides,
                                                       std::optional<int> frame, const std::string& name,
                                                       const std::string& over, StyleSet& styles,

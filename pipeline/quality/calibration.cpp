@@ -172,18 +172,18 @@ class Picker {
     if (!cold_ms_) {
       SCUMBLE_RETURN_IF_ERROR(WarmUp());
     } else if (measured_ == 0) {
-      SCUMBLE_RETURN_IF_ERROR(measure_(runs_.size() - 1));  // this process is cold, too
+      SCUMBLE_RETURN_IF_ERROR(measure_(calibration_.cold));  // this process is cold, too
     }
     return Measure(variant);
   }
 
   Status WarmUp() {
-    const std::size_t last = runs_.size() - 1;
-    SCUMBLE_ASSIGN(const double cold, measure_(last));
-    SCUMBLE_RETURN_IF_ERROR(Measure(last));
-    SCUMBLE_RETURN_IF_ERROR(Measure(last));
+    const std::size_t one = calibration_.cold;
+    SCUMBLE_ASSIGN(const double cold, measure_(one));
+    SCUMBLE_RETURN_IF_ERROR(Measure(one));
+    SCUMBLE_RETURN_IF_ERROR(Measure(one));
     warmed_up_ = true;
-    cold_ms_ = std::max(0.0, cold - std::max(runs_[last][0], runs_[last][1]));
+    cold_ms_ = std::max(0.0, cold - std::max(runs_[one][0], runs_[one][1]));
     return Ok();
   }
 
@@ -213,7 +213,7 @@ double PredictedMs(std::span<const double> runs_ms, double cold_ms) {
 }
 
 Expected<PickedVariant> PickVariant(const Calibration& calibration, double budget_ms, const MeasureVariant& measure) {
-  SCUMBLE_CHECK(!calibration.variants.empty());
+  SCUMBLE_CHECK(calibration.cold < calibration.variants.size());
   Picker picker(calibration, budget_ms, measure);
   picker.Load();
   Expected<PickedVariant> picked = picker.Pick();

@@ -6,7 +6,7 @@
 //   - The machine is busier at another moment. For that, the slowest run's distance from the median is added: nothing
 //     on a quiet machine, much on a busy one.
 //   - A process has just begun: its first run wakes threads and touches memory. What that costs is measured once, by
-//     the last variant, and added.
+//     one quick variant, and added.
 #pragma once
 
 #include <cstddef>
@@ -29,6 +29,7 @@ struct Calibration {
   std::vector<std::string> variants;  // by options, the most accurate first; at least one
   TableCache* cache = nullptr;        // where times are kept between runs; null: nowhere
   bool anew = false;                  // what is kept does not count
+  std::size_t cold = 0;               // the place of a quick variant, by which a cold start is measured
 };
 
 // Milliseconds that a variant takes once; by its place in Calibration::variants.
@@ -48,7 +49,7 @@ double PredictedMs(std::span<const double> runs_ms, double cold_ms);
 // The first of the variants whose predicted time is within the budget; where none fits, the quickest.
 //
 // A variant is dropped at its first run beyond the budget: what is too slow costs one run. The very first run is one of
-// the last variant, and is compared with the slower of two more. What was kept and makes no sense is measured again.
+// Calibration::cold, and is compared with the slower of two more. What was kept and makes no sense is measured again.
 // Fails as `measure` does.
 Expected<PickedVariant> PickVariant(const Calibration& calibration, double budget_ms, const MeasureVariant& measure);
 

@@ -73,7 +73,7 @@ Expected<RunReport> TransferSequence(const TransferRequest& request, const Seque
     if (guides && file == guides_file) return FrameGuides{&*guides, {file, {}, {}, {}, memory}};
     guides.reset();
     GuideReadOptions one = read;
-    SCUMBLE_RETURN_IF_ERROR(RequireOfFile(styles, file, request.picture.upsample, one));
+    SCUMBLE_RETURN_IF_ERROR(RequireOfFile(styles, file, request.picture.GuideFactor(), one));
     SCUMBLE_RETURN_IF_ERROR(check_files());
     one.blender_camera = camera.At(frame);
     SCUMBLE_ASSIGN(memory, CheckMemoryOfFile(request, file, styles, one, true, context));
@@ -129,7 +129,7 @@ Expected<std::optional<BudgetChoice>> ChooseForSequence(TransferRequest& request
   SCUMBLE_ASSIGN(const FrameName name, FrameName::Parse(request.guides));
   SCUMBLE_ASSIGN(const FrameName camera, FrameName::Parse(request.camera));
   const std::string file = name.At(frame);
-  SCUMBLE_RETURN_IF_ERROR(RequireOfFile(styles, file, request.picture.upsample, read));
+  SCUMBLE_RETURN_IF_ERROR(RequireOfFile(styles, file, request.picture.GuideFactor(), read));
   read.blender_camera = camera.At(frame);
   SCUMBLE_RETURN_IF_ERROR(CheckMemoryOfFile(request, file, styles, read, true, context));
   SCUMBLE_ASSIGN(const GuideSet guides, ReadGuides(file, read));
@@ -172,7 +172,7 @@ Expected<RunReport> RunTransfer(TransferRequest request, const SequenceListener&
     return report;
   }
   Stopwatch watch;
-  SCUMBLE_RETURN_IF_ERROR(RequireOfFile(styles, request.guides, request.picture.upsample, read));
+  SCUMBLE_RETURN_IF_ERROR(RequireOfFile(styles, request.guides, request.picture.GuideFactor(), read));
   SCUMBLE_RETURN_IF_ERROR(check_files());
   SCUMBLE_ASSIGN(const MemoryNeed memory, CheckMemoryOfFile(request, request.guides, styles, read, false, context));
   SCUMBLE_ASSIGN(const GuideSet guides, ReadGuides(request.guides, read));

@@ -355,12 +355,7 @@ class Trade {
     RepeatOptions repeat = RepeatVariant(setup_, stage_, variant);
     measure.options = std::move(repeat.options), measure.note = std::move(repeat.note);
     const GuideSet& guides = painter.guides().guides;
-    std::optional<GuideSet> of_this_size;
-    if (SupersampleOf(variant) > 1) of_this_size = AveragedGuides(guides, SupersampleOf(variant));
-    if (PictureFactorOf(variant) > 1) {
-      SCUMBLE_ASSIGN(of_this_size, UpsampleGuides(guides, PictureFactorOf(variant), context_.threads));
-    }
-    SCUMBLE_ASSIGN(const GuideDifference off, reference_->Compare(of_this_size ? *of_this_size : guides));
+    SCUMBLE_ASSIGN(const GuideDifference off, DifferenceOf(guides, variant));
     measure.guide_rms = off.rms, measure.guide_flip = off.flip;
     SCUMBLE_ASSIGN(const std::vector<std::byte> png, EncodePng(painter.picture()));
     measure.picture_png.resize(png.size());
@@ -370,6 +365,14 @@ class Trade {
     report_.variants.push_back(std::move(measure));
     SCUMBLE_RETURN_IF_ERROR(Finished(kMeasureWork));
     return Ok();
+  }
+
+  // From the exact ones; those of another size are brought to it for that.
+  Expected<GuideDifference> DifferenceOf(const GuideSet& guides, const Variant& variant) const {
+    if (SupersampleOf(variant) > 1) return reference_->Compare(AveragedGuides(guides, SupersampleOf(variant)));
+    if (PictureFactorOf(variant) == 1) return reference_->Compare(guides);
+    SCUMBLE_ASSIGN(const GuideSet larger, UpsampleGuides(guides, PictureFactorOf(variant), context_.threads));
+    return reference_->Compare(larger);
   }
 
   Status MeasurePaint(VariantPainter& painter, TradeMeasure& measure) {

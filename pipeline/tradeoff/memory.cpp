@@ -42,6 +42,7 @@ void TradeMemory::AddVariant(const Variant& variant, const Style& style, const L
   const int super = SupersampleOf(variant), up = GuideFactorOf(variant), scaled = PictureFactorOf(variant);
   const Size size{stage_.width * super / scaled, stage_.height * super / scaled};  // as it is painted
   if (own_guides) AddGuides(size, layers, setup_.scene, need);
+  if (scaled > 1) AddGuides({stage_.width, stage_.height}, layers, setup_.scene, need);  // for comparing them
   if (own_guides && up > 1) AddGuides({size.width / up, size.height / up}, layers, setup_.scene, need);
   AddPicture({{&style, 1}, false, size, layers, false, true, context_.threads}, {}, need);
   if (super > 1 || scaled > 1) need.Take("picture", kPaint * Pixels());  // averaged, or scaled up

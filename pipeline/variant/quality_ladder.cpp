@@ -71,7 +71,9 @@ const std::vector<LadderStep>& LadderSteps() {
       {1, {kStyleBlit, kCrisp}},
       {4, {kStyleBlit}},
       {2, {kStyleBlit}, kFewSamples, true},
+      {1, {kStyleBlit, kUnsplit}},
       {1, {kStyleBlit, kUnsplit, kCrisp}},
+      {2, {kStyleBlit, kUnsplit, kCrisp}},
       {4, {kStyleBlit, kUnsplit, kCrisp}, kFewSamples, true},
       {1, {kLitSphere, kUnsplit, kCrisp}},
       {4, {kLitSphere, kUnsplit, kCrisp}, kFewSamples, true},
@@ -154,15 +156,15 @@ std::vector<Variant> QualityLadder(const StyleSet& styles, const LadderFrame& fr
 
 Variant VariantOf(Quality quality, const StyleSet& styles, const LadderFrame& frame) {
   if (quality == Quality::kFinal) return MakeVariant(LadderSteps().front(), styles, frame);
-  LadderStep step{2, {kStyleBlit}};
-  step.upscale = quality == Quality::kDraft;
-  const bool full_size = SmallerBy(step.upsample, frame) == 1;
-  if (full_size && quality == Quality::kDraft) step.settings = {kStyleBlit, kUnsplit, kCrisp};
-  if (full_size && quality == Quality::kPreview) step.settings = {kStyleBlit, kCrisp};
-  // Guides of normals alone take so little that nothing is gained which would not be seen.
   const bool lit = std::any_of(styles.styles.begin(), styles.styles.end(), LooksAtLight);
-  if (frame.casts && !lit && quality == Quality::kPreview) step = {1, {kStyleBlit}};
-  return MakeVariant(step, styles, frame);
+  const bool shrinks = SmallerBy(2, frame) > 1;
+  if (quality == Quality::kDraft) {
+    if (shrinks && !frame.full_size) return MakeVariant({2, {kStyleBlit}, kFewSamples, true}, styles, frame);
+    return MakeVariant({lit ? 2 : 1, {kStyleBlit, kUnsplit, kCrisp}}, styles, frame);
+  }
+  // Guides of normals alone take so little that nothing is gained which would not be seen.
+  if (frame.casts && !lit) return MakeVariant({1, {kStyleBlit}}, styles, frame);
+  return MakeVariant(shrinks ? LadderStep{2, {kStyleBlit}} : LadderStep{1, {kStyleBlit, kCrisp}}, styles, frame);
 }
 
 std::string OptionsOf(const Variant& variant) {

@@ -1,4 +1,4 @@
-// Painting a frame by one variant after another: how long each takes, and how accurate it is.
+// Painting a frame by one variant after another: how long each takes.
 #pragma once
 
 #include <cstddef>

@@ -194,7 +194,8 @@ TEST(TradePage, SaysWhatIsFasterAndNoWorseThanTheStyle) {
   // "radius 0" takes 30 ms where the style takes 40, for the same error.
   const std::string html = TradeHtml(MadeUpReport());
   EXPECT_NE(
-      html.find("Faster, and no farther from the exemplar but by chance: <a href=\"#way-3\">radius 0</a> (30.0 ms"),
+      html.find(
+          "Faster, and farther from the exemplar by no more than chance: <a href=\"#way-3\">radius 0</a> (30.0 ms"),
       std::string::npos);
   EXPECT_NE(html.find("<p>5 of 6 ways are on the front"), std::string::npos);
   TradeReport report = MadeUpReport();

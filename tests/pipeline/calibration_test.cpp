@@ -56,6 +56,7 @@ Calibration Ladder(std::size_t variants, TableCache* cache = nullptr) {
   Calibration calibration{"a machine and a scene", {}, cache, false};
   for (std::size_t variant = 0; variant < variants; ++variant)
     calibration.variants.push_back("way " + std::to_string(variant));
+  calibration.cold = variants - 1;
   return calibration;
 }
 
@@ -88,6 +89,14 @@ TEST(Calibration, AProcessThatHasJustBegunTakesLonger) {
   EXPECT_EQ(picked.variant, 1u);
   EXPECT_EQ(picked.predicted_ms, 35.0);
   EXPECT_EQ(again.runs[1], 1 + kCalibrationRuns) << "the cold one is not one of the nine";
+}
+
+TEST(Calibration, AColdStartIsMeasuredByTheVariantThatIsNamed) {
+  Calibration ladder = Ladder(3);
+  ladder.cold = 1;
+  FakeClock clock{{{20.0}, {10.0}, {5.0}}};
+  ASSERT_TRUE(PickVariant(ladder, 100.0, clock.Measure()).ok());
+  EXPECT_EQ(clock.runs, (std::vector<int>{kCalibrationRuns, 3, 0}));
 }
 
 // In the next process the first run is as cold: it is made, and does not count.
@@ -284,7 +293,7 @@ TEST(Calibration, TimesOfWaysThatThereAreNoMoreDoNotCount) {
   FakeClock clock{{{50.0}, {30.0}, {5.0}}};
   MustPick(Ladder(3, &cache), 10.0, clock);
   Calibration less = Ladder(3, &cache);
-  less.variants = {"way 1"};
+  less.variants = {"way 1"}, less.cold = 0;
   FakeClock one{{{30.0}}};
   EXPECT_EQ(MustPick(less, 100.0, one).variant, 0u);
 }

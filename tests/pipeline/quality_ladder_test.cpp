@@ -159,7 +159,10 @@ TEST(QualityLadder, DraftsAreHalfTheSizeAndScaledUp) {
             "--set transfer.hybrid=0 --set transfer.blend_radius=0");
   LadderFrame over = kCast;
   over.full_size = true;
-  EXPECT_EQ(OptionsOf(VariantOf(Quality::kDraft, Open("oil"), over)), "--upsample 2") << "something lies underneath";
+  EXPECT_EQ(OptionsOf(VariantOf(Quality::kDraft, Open("oil"), over)), "--set transfer.blend_radius=0")
+      << "something lies underneath";
+  EXPECT_EQ(OptionsOf(VariantOf(Quality::kDraft, Open("chiaroscuro"), over)),
+            "--upsample 2 --set transfer.blend_radius=0");
   for (const Variant& variant : QualityLadder(Open("oil"), over)) EXPECT_FALSE(variant.upscale) << variant.name;
 }
 

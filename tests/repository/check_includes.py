@@ -49,7 +49,7 @@ THIRD_PARTY = {
     "stb_image": {"guidegen"},
     "oneapi/tbb": {"guidegen", "transfer"},
     "tbb/": {"cli", "filter", "guidegen", "measure", "pipeline", "transfer"},
-    "hwy/": {"guidegen", "transfer"},
+    "hwy/": {"filter", "guidegen", "transfer"},
     "toml++/": {"style"},
     "apriltag/": {"style"},
     "fmt/": {"measure", "cli", "pipeline"},

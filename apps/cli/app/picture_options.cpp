@@ -97,20 +97,20 @@ Expected<SequenceRequest> ToRequest(const SequenceOptions& options) {
 }
 
 void AddBudgetOptions(CLI::App& verb, BudgetOptions& options, bool casts) {
-  const std::string smaller = casts ? "smaller guides, fewer samples, " : "";
+  const std::string smaller = casts ? "pictures scaled up, smaller guides, fewer samples, " : "";
   const std::string wins =
       std::string("--set") + (casts ? ", --upsample and --samples" : " and --upsample") + " win over it";
   verb.add_option("--quality", options.quality,
                   "final: the style as it is; preview and draft take less time where there is much to take, by " +
-                      smaller + "simpler ways to find the paint; what is taken is printed as options that repeat it. " +
-                      wins)
+                      smaller + "less blending; what is taken is printed as options that repeat it. " + wins)
       ->type_name("NAME")
       ->check(CLI::IsMember(QualityNames()));
   verb.add_option(
           "--budget-ms", options.request.budget_ms,
           std::string("milliseconds that ") + (casts ? "the guides and the transfer" : "the transfer") +
               " of one picture may take, without start-up, reading, preparing the style and writing: of a dozen "
-              "ways, ordered by what they cost in accuracy, the first that fits is taken, by times that are measured "
+              "ways, ordered by how far their paint looks from the exemplar's, the first that fits is taken, by times "
+              "that are measured "
               "once on this "
               "machine and kept in the user's cache folder; one way for all frames; the options that repeat it are "
               "printed. " +
@@ -124,6 +124,9 @@ Expected<BudgetRequest> ToRequest(const CLI::App& verb, const BudgetOptions& opt
   BudgetRequest request = options.request;
   request.guides_are_fixed = verb.count("--upsample") > 0;  // and --upscale with it
   request.quality = FindQuality(options.quality);
+  if (request.chooses() && !request.guides_are_fixed && verb.count("--upscale") > 0) {
+    return UsageError("--upscale: --quality and --budget-ms choose it themselves; leave it out, or give --upsample N");
+  }
   if (request.quality && request.budget_ms > 0) {
     return UsageError("--quality " + options.quality + " and --budget-ms exclude each other: give one of them");
   }

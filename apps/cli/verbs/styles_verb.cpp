@@ -11,9 +11,11 @@
 #include "apps/cli/app/json_text.h"
 #include "apps/cli/app/options.h"
 #include "apps/cli/verbs/styles_check.h"
+#include "apps/cli/verbs/styles_tune.h"
 #include "core/style/style_file.h"
 #include "core/style/style_keys.h"
 #include "pipeline/style/style_locations.h"
+#include "pipeline/tune/tune_style.h"
 
 namespace scumble {
 namespace {
@@ -79,7 +81,8 @@ Expected<ExitCode> ListKeys(const Globals& globals) {
 }  // namespace
 
 void AddStylesVerb(CLI::App& app, Globals& globals, Action& chosen) {
-  CLI::App* sub = app.add_subcommand("styles", "list the bundled styles; check one; list the keys of style.toml");
+  CLI::App* sub =
+      app.add_subcommand("styles", "list the bundled styles; check or tune one; list the keys of style.toml");
   auto keys = std::make_shared<bool>(false);
   auto checked = std::make_shared<StylesCheck>();
   sub->add_flag("--keys", *keys, "list every key of style.toml with its default");
@@ -91,11 +94,38 @@ void AddStylesVerb(CLI::App& app, Globals& globals, Action& chosen) {
       ->type_name("STYLE")
       ->required();
   check->add_flag("--strict", checked->strict, "exit code 1 where a style has a mistake; remarks do not count");
+  auto tuned = std::make_shared<StylesTune>();
+  CLI::App* tune = sub->add_subcommand(
+      "tune", "propose keys by which a style's paint looks more like its exemplar's, and what each costs");
+  tune->footer(
+      "threshold, hybrid, variety and blend_radius are varied, one after the other. The measure is not the eye: look "
+      "at\n"
+      "the contact sheet of -o in full size before you take one. Takes a minute or two on four scenes.\n");
+  tune->add_option("style", tuned->style.style, "a style's folder, style.toml, or a bundled style's name")
+      ->type_name("STYLE")
+      ->required();
+  tune->add_option("--scene", tuned->scenes, "a scene to tune on, as often as you like; left out: the sample scenes")
+      ->type_name("FILE")
+      ->check(RefuseEmpty);
+  tune->add_option("--size", tuned->size, "of the pictures")->type_name("WxH")->capture_default_str();
+  tune->add_option("--set", tuned->style.sets, "a key that stays as given: transfer.variety=0")->type_name("KEY=VALUE");
+  tune->add_option("--seed", tuned->seed, "another random seed")
+      ->type_name("N")
+      ->check(RefuseNegative)
+      ->capture_default_str();
+  tune->add_option("-o,--output", tuned->folder, "folder for a contact sheet, tune.html")
+      ->type_name("FOLDER")
+      ->check(RefuseEmpty);
+  tune->add_option("--write", tuned->write, "put the keys of the N-th proposal into the style's style.toml")
+      ->type_name("N")
+      ->check(CLI::Range(1, static_cast<int>(kMostProposals)));
   AddGlobalOptions(*sub, globals);
   AddGlobalOptions(*check, globals);
+  AddGlobalOptions(*tune, globals);
   sub->callback([=, &globals, &chosen] {
     chosen = [=, &globals]() -> Expected<ExitCode> {
       if (!checked->styles.empty()) return CheckStyles(*checked, globals);
+      if (!tuned->style.style.empty()) return RunStylesTune(*tuned, globals);
       return *keys ? ListKeys(globals) : ListStyles(globals);
     };
   });

@@ -25,9 +25,9 @@ using Document = std::unique_ptr<std::remove_pointer_t<HPDF_Doc>, FreeDocument>;
 HPDF_REAL Real(double value) { return static_cast<HPDF_REAL>(value); }
 
 // A page with coordinates in the template's pixels, from the template's upper left corner, y down.
-class Sheet {
+class PdfSheet {
  public:
-  Sheet(HPDF_Page page, const PrintPage& place, int dpi)
+  PdfSheet(HPDF_Page page, const PrintPage& place, int dpi)
       : page_(page), place_(place), scale_(kPointsPerInch / dpi), height_(place.height_mm * kPointsPerMm) {
     HPDF_Page_SetWidth(page, Real(place.width_mm * kPointsPerMm));
     HPDF_Page_SetHeight(page, Real(height_));
@@ -50,7 +50,7 @@ class Sheet {
 };
 
 // The sphere, 0 to 18% grey with a thin line around it: paint covers it, and a pencil line shows on it.
-void DrawPaleSphere(HPDF_Doc document, const Sheet& sheet, const KitLight& light) {
+void DrawPaleSphere(HPDF_Doc document, const PdfSheet& sheet, const KitLight& light) {
   const Picture lit = DrawLitSphere(light);
   const int size = light.guides.width(), margin = TemplateMargin(size);
   std::vector<HPDF_BYTE> grey;
@@ -75,7 +75,7 @@ void DrawPaleSphere(HPDF_Doc document, const Sheet& sheet, const KitLight& light
   HPDF_Page_Stroke(sheet.page());
 }
 
-void DrawPrintedMarks(const Sheet& sheet, int size) {
+void DrawPrintedMarks(const PdfSheet& sheet, int size) {
   const int margin = TemplateMargin(size);
   for (const TemplateMark& mark : PlainMarks(size)) sheet.Box(mark.x0, mark.y0, mark.x1, mark.y1, mark.grey / 65535.0);
   if (!FiducialsFit(size)) return;
@@ -134,7 +134,7 @@ std::vector<std::string> CaptionLines(const KitLight& light, int dpi, const std:
           scan};
 }
 
-void DrawScaleBar(const Sheet& sheet, double left, double top, double pixels_per_mm) {
+void DrawScaleBar(const PdfSheet& sheet, double left, double top, double pixels_per_mm) {
   constexpr double kBarMm = 50.0, kLineMm = 0.25, kTickMm = 3.0;
   const double line = kLineMm * pixels_per_mm, right = left + kBarMm * pixels_per_mm;
   sheet.Box(left, top - line / 2, right, top + line / 2, 0);
@@ -143,7 +143,7 @@ void DrawScaleBar(const Sheet& sheet, double left, double top, double pixels_per
   }
 }
 
-void DrawWords(HPDF_Doc document, const Sheet& sheet, const KitLight& light, const PrintPage& page, int dpi,
+void DrawWords(HPDF_Doc document, const PdfSheet& sheet, const KitLight& light, const PrintPage& page, int dpi,
                const std::string& painting) {
   const double pixels_per_mm = dpi / 25.4;
   const int size = light.guides.width(), side = size + 2 * TemplateMargin(size);
@@ -193,7 +193,7 @@ Expected<std::vector<std::byte>> EncodeTemplatePdf(const KitLight& light, const 
   HPDF_SetInfoAttr(document.get(), HPDF_INFO_CREATOR, kCreator);
   HPDF_SetInfoAttr(document.get(), HPDF_INFO_TITLE, "A sphere to paint over");
   HPDF_SetViewerPreference(document.get(), HPDF_PRINT_SCALING_NONE);
-  const Sheet sheet(HPDF_AddPage(document.get()), page, dpi);
+  const PdfSheet sheet(HPDF_AddPage(document.get()), page, dpi);
   DrawPaleSphere(document.get(), sheet, light);
   DrawPrintedMarks(sheet, light.guides.width());
   DrawWords(document.get(), sheet, light, page, dpi, WesternLetters(painting));

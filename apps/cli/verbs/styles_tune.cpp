@@ -1,0 +1,160 @@
+#include "apps/cli/verbs/styles_tune.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <span>
+#include <system_error>
+
+#include "apps/cli/app/json_text.h"
+#include "apps/cli/app/options.h"
+#include "core/io/file/atomic_file.h"
+#include "core/io/picture_file.h"
+#include "core/style/style_edit.h"
+#include "measure/report/html_page.h"
+#include "pipeline/style/style_locations.h"
+#include "pipeline/tune/tune_style.h"
+
+namespace scumble {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<const char*, 4> kSampleScenes = {"suzanne", "stilllife", "toys", "snail"};
+constexpr const char* kPage = "tune.html";
+
+// The sample scenes lie beside the bundled styles.
+Expected<std::vector<std::string>> SampleScenes(const RunContext& context) {
+  for (const fs::path& styles : StyleFolders(context)) {
+    std::vector<std::string> scenes;
+    for (const char* const name : kSampleScenes) {
+      const fs::path scene = styles.parent_path() / "scenes" / (std::string(name) + ".glb");
+      std::error_code failed;
+      if (fs::exists(scene, failed)) scenes.push_back(scene.string());
+    }
+    if (!scenes.empty()) return scenes;
+  }
+  return InputError("the sample scenes are not where the bundled styles are: name scenes of your own with --scene");
+}
+
+std::string OptionsOf(const TunedStyle& style) {
+  std::string text;
+  for (const std::string& setting : style.settings) text += (text.empty() ? "--set " : " --set ") + setting;
+  return text;
+}
+
+std::string NameOf(std::size_t place) { return place == 0 ? "as it is" : fmt::format("{}", place); }
+
+// The style as it is, then the proposals.
+std::vector<const TunedStyle*> AllOf(const TuneReport& report) {
+  std::vector<const TunedStyle*> all{&report.own};
+  for (const TunedStyle& one : report.proposals) all.push_back(&one);
+  return all;
+}
+
+std::string TextOf(const TuneReport& report) {
+  std::string text = fmt::format("{} on {}; {} ways were painted\n\n{:<9} {:>8} {:>6}  keys\n", report.style,
+                                 fmt::join(report.scenes, ", "), report.tried, "", "texture", "time");
+  const std::vector<const TunedStyle*> all = AllOf(report);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    text += fmt::format("{:<9} {:>8.3f} {:>6.2f}  {}\n", NameOf(i), all[i]->texture, all[i]->time, OptionsOf(*all[i]));
+  }
+  text += fmt::format(
+      "\ntexture: how far the paint looks from the exemplar's, of the style as it is; other seeds differ by {:.3f}.\n"
+      "time: of the transfer, likewise.\n",
+      report.chance);
+  if (report.proposals.empty()) text += "Nothing that was tried is nearer to the exemplar by more than that.\n";
+  return text;
+}
+
+Expected<std::string> PageOf(const TuneReport& report) {
+  constexpr const char* kStyle =
+      ".sheet { display: grid; gap: .6rem; } .sheet img { width: 100%; display: block; } .sheet code { font-size: 85%; "
+      "}";
+  std::string html = internal::PageHead(report.style + ", tuned", kStyle);
+  html += fmt::format(
+      "<h1>{}, tuned</h1>\n<p>{} ways were painted; other random seeds differ by {:.3f}. Look at whole "
+      "pictures before you choose: open one in a tab of its own.</p>\n",
+      internal::EscapeHtml(report.style), report.tried, report.chance);
+  html += fmt::format("<div class=\"sheet\" style=\"grid-template-columns: repeat({}, 1fr)\">\n", report.scenes.size());
+  const std::vector<const TunedStyle*> all = AllOf(report);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    html += fmt::format("<p style=\"grid-column: 1 / -1\"><b>{}</b>: texture {:.3f}, time {:.2f} <code>{}</code></p>\n",
+                        i == 0 ? "The style as it is" : NameOf(i), all[i]->texture, all[i]->time,
+                        internal::EscapeHtml(OptionsOf(*all[i])));
+    for (std::size_t s = 0; s < all[i]->pictures.size(); ++s) {
+      SCUMBLE_ASSIGN(const std::vector<std::byte> png, EncodePng(all[i]->pictures[s]));
+      html += fmt::format("<img alt=\"{}\" src=\"{}\">\n", internal::EscapeHtml(report.scenes[s] + ", " + NameOf(i)),
+                          internal::PngAddress(png));
+    }
+  }
+  return html + "</div>\n</body></html>\n";
+}
+
+nlohmann::ordered_json JsonOf(const TuneReport& report) {
+  nlohmann::ordered_json json{{"style", report.style},
+                              {"scenes", report.scenes},
+                              {"tried", report.tried},
+                              {"chance", report.chance},
+                              {"proposals", nlohmann::ordered_json::array()}};
+  for (const TunedStyle& one : report.proposals) {
+    json["proposals"].push_back({{"settings", one.settings}, {"texture", one.texture}, {"time", one.time}});
+  }
+  return json;
+}
+
+Expected<fs::path> StyleFileOf(const StyleRequest& style, const RunContext& context) {
+  SCUMBLE_ASSIGN(const fs::path found, FindStyle(style.style, context));
+  std::error_code failed;
+  const fs::path file = fs::is_directory(found, failed) ? found / "style.toml" : found;
+  if (file.extension() != ".toml" || !fs::exists(file, failed)) {
+    return InputError(style.style + " has no style.toml to write to: `scumble sphere` makes a folder with one");
+  }
+  return file;
+}
+
+Status Write(const TunedStyle& chosen, const fs::path& file, const Globals& globals) {
+  SCUMBLE_ASSIGN(const std::vector<std::byte> bytes, ReadWholeFile(file));
+  SCUMBLE_ASSIGN(const std::string text,
+                 WithSettings(std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()), chosen.settings,
+                              file.string()));
+  SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(file, text));
+  globals.Note(fmt::format("{}: {}", file.string(), fmt::join(chosen.settings, ", ")));
+  return Ok();
+}
+
+}  // namespace
+
+Expected<ExitCode> RunStylesTune(const StylesTune& tune, const Globals& globals) {
+  TuneRequest request{tune.style, tune.scenes, {}, tune.seed};
+  request.style.scene_styles = false;
+  SCUMBLE_ASSIGN(request.size, ParseSize(tune.size));
+  if (request.scenes.empty()) {
+    SCUMBLE_ASSIGN(request.scenes, SampleScenes(globals));
+  }
+  fs::path style_file;
+  if (tune.write > 0) {  // found before minutes of work
+    SCUMBLE_ASSIGN(style_file, StyleFileOf(tune.style, globals));
+  }
+  SCUMBLE_ASSIGN(const TuneReport report, TuneStyle(request, globals));
+  Print(globals.json ? JsonText(JsonOf(report)) : TextOf(report));
+  if (!tune.folder.empty()) {
+    std::error_code failed;
+    fs::create_directories(tune.folder, failed);
+    SCUMBLE_ASSIGN(const std::string page, PageOf(report));
+    SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(fs::path(tune.folder) / kPage, page));
+    globals.Note((fs::path(tune.folder) / kPage).string() + ": the pictures side by side");
+  }
+  if (tune.write == 0) return ExitCode::kOk;
+  if (static_cast<std::size_t>(tune.write) > report.proposals.size()) {
+    return UsageError(
+        fmt::format("--write {}: there are {} proposals, nothing was written", tune.write, report.proposals.size()));
+  }
+  SCUMBLE_RETURN_IF_ERROR(Write(report.proposals[static_cast<std::size_t>(tune.write) - 1], style_file, globals));
+  return ExitCode::kOk;
+}
+
+}  // namespace scumble

@@ -1,0 +1,96 @@
+// scumble styles tune: proposals, and what is written.
+#include "tests/support/cli_harness.h"
+
+namespace scumble {
+namespace {
+
+class StylesTune : public CliTest {
+ protected:
+  // Real paint, by chunks so large that hills have the paint of plains.
+  void WriteCoarse() {
+    std::filesystem::create_directories(At("coarse"));
+    std::filesystem::copy_file(std::string(SCUMBLE_SOURCE_DIR) + "/exemplars/graphite/lit.png", At("coarse/lit.png"),
+                               std::filesystem::copy_options::overwrite_existing);
+    WriteText("coarse/style.toml",
+              "# mine\nname = \"coarse\"\n[transfer]\nthreshold = 1.2  # too much\nlevels = 6\n[[exemplar]]\nimage = "
+              "\"lit.png\"\n");
+  }
+  Arguments Tune(const Arguments& more = {}) const {
+    return With({"styles", "tune", "coarse", "--scene", Scene("suzanne.glb"), "--size", "160x90", "--set",
+                 "transfer.blend_radius=1"},
+                more);
+  }
+};
+
+TEST_F(StylesTune, ProposesWhatIsNearerToTheExemplar) {
+  WriteCoarse();
+  const CommandResult run = RunOk(Tune({"--json", "-o", "sheet", "--write", "1"}));
+  const nlohmann::json report = run.Json();
+  EXPECT_EQ(report["style"], "coarse");
+  EXPECT_EQ(report["scenes"], nlohmann::json({"suzanne"}));
+  ASSERT_GE(report["proposals"].size(), 1u);
+  ASSERT_LE(report["proposals"].size(), 5u);
+  double last = 0.0;
+  for (const auto& one : report["proposals"]) {
+    EXPECT_GT(one["texture"].get<double>(), last) << "nearest first, each once";
+    EXPECT_LT(one["texture"].get<double>(), 1.0);
+    EXPECT_GT(one["time"].get<double>(), 0.0);
+    last = one["texture"];
+  }
+  const std::vector<std::string> settings = report["proposals"][0]["settings"];
+  ASSERT_FALSE(settings.empty());
+  EXPECT_TRUE(std::any_of(settings.begin(), settings.end(), [](const std::string& one) {
+    return one.starts_with("transfer.threshold=");
+  })) << "1.2 is too much";
+
+  // The contact sheet loads nothing and has the style and the proposals.
+  const std::string page = Bytes("sheet/tune.html");
+  EXPECT_EQ(page.find("://"), std::string::npos);
+  std::size_t pictures = 0;
+  for (std::size_t at = page.find("<img"); at != std::string::npos; at = page.find("<img", at + 1)) ++pictures;
+  EXPECT_EQ(pictures, 1 + report["proposals"].size());
+
+  // What was written makes the picture of the proposal, and the rest of the file is as it was.
+  const std::string text = Bytes("coarse/style.toml");
+  EXPECT_EQ(text.find("# mine\nname = \"coarse\"\n[transfer]\n"), 0u) << text;
+  EXPECT_NE(text.find("# too much\nlevels = 6\n[[exemplar]]\nimage = \"lit.png\"\n"), std::string::npos) << text;
+  const Arguments stylize{"stylize", Scene("suzanne.glb"),     "--size", "160x90", "--style", "coarse",
+                          "--set",   "transfer.blend_radius=1"};
+  RunOk(With(stylize, {"-o", "written.png"}));
+  WriteCoarse();
+  Arguments sets;
+  for (const std::string& setting : settings) sets = With(sets, {"--set", setting});
+  RunOk(With(With(stylize, sets), {"-o", "set.png"}));
+  EXPECT_EQ(Bytes("written.png"), Bytes("set.png"));
+
+  // By no clock and no threads: the same again.
+  const nlohmann::json again = RunOk(Tune({"--json", "--threads", "1"})).Json();
+  ASSERT_EQ(again["proposals"].size(), report["proposals"].size());
+  for (std::size_t i = 0; i < again["proposals"].size(); ++i) {
+    for (const char* key : {"settings", "texture"}) EXPECT_EQ(again["proposals"][i][key], report["proposals"][i][key]);
+  }
+}
+
+TEST_F(StylesTune, KeysThatAreGivenStay) {
+  WriteCoarse();
+  const nlohmann::json report =
+      RunOk(Tune({"--json", "--set", "transfer.threshold=0.2", "--set", "transfer.hybrid=0"})).Json();
+  for (const auto& one : report["proposals"]) {
+    for (const std::string setting : one["settings"]) {
+      EXPECT_FALSE(setting.starts_with("transfer.threshold=") || setting.starts_with("transfer.hybrid=")) << setting;
+    }
+  }
+}
+
+TEST_F(StylesTune, RefusesWhatCannotBeTuned) {
+  WriteCoarse();
+  WritePainted("alone.png", 64, 64);
+  ExpectError(Tune({"--set", "transfer.method=litsphere"}), 2, {"there is nothing to tune", "styleblit"});
+  ExpectError({"styles", "tune", "nowhere", "--scene", Scene("suzanne.glb")}, 3, {"nowhere"});
+  ExpectError({"styles", "tune", "coarse", "--scene", "gone.glb"}, 3, {"gone.glb"});
+  ExpectError({"styles", "tune", "alone.png", "--scene", Scene("suzanne.glb"), "--write", "1"}, 3,
+              {"alone.png has no style.toml"});
+}
+
+}  // namespace
+}  // namespace scumble
