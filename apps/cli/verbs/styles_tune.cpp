@@ -16,7 +16,7 @@
 #include "core/style/style_edit.h"
 #include "measure/report/html_page.h"
 #include "pipeline/style/style_locations.h"
-#include "pipeline/tune/tune_style.h"
+#include "pipeline/tradeoff/tune_style.h"
 
 namespace scumble {
 namespace {

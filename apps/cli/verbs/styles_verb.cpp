@@ -15,7 +15,7 @@
 #include "core/style/style_file.h"
 #include "core/style/style_keys.h"
 #include "pipeline/style/style_locations.h"
-#include "pipeline/tune/tune_style.h"
+#include "pipeline/tradeoff/tune_style.h"
 
 namespace scumble {
 namespace {

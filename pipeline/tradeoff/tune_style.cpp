@@ -1,4 +1,4 @@
-#include "pipeline/tune/tune_style.h"
+#include "pipeline/tradeoff/tune_style.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -12,7 +12,6 @@
 #include <optional>
 #include <utility>
 
-#include "pipeline/memory/memory_estimate.h"
 #include "pipeline/tradeoff/stage.h"
 #include "pipeline/variant/variant_error.h"
 
