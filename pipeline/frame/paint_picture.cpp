@@ -240,7 +240,9 @@ Expected<PaintedPicture> PaintInMemory(StyleSet& styles, const GuideSet& given, 
   StepTimes times = source.times;
   Stopwatch watch;
   WarnOfOtherSize(given, source.name, context, state);
-  SCUMBLE_RETURN_IF_ERROR(CheckLargerSize(given.width(), given.height(), request.upsample));
+  if (request.upsample > 1) {
+    SCUMBLE_RETURN_IF_ERROR(CheckLargerSize(given.width(), given.height(), request.upsample));
+  }
   std::optional<GuideSet> larger;
   if (request.GuideFactor() > 1) {
     SCUMBLE_ASSIGN(larger, UpsampleGuides(given, request.GuideFactor(), context.threads));

@@ -1,12 +1,10 @@
 #include "pipeline/tradeoff/tune_style.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <functional>
 #include <map>
 #include <memory>
 #include <optional>

@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <array>
 #include <filesystem>
-#include <span>
 #include <system_error>
 
 #include "apps/cli/app/json_text.h"

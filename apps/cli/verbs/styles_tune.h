@@ -1,6 +1,7 @@
 // scumble styles tune: proposes keys for a style by which its paint looks more like the exemplar's.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
