@@ -1,6 +1,7 @@
 // Guides of a larger picture from those of a small one: areas, edges, and layers that must not mix.
 #include "transfer/upsample_guides.h"
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -335,6 +336,17 @@ TEST(UpsampleGuides, ThreadsDoNotChangeAByte) {
     for (int c = 0; c < ChannelCount(layer); ++c) {
       EXPECT_TRUE(std::ranges::equal(one.Plane(layer, c), three.Plane(layer, c)));
     }
+  }
+}
+
+// Sides of at most 32768 pixels, 2^28 pixels in all, as everywhere.
+TEST(CheckLargerSize, KnowsTheLargestPicture) {
+  EXPECT_TRUE(CheckLargerSize(8192, 8192, 2).ok());
+  EXPECT_TRUE(CheckLargerSize(16384, 1, 2).ok());
+  for (const auto& [width, height, factor] : {std::array{8192, 8193, 2}, {16385, 1, 2}, {1, 8192, 8}}) {
+    const Status status = CheckLargerSize(width, height, factor);
+    ASSERT_FALSE(status.ok()) << width << "x" << height << " by " << factor;
+    EXPECT_NE(status.error().message.find("take a smaller factor"), std::string::npos);
   }
 }
 
