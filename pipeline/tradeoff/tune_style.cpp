@@ -16,7 +16,6 @@
 namespace scumble {
 namespace {
 
-constexpr int kRounds = 2;                              // times that all keys are tried
 constexpr int kOtherSeeds = 2;                          // for what chance makes
 constexpr int kTimedRuns = 5;                           // of each proposal, in turns; the quickest counts
 constexpr double kThresholds[] = {0.5, 0.7, 1.4, 2.0};  // times the style's own
@@ -26,14 +25,22 @@ struct TunedKey {
   std::vector<std::string> values;
 };
 
+// The values to try, the style's own ones left out.
 std::vector<TunedKey> KeysOf(const Style& style, const std::vector<std::string>& sets) {
+  const TransferSettings& own = style.transfer;
+  const auto other_than = [](double value, const std::vector<int>& values) {
+    std::vector<std::string> others;
+    for (const int one : values) {
+      if (one != value) others.push_back(std::to_string(one));
+    }
+    return others;
+  };
   TunedKey threshold{"transfer.threshold", {}};
-  for (const double factor : kThresholds)
-    threshold.values.push_back(fmt::format("{:.3g}", factor * style.transfer.threshold));
+  for (const double factor : kThresholds) threshold.values.push_back(fmt::format("{:.3g}", factor * own.threshold));
   std::vector<TunedKey> keys = {std::move(threshold),
-                                {"transfer.hybrid", {"0", "4", "8", "16"}},
-                                {"transfer.variety", {"0", "8", "15", "25"}},
-                                {"transfer.blend_radius", {"0", "1", "2", "4"}}};
+                                {"transfer.hybrid", other_than(own.hybrid, {0, 4, 8, 16})},
+                                {"transfer.variety", other_than(own.variety, {0, 8, 15, 25})},
+                                {"transfer.blend_radius", other_than(own.blend_radius, {0, 1, 2, 4})}};
   std::erase_if(keys, [&](const TunedKey& one) {
     const bool moves = std::any_of(style.tracks.begin(), style.tracks.end(),
                                    [&](const StyleTrack& track) { return track.name == one.key; });
@@ -129,8 +136,6 @@ class Tuner {
       scenes_.push_back(std::move(scene));
       report_.scenes.push_back(std::filesystem::path(file).stem().string());
     }
-    for (const TunedKey& key : keys_) work_ += static_cast<double>(kRounds * key.values.size());
-    work_ += kOtherSeeds + 1 + kTimedRuns;
     return Ok();
   }
 
@@ -155,26 +160,56 @@ class Tuner {
     return sum / static_cast<double>(scenes_.size());
   }
 
+  // Threshold and hybrid together first: larger chunks show steps of tone, which the hybrid takes away, and small ones
+  // leave it nothing to do. One after the other, neither would change. Then each key by itself.
   Status Search() {
+    std::vector<TunedKey> together, others;
+    for (const TunedKey& key : keys_) {
+      const bool is_of_chunks = key.key == "transfer.threshold" || key.key == "transfer.hybrid";
+      (is_of_chunks ? together : others).push_back(key);
+    }
+    std::vector<std::vector<TunedKey>> groups = {together};
+    for (const std::vector<TunedKey>& keys : {others, keys_}) {
+      for (const TunedKey& key : keys) groups.push_back({key});
+    }
+    double work = kOtherSeeds + 1 + kTimedRuns;
+    for (const std::vector<TunedKey>& group : groups) work += static_cast<double>(Ways({}, group).size());
+    work_ = work;
     Settings best;
     double least = own_;
-    for (int round = 0; round < kRounds; ++round) {
-      for (const TunedKey& key : keys_) {
-        Settings going_on = best;
-        for (const std::string& value : key.values) {
-          Settings one = best;
-          one[key.key] = value;
-          if (!tried_.contains(one)) {
-            SCUMBLE_ASSIGN(tried_[one], LogTextureOf(one, 0));
-          } else {
-            SCUMBLE_RETURN_IF_ERROR(Step());
-          }
-          if (tried_[one] < least) least = tried_[one], going_on = one;
+    for (const std::vector<TunedKey>& group : groups) {
+      for (const Settings& one : Ways(best, group)) {
+        if (one.empty()) {
+          SCUMBLE_RETURN_IF_ERROR(Step());
+          continue;
         }
-        best = going_on;
+        if (!tried_.contains(one)) {
+          SCUMBLE_ASSIGN(tried_[one], LogTextureOf(one, 0));
+        } else {
+          SCUMBLE_RETURN_IF_ERROR(Step());
+        }
+        if (tried_[one] < least) least = tried_[one], best = one;
       }
     }
     return Ok();
+  }
+
+  // The settings with each combination of these keys' values, those of the style among them.
+  static std::vector<Settings> Ways(const Settings& settings, const std::vector<TunedKey>& keys) {
+    std::vector<Settings> ways = {settings};
+    for (const TunedKey& key : keys) {
+      std::vector<Settings> more;
+      for (Settings one : ways) {
+        one.erase(key.key);
+        more.push_back(one);
+        for (const std::string& value : key.values) {
+          one[key.key] = value;
+          more.push_back(one);
+        }
+      }
+      ways = std::move(more);
+    }
+    return ways;
   }
 
   static int KeysThatDiffer(const Settings& a, const Settings& b) {

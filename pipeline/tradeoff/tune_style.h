@@ -36,13 +36,13 @@ struct TuneReport {
 };
 inline constexpr std::size_t kMostProposals = 5;
 
-// Tries values of threshold, hybrid, variety and blend_radius, one key after the other and all keys twice, each time
-// going on from the best. Keys that change over time stay, and so do scale and levels: strokes of another size are
-// another paint. A proposal is nearer to the
-// exemplar than the style by more than chance, and differs from each better one by more than that, or in two keys at
-// least. Pictures are without paper, and without the scene's base colours. The proposals and their textures
-// depend on no clock and no threads; their times do. Errors: kUsage where there is nothing to tune, as for a Lit
-// Sphere; kInput where a scene shows too little to be measured; those of opening styles and scenes.
+// Tries values of threshold and hybrid together, then those of variety, of blend_radius, and of each of the four once
+// more, each time going on from the best. Keys that change over time stay, and so do scale and levels: strokes of
+// another size are another paint. A proposal is nearer to the exemplar than the style by more than chance, and differs
+// from each better one by more than that, or in two keys at least. Pictures are without paper, and without the scene's
+// base colours. The proposals and their textures depend on no clock and no threads; their times do. Errors: kUsage
+// where there is nothing to tune, as for a Lit Sphere; kInput where a scene shows too little to be measured; those of
+// opening styles and scenes.
 Expected<TuneReport> TuneStyle(const TuneRequest& request, const RunContext& context);
 
 }  // namespace scumble
