@@ -129,8 +129,7 @@ class Run {
            std::ranges::all_of(styles, [](const PreparedStyle* style) {
              const TransferSettings& settings = style->settings;
              return settings.method == Method::kStyleBlit && !settings.coherent && settings.match_step <= 1 &&
-                    !style->space && !style->base_layers && style->rims.empty() &&
-                    style->blend_radius <= internal::kMostBandRadius;
+                    !style->space && style->rims.empty() && style->blend_radius <= internal::kMostBandRadius;
            });
   }
 
@@ -141,8 +140,8 @@ class Run {
     for (std::size_t s = 0; s < styles.size(); ++s) {
       const PreparedStyle& style = *styles[s];
       const Region matched = region_.GrownBy(ReachOf(style), guides_.width(), guides_.height());
-      internal::BandStyle& part = parts.emplace_back(
-          internal::BandStyle{InputOf(style, matched), style.blend_radius, std::nullopt, TintOf(style)});
+      internal::BandStyle& part = parts.emplace_back(internal::BandStyle{
+          InputOf(style, matched), style.blend_radius, std::nullopt, TintOf(style), style.base_layers.get()});
       part.match.active = {};
       part.match.covered = {guides_.Plane(Layer::kCoverage),
                             map_ ? std::span<const std::uint16_t>(map_->style) : std::span<const std::uint16_t>(),
@@ -151,7 +150,7 @@ class Run {
     }
     internal::RowProgress progress(options_.progress, 0.0, 1.0 - kComposeShare, std::max(1, region_.y1 - region_.y0));
     const internal::BandResult result =
-        internal::PaintByBands(frame_, parts, fragments_, scratch_.bands, out_, progress);
+        internal::PaintByBands(frame_, parts, fragments_, scratch_.bands, scratch_.base_votes, out_, progress);
     if (!result.finished) return CancelledError();
     start_.softly_covered = result.softly_covered;
     const double ms = watch.Lap();
@@ -301,7 +300,7 @@ class Run {
     } else {
       const internal::HybridInput hybrid{
           votes, guides_, style.illumination, input.luminance, *style.base_layers, input.space, input.brightness};
-      if (!internal::VoteHybrid(hybrid, out_, vote_progress)) return CancelledError();
+      if (!internal::VoteHybrid(hybrid, scratch_.base_votes, out_, vote_progress)) return CancelledError();
     }
     PaintFragments(style, index, input);
     scratch_.times.vote_ms += watch.Lap();

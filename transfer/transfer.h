@@ -111,6 +111,7 @@ struct TransferScratch {
   std::vector<std::uint8_t> active;  // 1: pixels that the last style painted; empty likewise
   StageTimes times;
   std::vector<internal::BandMemory> bands;  // by thread
+  Picture base_votes;                       // of hybrids
 };
 
 // Stylises one frame into `out` (resized to the guides; straight alpha = coverage × paint). The guides must hold

@@ -81,8 +81,7 @@ Bytes EncodedBytes(const PictureRequest& options) {
 bool KeepsSources(const Style& style, int radius) {
   const TransferSettings& settings = style.transfer;
   return settings.method != Method::kStyleBlit || settings.coherent || settings.match_step > 1 ||
-         settings.hybrid > 0.0 || !settings.guide_weights.ArePlain() || settings.edge == EdgeMode::kExemplar ||
-         radius > kBandRadius;
+         !settings.guide_weights.ArePlain() || settings.edge == EdgeMode::kExemplar || radius > kBandRadius;
 }
 
 int RadiusOf(const Style& style, int height) {
@@ -150,10 +149,10 @@ void AddSources(const PictureWork& work, const Size& size, MemoryNeed& need) {
   }
   if (step > 1) of_pixel += kGuideOffset, transient = std::max(transient, kMatched / Bytes(step * step) + 1);
   if (keeps) of_pixel += kSource, transient += kSlopes;
-  if (lit) transient += kFloat;     // exposed
-  if (hybrid) transient += kPaint;  // the votes on base layers
+  if (lit) transient += kFloat;  // exposed
   if (work.has_map) of_pixel += 2;
   if (of_pixel > 0) need.Take("sources", of_pixel * pixels);
+  if (hybrid) need.Take("votes on base layers", kPaint * pixels);
   const Bytes tiles = (Bytes(size.width) + 511) / 512;
   need.Take("seeds of the threads", ThreadsOf(work.threads) * tiles * kBandTile * work.styles.size());
   if (transient > 0) need.TakeTransient("match and votes", transient * pixels);

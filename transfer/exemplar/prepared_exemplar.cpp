@@ -262,19 +262,6 @@ Status PreparedExemplar::SearchBy(NearestSearch search, int resolution, TableCac
 
 Source PreparedExemplar::Searched(glm::vec3 normal) const { return search_->Find(FacingDirection(normal)); }
 
-glm::vec2 PreparedExemplar::OnDisc(glm::vec3 normal) const {
-  SCUMBLE_DCHECK(is_sphere());
-  float nx = normal.x, ny = normal.y;
-  float length = std::sqrt(nx * nx + ny * ny);
-  if (!(length <= 3.0e38f)) nx = 0.0f, ny = 0.0f, length = 0.0f;  // NaN and infinity take the centre
-  if (normal.z < 0.0f && !(length > 0.0f)) nx = 0.0f, ny = 1.0f, length = 1.0f;
-  if (length > usable_radius_ || normal.z < 0.0f) {
-    nx = nx / length * usable_radius_;
-    ny = ny / length * usable_radius_;
-  }
-  return {nx, ny};
-}
-
 Source PreparedExemplar::Analytic(glm::vec3 normal) const {
   const glm::vec2 place = OnDisc(normal);
   const float nx = place.x, ny = place.y;

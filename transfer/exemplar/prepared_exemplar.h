@@ -102,7 +102,17 @@ class PreparedExemplar {
 
   // The place of a normal on the sphere, x and y of the unit disc, y up, before the analytic search rounds it to
   // pixels: never beyond the usable disc. For spheres only.
-  glm::vec2 OnDisc(glm::vec3 normal) const;
+  glm::vec2 OnDisc(glm::vec3 normal) const {
+    float nx = normal.x, ny = normal.y;
+    float length = std::sqrt(nx * nx + ny * ny);
+    if (!(length <= 3.0e38f)) nx = 0.0f, ny = 0.0f, length = 0.0f;  // NaN and infinity take the centre
+    if (normal.z < 0.0f && !(length > 0.0f)) nx = 0.0f, ny = 1.0f, length = 1.0f;
+    if (length > usable_radius_ || normal.z < 0.0f) {
+      nx = nx / length * usable_radius_;
+      ny = ny / length * usable_radius_;
+    }
+    return {nx, ny};
+  }
 
   // Other sources for a normal; computed by the first call, on whichever thread.
   const SourceVariation& source_variation() const;

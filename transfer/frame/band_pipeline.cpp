@@ -65,16 +65,21 @@ struct SharedStyle {
   ExemplarRows exemplar;
   SmallVotes small_votes;
   std::optional<WideVotes> wide_votes;  // for radii above kSmallRadius
+  // With a base layer only:
+  std::optional<SmallVotes> small_base_votes;
+  std::optional<WideVotes> wide_base_votes;
+  std::optional<HybridTone> tone;
 };
 
 // One thread's part of the frame.
 class Band {
  public:
   Band(const FrameInput& frame, std::span<const SharedStyle> styles, FragmentPaint& fragments, BandMemory& memory,
-       Picture& out)
+       Picture& base_votes, Picture& out)
       : frame_(frame),
         styles_(styles),
         fragments_(fragments),
+        base_votes_(base_votes),
         out_(out),
         columns_((frame.guides.width() + kTileWidth - 1) / kTileWidth),
         memory_(memory),
@@ -205,7 +210,13 @@ class Band {
                     shared.style.edges ? &*shared.style.edges : nullptr,
                     painted};
     const ColorizeInput tint{frame_.guides, active, shared.style.tint, field_.first_row};
-    if (tint.tint.active()) votes.finished = [&](int y, int x0, int x1) { ColorizeRow(tint, y, x0, x1, out_); };
+    if (shared.tone || tint.tint.active()) {
+      votes.finished = [&](int y, int x0, int x1) {
+        const HybridRow row{frame_.guides, shared.style.match.luminance, active.data() + field_.Index(0, y)};
+        if (shared.tone) shared.tone->AddToRow(row, y, x0, x1, base_votes_, out_);
+        if (tint.tint.active()) ColorizeRow(tint, y, x0, x1, out_);
+      };
+    }
     std::vector<std::uint8_t>& words = memory_.words;  // that have pixels of the style
     for (const Region& region : RegionsOf(s)) words[static_cast<std::size_t>(region.x0 / 64)] = 1;
     constexpr std::ptrdiff_t kGap = 2;  // gaps of so few words between two others are processed too
@@ -215,6 +226,7 @@ class Band {
       votes.region.x0 = std::max(painted.x0, 64 * static_cast<int>(from - words.begin()));
       votes.region.x1 = std::min(painted.x1, 64 * static_cast<int>(to - words.begin()));
       if (!votes.region.empty()) {
+        if (shared.tone) VoteOnBaseLayers(shared, votes);
         if (shared.wide_votes) {
           shared.wide_votes->Vote(votes, memory_.votes, out_);
         } else {
@@ -226,9 +238,18 @@ class Band {
     std::ranges::fill(words, 0);
   }
 
+  void VoteOnBaseLayers(const SharedStyle& shared, const VoteInput& paint) {
+    const VoteInput votes{paint.field, paint.active, *shared.style.base, paint.radius, paint.edges, paint.region};
+    if (shared.wide_base_votes) {
+      shared.wide_base_votes->Vote(votes, memory_.votes, base_votes_);
+    } else {
+      shared.small_base_votes->Vote(votes, base_votes_);
+    }
+  }
+
   void PaintFragments(int s, const Region& painted, std::span<const std::uint8_t> active) {
     const BandStyle& style = styles_[static_cast<std::size_t>(s)].style;
-    FragmentStyle settings{style.match, false, style.edges.has_value(), -2.0f, nullptr, style.tint};
+    FragmentStyle settings{style.match, false, style.edges.has_value(), -2.0f, style.base, style.tint};
     if (style.edges) settings.crease_cosine = style.edges->CreaseCosine();
     const VoteInput votes{field_, active, style.match.exemplar, style.radius, nullptr, painted};
     fragments_.Paint(settings, s, votes, painted.y0, painted.y1);
@@ -237,6 +258,7 @@ class Band {
   const FrameInput& frame_;
   std::span<const SharedStyle> styles_;
   FragmentPaint& fragments_;
+  Picture& base_votes_;
   Picture& out_;
   const int columns_;  // of tiles
   int radius_ = 0;     // the largest
@@ -252,14 +274,21 @@ class Band {
 }  // namespace
 
 BandResult PaintByBands(const FrameInput& frame, std::span<const BandStyle> styles, FragmentPaint& fragments,
-                        std::vector<BandMemory>& memory, Picture& out, RowProgress& progress) {
+                        std::vector<BandMemory>& memory, Picture& base_votes, Picture& out, RowProgress& progress) {
   const int width = frame.guides.width(), height = frame.guides.height();
   if (out.width != width || out.height != height) out = Picture(width, height);
   std::vector<SharedStyle> shared;
   shared.reserve(styles.size());
   for (const BandStyle& style : styles) {
-    shared.push_back({style, style.match.exemplar.Rows(), SmallVotes(style.match.exemplar), std::nullopt});
-    if (style.radius > kSmallRadius) shared.back().wide_votes.emplace(style.match.exemplar);
+    SharedStyle& one = shared.emplace_back(
+        SharedStyle{style, style.match.exemplar.Rows(), SmallVotes(style.match.exemplar), {}, {}, {}, {}});
+    if (style.radius > kSmallRadius) one.wide_votes.emplace(style.match.exemplar);
+    if (!style.base) continue;
+    one.tone.emplace(HybridLayers{style.match.exemplar, *style.base, style.match.illumination, nullptr},
+                     style.match.brightness);
+    one.small_base_votes.emplace(*style.base);
+    if (style.radius > kSmallRadius) one.wide_base_votes.emplace(*style.base);
+    if (base_votes.width != width || base_votes.height != height) base_votes = Picture(width, height);
   }
   const int workers = tbb::this_task_arena::max_concurrency();
   RowRanges row_ranges(frame.region.y0, std::max(frame.region.y0, frame.region.y1), workers);
@@ -267,7 +296,7 @@ BandResult PaintByBands(const FrameInput& frame, std::span<const BandStyle> styl
   if (memory.size() < bands.size()) memory.resize(bands.size());
   const auto paint = [&](int worker) {
     std::optional<Band>& band = bands[static_cast<std::size_t>(worker)];
-    band.emplace(frame, shared, fragments, memory[static_cast<std::size_t>(worker)], out);
+    band.emplace(frame, shared, fragments, memory[static_cast<std::size_t>(worker)], base_votes, out);
     band->Paint(row_ranges, worker, progress);
   };
   tbb::parallel_for(0, workers, paint, tbb::simple_partitioner());

@@ -22,6 +22,7 @@
 #include "transfer/match/styleblit_simd.h"
 #include "transfer/tint/colorize.h"
 #include "transfer/vote/small_vote.h"
+#include "transfer/vote/tone_texture_split.h"
 #include "transfer/vote/wide/wide_vote.h"
 
 namespace scumble::internal {
@@ -40,6 +41,7 @@ struct BandStyle {
   int radius = 0;    // at most kMostBandRadius
   std::optional<EdgeRules> edges;  // without `covered`; none: plain voting
   Tint tint;
+  const PreparedExemplar* base = nullptr;  // base layers of the hybrid; null: none
 };
 
 // Shares of the total time of all threads.
@@ -65,11 +67,11 @@ struct BandMemory {
   WideScratch votes;
 };
 
-// StartFrame, MatchStyleBlit, Vote and ColorizeRow for all styles, with the same bytes in the frame's region of `out`;
-// and FragmentPaint::Paint for all fragments.
-// The styles are those that the frame's map names, by index; `memory` is by thread, resized as needed. Runs in the
+// StartFrame, MatchStyleBlit, Vote or VoteHybrid, and ColorizeRow for all styles, with the same bytes in the frame's
+// region of `out`; and FragmentPaint::Paint for all fragments. The styles are those that the frame's map names, by
+// index; `memory` is by thread, resized as needed; `base_votes` is resized where a style is a hybrid. Runs in the
 // caller's arena.
 BandResult PaintByBands(const FrameInput& frame, std::span<const BandStyle> styles, FragmentPaint& fragments,
-                        std::vector<BandMemory>& memory, Picture& out, RowProgress& progress);
+                        std::vector<BandMemory>& memory, Picture& base_votes, Picture& out, RowProgress& progress);
 
 }  // namespace scumble::internal

@@ -39,37 +39,32 @@ Color ColorOf(const std::uint16_t* texel) {
 
 Color TexelAt(const Picture& picture, Source at) { return ColorOf(picture.At(at.x, at.y)); }
 
-// The mean of 2 × 2 opaque usable texels from (x, y) on, `right` and `below` of 256 between them. False: one is not.
-// What MeanOfCorners does with sums of 64 bits and divisions, in a tenth of the time.
-bool MeanOfOpaqueCorners(const PreparedExemplar& exemplar, const Picture& tone, int x, int y, std::uint32_t right,
-                         std::uint32_t below, Color& mean) {
-  if (!exemplar.Usable(x, y) || !exemplar.Usable(x + 1, y)) return false;
-  if (!exemplar.Usable(x, y + 1) || !exemplar.Usable(x + 1, y + 1)) return false;
-  const std::uint16_t* const upper = tone.At(x, y);
-  const std::uint16_t* const lower = tone.At(x, y + 1);
-  if ((upper[3] & upper[7] & lower[3] & lower[7]) != 65535) return false;
-  const std::uint32_t weights[4] = {(256 - right) * (256 - below), right * (256 - below), (256 - right) * below,
-                                    right * below};
-  for (std::size_t c = 0; c < 3; ++c) {
-    // At most 65536 · 65535 + 32768, which 32 bits hold.
-    mean[c] = (weights[0] * upper[c] + weights[1] * upper[c + 4] + weights[2] * lower[c] + weights[3] * lower[c + 4] +
-               32768u) >>
-              16;
-  }
-  mean[3] = 65535;
-  return true;
+// The texel left above a place of the unit disc, in 1/256 of a texel.
+struct TexelPlace {
+  int x, y;                    // whole texels
+  std::uint32_t right, below;  // 0 … 255
+};
+
+TexelPlace PlaceOf(glm::vec2 place, float half) {
+  const auto floor_of = [](float value) {
+    const int whole = static_cast<int>(value);
+    return whole - (static_cast<float>(whole) > value ? 1 : 0);
+  };
+  const int u = floor_of((place.x * half + half - 0.5f) * 256 + 0.5f);
+  const int v = floor_of((half - place.y * half - 0.5f) * 256 + 0.5f);
+  return {u >> 8, v >> 8, static_cast<std::uint32_t>(u & 255), static_cast<std::uint32_t>(v & 255)};
 }
 
-// The same of those that are usable. False: none is.
-bool MeanOfCorners(const PreparedExemplar& exemplar, const Picture& tone, int x, int y, int right, int below,
-                   Color& mean) {
+// The mean of the usable ones of 2 × 2 texels there. False: none is.
+bool MeanOfCorners(const PreparedExemplar& exemplar, const Picture& tone, const TexelPlace& place, Color& mean) {
   mean = {};
   std::int64_t total = 0;
   for (int corner = 0; corner < 4; ++corner) {
     const int dx = corner & 1, dy = corner >> 1;
-    const std::int64_t weight = std::int64_t(dx ? right : 256 - right) * (dy ? below : 256 - below);
-    if (weight == 0 || !exemplar.Usable(x + dx, y + dy)) continue;
-    const Color texel = TexelAt(tone, {x + dx, y + dy});
+    const std::int64_t weight =
+        std::int64_t(dx ? place.right : 256 - place.right) * (dy ? place.below : 256 - place.below);
+    if (weight == 0 || !exemplar.Usable(place.x + dx, place.y + dy)) continue;
+    const Color texel = TexelAt(tone, {place.x + dx, place.y + dy});
     for (std::size_t c = 0; c < 4; ++c) mean[c] += weight * texel[c];
     total += weight;
   }
@@ -82,17 +77,9 @@ bool MeanOfCorners(const PreparedExemplar& exemplar, const Picture& tone, int x,
 // which a small exemplar on a large round form shows as bands.
 Color ToneFor(const PreparedExemplar& exemplar, const Picture& tone, glm::vec3 normal) {
   if (!exemplar.is_sphere()) return TexelAt(tone, exemplar.NearestNeighbour(normal));
-  constexpr int kOne = 256;
-  const glm::vec2 place = exemplar.OnDisc(normal);
-  const float half = 0.5f * static_cast<float>(exemplar.size());
-  const int u = static_cast<int>(std::floor((place.x * half + half - 0.5f) * kOne + 0.5f));
-  const int v = static_cast<int>(std::floor((half - place.y * half - 0.5f) * kOne + 0.5f));
-  const int x = u >> 8, y = v >> 8, right = u & (kOne - 1), below = v & (kOne - 1);
+  const TexelPlace place = PlaceOf(exemplar.OnDisc(normal), 0.5f * static_cast<float>(exemplar.size()));
   Color mean;
-  if (MeanOfOpaqueCorners(exemplar, tone, x, y, static_cast<std::uint32_t>(right), static_cast<std::uint32_t>(below),
-                          mean) ||
-      MeanOfCorners(exemplar, tone, x, y, right, below, mean))
-    return mean;
+  if (MeanOfCorners(exemplar, tone, place, mean)) return mean;
   return TexelAt(tone, exemplar.NearestNeighbour(normal));
 }
 
@@ -124,24 +111,67 @@ void AddBaseLayer(const HybridLayers& layers, const HybridGuide& guide, const st
   Store(color, texel);
 }
 
-bool VoteHybrid(const HybridInput& input, Picture& out, RowProgress& progress) {
+// AddBaseLayer for a sphere without a space, where all that it reads is opaque: the same numbers in 32 bits and without
+// a division. False, and nothing is done: something is not opaque or not usable.
+inline bool HybridTone::AddOpaque(glm::vec3 normal, int own, const std::uint16_t* base_vote,
+                                  std::uint16_t* texel) const {
+  const TexelPlace at = PlaceOf(layers_.paint.OnDisc(normal), half_);
+  if (at.y < 0 || at.y + 1 >= rows_.height) return false;
+  if (at.x < std::max(rows_.first[at.y], rows_.first[at.y + 1])) return false;
+  if (at.x + 1 > std::min(rows_.last[at.y], rows_.last[at.y + 1])) return false;
+  const std::uint16_t* const upper = layers_.base.picture(own).At(at.x, at.y);
+  const std::uint16_t* const lower = upper + 4 * std::size_t(rows_.width);
+  if ((upper[3] & upper[7] & lower[3] & lower[7] & base_vote[3] & texel[3]) != 65535) return false;
+  const std::uint32_t weights[4] = {(256 - at.right) * (256 - at.below), at.right * (256 - at.below),
+                                    (256 - at.right) * at.below, at.right * at.below};
+  for (std::size_t c = 0; c < 3; ++c) {
+    // At most 65536 · 65535 + 32768, which 32 bits hold.
+    const std::uint32_t tone = (weights[0] * upper[c] + weights[1] * upper[c + 4] + weights[2] * lower[c] +
+                                weights[3] * lower[c + 4] + 32768u) >>
+                               16;
+    const int value = static_cast<int>(tone) + texel[c] - base_vote[c];
+    texel[c] = static_cast<std::uint16_t>(std::clamp(value, 0, 65535));
+  }
+  return true;
+}
+
+HybridTone::HybridTone(const HybridLayers& layers, float brightness)
+    : layers_(layers),
+      brightness_(brightness),
+      rows_(layers.paint.Rows()),
+      half_(0.5f * static_cast<float>(layers.paint.size())),
+      may_be_quick_(layers.paint.is_sphere() && !layers.space) {}
+
+void HybridTone::AddToRow(const HybridRow& row, int y, int x0, int x1, const Picture& base_votes, Picture& out) const {
+  const std::size_t first = std::size_t(y) * std::size_t(out.width);
+  const float* normals[3];
+  for (int c = 0; c < 3; ++c) normals[c] = row.guides.Plane(Layer::kNormal, c).data() + first;
+  const bool several = layers_.paint.count() > 1;
+  for (int x = x0; x < x1; ++x) {
+    if (!row.active[x]) continue;
+    const std::size_t i = first + std::size_t(x);
+    const glm::vec3 normal(normals[0][x], normals[1][x], normals[2][x]);
+    const float light = row.luminance.empty() ? 0.0f : row.luminance[i];
+    const std::uint16_t* const base_vote = base_votes.At(x, y);
+    std::uint16_t* const texel = out.At(x, y);
+    const int own = several ? layers_.illumination.Choose(light) : 0;
+    if (may_be_quick_ && AddOpaque(normal, own, base_vote, texel)) continue;
+    float extra_values[GuideSpace::kMaxExtra];
+    if (layers_.space) layers_.space->Read(row.guides, i, brightness_, extra_values);
+    AddBaseLayer(layers_, {normal, light, extra_values}, base_vote, texel);
+  }
+}
+
+bool VoteHybrid(const HybridInput& input, Picture& base_votes, Picture& out, RowProgress& progress) {
   const VoteInput& paint = input.votes;
-  const Region& region = paint.region;
-  Picture base_votes(out.width, out.height);
-  const VoteInput base{paint.field, paint.active, input.base, paint.radius, paint.edges, region};
+  if (base_votes.width != out.width || base_votes.height != out.height) base_votes = Picture(out.width, out.height);
+  const VoteInput base{paint.field, paint.active, input.base, paint.radius, paint.edges, paint.region};
   if (!Vote(base, base_votes, progress)) return false;
-  const HybridLayers layers{paint.exemplar, input.base, input.illumination, input.space};
+  const HybridTone tone({paint.exemplar, input.base, input.illumination, input.space}, input.brightness);
   VoteInput both = paint;
   both.finished = [&](int y, int x0, int x1) {
-    for (int x = x0; x < x1; ++x) {
-      const std::size_t p = paint.field.Index(x, y);
-      if (!paint.active[p]) continue;
-      float extra_values[GuideSpace::kMaxExtra];
-      if (input.space) input.space->Read(input.guides, p, input.brightness, extra_values);
-      const float light = input.luminance.empty() ? 0.0f : input.luminance[p];
-      AddBaseLayer(layers, {input.guides.Vec3(Layer::kNormal, p), light, extra_values}, base_votes.At(x, y),
-                   out.At(x, y));
-    }
+    const HybridRow row{input.guides, input.luminance, paint.active.data() + paint.field.Index(0, y)};
+    tone.AddToRow(row, y, x0, x1, base_votes, out);
     if (paint.finished) paint.finished(y, x0, x1);
   };
   return Vote(both, out, progress);

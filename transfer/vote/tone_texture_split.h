@@ -38,9 +38,9 @@ struct HybridInput {
 // the votes of one window. On a sphere the own base layer is read between texels (bilinearly, in 1/256 of a texel). On
 // scenes, and with weights on other guides than normals, it is read at the nearest neighbour itself. Sums and
 // differences are of integers with premultiplied colours; nothing is clamped before the end. If the base layer is
-// constant and the paint opaque, this equals Vote to the bit. Takes a second picture of `out`'s size while it runs.
-// Writes straight alpha into `out`; other pixels stay. Reports each row of the region twice. False: cancelled.
-bool VoteHybrid(const HybridInput& input, Picture& out, RowProgress& progress);
+// constant and the paint opaque, this equals Vote to the bit. `base_votes` is working memory: it becomes as large as
+// `out`. Writes straight alpha into `out`; other pixels stay. Reports each row of the region twice. False: cancelled.
+bool VoteHybrid(const HybridInput& input, Picture& base_votes, Picture& out, RowProgress& progress);
 
 // One colour of the hybrid.
 struct HybridLayers {
@@ -60,5 +60,30 @@ struct HybridGuide {
 // VoteHybrid's colour there, from the votes on the base layers and, in `texel`, on the paint.
 void AddBaseLayer(const HybridLayers& layers, const HybridGuide& guide, const std::uint16_t* base_vote,
                   std::uint16_t* texel);
+
+// What a row of the hybrid is painted from.
+struct HybridRow {
+  const GuideSet& guides;
+  std::span<const float> luminance;  // as in HybridInput
+  const std::uint8_t* active;        // of the row, from column 0 on
+};
+
+// AddBaseLayer for many pixels. Shared by all threads; what `layers` refers to must outlive it.
+class HybridTone {
+ public:
+  // `brightness` as in HybridInput.
+  explicit HybridTone(const HybridLayers& layers, float brightness);
+  // On the active pixels x0 … x1 - 1 of a row. Both pictures are of the guides' size.
+  void AddToRow(const HybridRow& row, int y, int x0, int x1, const Picture& base_votes, Picture& out) const;
+
+ private:
+  bool AddOpaque(glm::vec3 normal, int own, const std::uint16_t* base_vote, std::uint16_t* texel) const;
+
+  HybridLayers layers_;
+  float brightness_;
+  ExemplarRows rows_;
+  float half_;  // of the sphere's size
+  bool may_be_quick_;
+};
 
 }  // namespace scumble::internal

@@ -371,13 +371,14 @@ TEST(Vote, TellsOfEveryFinishedPixelOnce) {
           }
         };
         if (negative) input.finished = turn;
+        Picture base_votes;
         const Progress unheard;
         internal::RowProgress progress(unheard, 0.0, 1.0, 1);
         tbb::task_arena(2).execute([&] {
           const internal::HybridInput hybrid{input, all.guides, even_light, {}, tones};
           EXPECT_TRUE(way == 0   ? internal::Vote(input, out, progress)
                       : way == 1 ? internal::VotePlainly(input, out, progress)
-                                 : internal::VoteHybrid(hybrid, out, progress));
+                                 : internal::VoteHybrid(hybrid, base_votes, out, progress));
         });
         return out;
       };

@@ -122,6 +122,7 @@ void TestRow(const StepRow& row, int first_word, int words, const StepWords& bit
     for (int i = 0; i < 64 && bits.wanted[w] >> i; i += lanes) {
       if (!(bits.wanted[w] >> i & vector)) continue;
       const int column = 64 * (first_word + w) + i;
+      if (column < 0) continue;  // no pixel is active there, and above the first row's start there is no guide
       const StepBits found =
           column + reach <= row.readable ? TestSteps<true>(row, column) : TestSteps<false>(row, column);
       right |= found.right << i, down |= found.down << i;
