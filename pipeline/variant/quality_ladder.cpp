@@ -74,7 +74,7 @@ const std::vector<LadderStep>& LadderSteps() {
       {1, {kStyleBlit, kUnsplit}},
       {1, {kStyleBlit, kUnsplit, kCrisp}},
       {2, {kStyleBlit, kUnsplit, kCrisp}},
-      {4, {kStyleBlit, kUnsplit, kCrisp}, kFewSamples, true},
+      {4, {kStyleBlit, kCrisp}, kFewSamples, true},
       {1, {kLitSphere, kUnsplit, kCrisp}},
       {4, {kLitSphere, kUnsplit, kCrisp}, kFewSamples, true},
   };
@@ -160,7 +160,8 @@ Variant VariantOf(Quality quality, const StyleSet& styles, const LadderFrame& fr
   const bool shrinks = SmallerBy(2, frame) > 1;
   if (quality == Quality::kDraft) {
     if (shrinks && !frame.full_size) return MakeVariant({2, {kStyleBlit}, kFewSamples, true}, styles, frame);
-    return MakeVariant({lit ? 2 : 1, {kStyleBlit, kUnsplit, kCrisp}}, styles, frame);
+    // Not unsplit: large chunks without their own tone are another paint.
+    return MakeVariant({lit ? 2 : 1, {kStyleBlit, kCrisp}}, styles, frame);
   }
   // Guides of normals alone take so little that nothing is gained which would not be seen.
   if (frame.casts && !lit) return MakeVariant({1, {kStyleBlit}}, styles, frame);

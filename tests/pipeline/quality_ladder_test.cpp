@@ -155,8 +155,8 @@ TEST(QualityLadder, TheLitSphereIsTheLastResort) {
 TEST(QualityLadder, DraftsAreHalfTheSizeAndScaledUp) {
   EXPECT_EQ(OptionsOf(VariantOf(Quality::kDraft, Open("graphite"), kCast)), "--upsample 2 --upscale");
   EXPECT_EQ(OptionsOf(VariantOf(Quality::kDraft, Open("graphite"), kGiven)), "--set transfer.blend_radius=0");
-  EXPECT_EQ(OptionsOf(VariantOf(Quality::kDraft, Open("sumi-e"), kGiven)),
-            "--set transfer.hybrid=0 --set transfer.blend_radius=0");
+  EXPECT_EQ(OptionsOf(VariantOf(Quality::kDraft, Open("sumi-e"), kGiven)), "--set transfer.blend_radius=0")
+      << "its split is what it looks like";
   LadderFrame over = kCast;
   over.full_size = true;
   EXPECT_EQ(OptionsOf(VariantOf(Quality::kDraft, Open("graphite"), over)), "--set transfer.blend_radius=0")

@@ -98,7 +98,7 @@ void AddStylesVerb(CLI::App& app, Globals& globals, Action& chosen) {
   CLI::App* tune = sub->add_subcommand(
       "tune", "propose keys by which a style's paint looks more like its exemplar's, and what each costs");
   tune->footer(
-      "threshold, hybrid, variety and blend_radius are varied, one after the other. The measure is not the eye: look "
+      "threshold and hybrid are varied together, then variety and blend_radius. The measure is not the eye: look "
       "at\n"
       "the contact sheet of -o in full size before you take one. Takes a minute or two on four scenes.\n");
   tune->add_option("style", tuned->style.style, "a style's folder, style.toml, or a bundled style's name")
