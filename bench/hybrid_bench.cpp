@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bench/or_stop.h"
@@ -77,6 +78,7 @@ void Measure(const GuideSet& guides, const std::string& name) {
   Style style = OrStop(LoadStyle(std::string(SCUMBLE_SOURCE_DIR) + "/exemplars/" + name, {}));
   std::vector<std::uint8_t> covered(guides.pixel_count());
   for (std::size_t i = 0; i < covered.size(); ++i) covered[i] = guides.Plane(Layer::kCoverage)[i] >= 1.0f;
+  const double own = std::exchange(style.transfer.hybrid, 0.0);
   style.transfer.method = Method::kLitSphere;
   const Painted sphere = Paint(style, guides);
   style.transfer.method = Method::kStyleBlit;
@@ -90,7 +92,9 @@ void Measure(const GuideSet& guides, const std::string& name) {
     std::fflush(stdout);
   };
   row("Lit Sphere", sphere);
+  style.transfer.hybrid = own;
   row("as it is", Paint(style, guides));
+  style.transfer.hybrid = 0.0;
   style.transfer.threshold = 0.4f;
   row("threshold 0.4", Paint(style, guides));
   for (const double sigma : {8.0, 16.0, 32.0}) {
