@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "core/image/check.h"
 #include "core/image/guides.h"
 #include "core/image/status.h"
 #include "core/image/style.h"
@@ -103,6 +104,7 @@ class PreparedExemplar {
   // The place of a normal on the sphere, x and y of the unit disc, y up, before the analytic search rounds it to
   // pixels: never beyond the usable disc. For spheres only.
   glm::vec2 OnDisc(glm::vec3 normal) const {
+    SCUMBLE_DCHECK(is_sphere());
     float nx = normal.x, ny = normal.y;
     float length = std::sqrt(nx * nx + ny * ny);
     if (!(length <= 3.0e38f)) nx = 0.0f, ny = 0.0f, length = 0.0f;  // NaN and infinity take the centre
