@@ -77,7 +77,8 @@ struct SceneRequest {
   std::uint64_t seed = 0;
   // Adds the memory that the run needs besides the guides, before any is allocated; null: none.
   std::function<void(const Size& size, const LayerSet& layers, MemoryNeed& need)> more_memory;
-  bool key_light = true;  // let one shine where the file has no light and a layer needs some
+  bool key_light = true;             // let one shine where the file has no light and a layer needs some
+  std::optional<LightAngles> light;  // one sun instead of the scene's lights and world; surfaces still glow
 };
 
 // A style and what a run changes of it.
@@ -105,9 +106,10 @@ struct PictureRequest {
   bool upscale = false;             // with upsample: it is painted at their size and scaled up; without `over`
   std::optional<Explanation> show;  // this explanation instead of the picture
   bool measure_chunks = false;      // report coherence and chunks, for which the source field is kept
+  bool keep_field = false;          // the source field is given away with the picture
 
   // Whether the source field outlives the transfer, which takes more time.
-  bool KeepsField() const { return measure_chunks || show.has_value(); }
+  bool KeepsField() const { return measure_chunks || keep_field || show.has_value(); }
   // How many times the guides are upsampled, and the painted picture is scaled up.
   int GuideFactor() const { return upscale ? 1 : upsample; }
   int PictureFactor() const { return upscale ? upsample : 1; }

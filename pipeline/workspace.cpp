@@ -5,14 +5,17 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
 #include "core/io/library.h"
 #include "pipeline/frame/paint_picture.h"
 #include "pipeline/frame/provenance.h"
+#include "pipeline/frame_range.h"
 #include "pipeline/memory/memory_estimate.h"
 #include "pipeline/run/picture_sequence.h"
 #include "pipeline/scene/run_inputs.h"
@@ -36,10 +39,39 @@ std::string StampsOf(const std::vector<std::string>& paths) {
   return text;
 }
 
-std::string SceneStamps(const std::string& scene) {
+// Each name once, in their order.
+class NameList {
+ public:
+  void Add(const std::string& name) {
+    if (!name.empty() && known_.insert(name).second) names_.push_back(name);
+  }
+  std::vector<std::string> Take() { return std::move(names_); }
+
+ private:
+  std::set<std::string> known_;
+  std::vector<std::string> names_;
+};
+
+std::vector<std::string> SceneFiles(const std::string& scene) {
   RunInputs files;
   files.ReadsScene(scene);
-  return StampsOf(files.Inputs());
+  return files.Inputs();
+}
+
+std::string SceneStamps(const std::string& scene) { return StampsOf(SceneFiles(scene)); }
+
+// What the choice of a step depends on, besides the styles. The view and the frame are taken not to matter.
+std::string ChoiceText(const BudgetRequest& budget, const SceneRequest& scene, const PictureRequest& picture) {
+  if (!budget.chooses()) return "";
+  std::string text =
+      fmt::format("{} {} {}; {}; {} {}; {} {} {} {}", budget.quality ? int(*budget.quality) : -1, budget.budget_ms,
+                  budget.guides_are_fixed, SizeToText(scene.size), scene.samples, scene.samples_given, picture.upsample,
+                  picture.upscale, !picture.over.empty(), picture.show ? int(*picture.show) : -1);
+  if (budget.quality) return text;
+  SceneRequest seen = scene;
+  seen.camera.clear(), seen.view.reset(), seen.light.reset(), seen.seed = 0;
+  return text + fmt::format("; {}; isa {}; half {}; field {}\n{}", GuideSettings(seen), scene.isa, scene.half,
+                            picture.KeepsField(), SceneStamps(scene.scene));
 }
 
 // By path.
@@ -112,8 +144,9 @@ struct Workspace::State {
   std::optional<AnimatedScene> animation;  // none: the scene is Blender's
   std::string seen_key, pose_key;          // when and from where it is seen; the same with its light
   std::optional<StaticScene> posed;
-  std::optional<RayScene> rays;  // of `posed`, which it borrows
-  std::size_t own_lights = 0;    // of `posed`, before a key light was added
+  std::optional<RayScene> rays;                                // of `posed`, which it borrows
+  OwnLights own_lights;                                        // of `posed`, before others were added
+  std::optional<SceneSphere> sphere_at_rest, sphere_at_start;  // of `animation`, where they are known
   std::string guides_key;
   std::shared_ptr<const SceneGuides> guides;
   MemoryNeed guides_memory;  // of them, without painting
@@ -126,25 +159,54 @@ struct Workspace::State {
   std::string over_stamp;       // of picture.over
   bool exposure_given = false;  // by the last request, not measured
 
-  Status LoadStyles(StyleRequest request);
+  // The step of the ladder that the styles are at, and what it makes of the requests.
+  struct Choice {
+    std::optional<BudgetChoice> made;
+    int upsample = 1;
+    bool upscale = false;
+    int samples = 0;
+    bool samples_given = false;
+  };
+  Choice choice;
+
+  using Choose = std::function<Expected<Choice>(StyleSet&)>;
+  Status LoadStyles(StyleRequest request, const std::string& choice_text, const Choose& choose);
+  Expected<Choice> ChooseStep(const BudgetRequest& budget, SceneRequest scene, PictureRequest asked, StyleSet& set);
   void KeepPrepared();
   void CloseStylesOfScene();
   Status LoadScene(const SceneRequest& request, std::optional<int> frame);
   Status Pose(const SceneRequest& request, std::optional<int> frame, const LayersFor& layers_for);
   Status Cast(SceneRequest request, std::optional<int> frame, const LayersFor& layers_for, const Progress& progress);
-  Expected<PaintedFrame> Paint(SceneRequest scene, const StyleRequest& style, const PictureRequest& picture);
+  Expected<PaintedFrame> Paint(SceneRequest scene, const StyleRequest& style, PictureRequest picture,
+                               BudgetRequest budget);
+  Expected<SceneDescription> Describe(const SceneRequest& scene, std::optional<int> frame);
+  Expected<SceneSphere> SphereSeen(std::optional<int> frame);
 };
 
-Status Workspace::State::LoadStyles(StyleRequest request) {
-  const std::string text = TextOf(request);
+Status Workspace::State::LoadStyles(StyleRequest request, const std::string& choice_text, const Choose& choose) {
+  const std::string text = TextOf(request) + "\n" + choice_text;
   if (styles && text == style_text && style_stamps == StyleStamps(*styles)) return Ok();
   request.room = RoomForStyles(context);
   SCUMBLE_ASSIGN(StyleSet loaded, OpenStyles(request, context));
   ++counters.styles_loaded;
+  SCUMBLE_ASSIGN(choice, choose(loaded));
   if (!replaced) replaced = std::move(styles);
   styles = std::move(loaded), style_text = text, style_stamps = StyleStamps(*styles);
   picture.exposure.reset(), picture.hashes.clear(), picture.warned = false;
   return Ok();
+}
+
+Expected<Workspace::State::Choice> Workspace::State::ChooseStep(const BudgetRequest& budget, SceneRequest scene,
+                                                                PictureRequest asked, StyleSet& set) {
+  scene.more_memory = [&, before = asked](const Size& guides_size, const LayerSet& layers, MemoryNeed& need) {
+    AddPicture(WorkOf(set, before, guides_size, layers, FragmentsExpected(guides_size, scene.aa), false, context),
+               before, need);
+  };
+  Choice chosen;
+  SCUMBLE_ASSIGN(chosen.made, ChooseForScene(budget, scene, asked.frame, asked.over, set, asked, context));
+  chosen.upsample = asked.upsample, chosen.upscale = asked.upscale;
+  chosen.samples = scene.samples, chosen.samples_given = scene.samples_given;
+  return chosen;
 }
 
 // Of new styles, the scene's included, keeps what is prepared as far as it is of the same paint.
@@ -174,7 +236,7 @@ Status Workspace::State::LoadScene(const SceneRequest& request, std::optional<in
   text += SceneStamps(request.scene);
   if (text + (blender && posed ? StampsOf(posed->animation.files) : "") == scene_key) return Ok();
   scene_key.clear(), pose_key.clear(), guides_key.clear();
-  rays.reset(), animation.reset(), posed.reset();
+  rays.reset(), animation.reset(), posed.reset(), sphere_at_rest.reset(), sphere_at_start.reset();
   if (!blender) {
     SCUMBLE_ASSIGN(animation, AnimatedScene::Load(request.scene, {request.animation, LoadOptionsOf(request)}));
     PassOnNotes(animation->rest(), request.scene, context);
@@ -182,7 +244,7 @@ Status Workspace::State::LoadScene(const SceneRequest& request, std::optional<in
     // Blender's scene is posed as it is loaded; how it is seen is decided again in Pose.
     const LayersFor none = [](const SceneStyleRequests&) -> Expected<LayerSet> { return LayerSet(); };
     SCUMBLE_ASSIGN(posed, OpenSceneAt(frame, request, none, context));
-    own_lights = posed->scene.lights.size();
+    own_lights = OwnLights::Of(posed->scene);
     text += StampsOf(posed->animation.files);
   }
   ++counters.scenes_loaded;
@@ -206,11 +268,13 @@ Status Workspace::State::Pose(const SceneRequest& request, std::optional<int> fr
   SCUMBLE_ASSIGN(const LayerSet layers,
                  layers_for(SceneStyleRequestsOf(animation ? animation->objects() : names.instances, names)));
   const std::string fps = request.fps ? FrameRateToText(*request.fps) : "";
-  seen_key = fmt::format("{} {}; {}; {}; {}; {}", frame ? std::to_string(*frame) : "rest", fps, request.camera,
-                         request.view ? ViewToText(*request.view) : "",
-                         double(request.size.width) / request.size.height, request.key_light);
-  // A key light is added where a layer needs light: the other layers are the same with it and without.
-  const std::string key = fmt::format("{}; {}", seen_key, NeedsKeyLight(request, layers));
+  seen_key =
+      fmt::format("{} {}; {}; {}; {}; {}; {}", frame ? std::to_string(*frame) : "rest", fps, request.camera,
+                  request.view ? ViewToText(*request.view) : "", double(request.size.width) / request.size.height,
+                  request.key_light, request.light ? LightToText(*request.light) : "");
+  // A light is added where a layer needs light: the other layers are the same with it and without.
+  const std::string key =
+      fmt::format("{}; {}; {}", seen_key, NeedsKeyLight(request, layers), ReplacesLights(request, layers));
   if (key == pose_key) {
     posed->layers = layers;
     return Ok();
@@ -259,14 +323,23 @@ Status Workspace::State::Cast(SceneRequest request, std::optional<int> frame, co
   return Ok();
 }
 
-Expected<PaintedFrame> Workspace::State::Paint(SceneRequest scene, const StyleRequest& style,
-                                               const PictureRequest& request) {
+Expected<PaintedFrame> Workspace::State::Paint(SceneRequest scene, const StyleRequest& style, PictureRequest request,
+                                               BudgetRequest budget) {
   scene.seed = request.seed, scene.fps = request.fps;
   SCUMBLE_RETURN_IF_ERROR(CheckPictureRequest(request));
   SCUMBLE_ASSIGN(scene.size, GuideSizeFor(scene.size, request.upsample));
   const Progress progress = context.StartProgress("stylize");
   SCUMBLE_RETURN_IF_ERROR(CheckArguments(scene, request.frame));
-  SCUMBLE_RETURN_IF_ERROR(LoadStyles(style));
+  budget.guides_are_fixed = budget.guides_are_fixed || request.upsample > 1;
+  SCUMBLE_RETURN_IF_ERROR(LoadStyles(style, ChoiceText(budget, scene, request),
+                                     [&](StyleSet& set) { return ChooseStep(budget, scene, request, set); }));
+  if (choice.made) {
+    scene.samples = choice.samples, scene.samples_given = choice.samples_given;
+    request.upscale = choice.upscale;
+    if (const int before = std::exchange(request.upsample, choice.upsample); before != choice.upsample) {
+      SCUMBLE_ASSIGN(scene.size, GuideSizeFor(scene.size, request.upsample));
+    }
+  }
   scene.more_memory = [&](const Size& size, const LayerSet& layers, MemoryNeed& need) {
     AddPicture(WorkOf(*styles, request, size, layers, FragmentsExpected(size, scene.aa), false, context), request,
                need);
@@ -296,8 +369,62 @@ Expected<PaintedFrame> Workspace::State::Paint(SceneRequest scene, const StyleRe
     counters.styles_prepared += i >= before.size() || before[i] != picture.prepared[i].exemplar;
   }
   ++counters.frames_painted;
-  return PaintedFrame{std::move(painted.picture), std::shared_ptr<const GuideSet>(guides, &guides->guides),
-                      std::move(painted.report)};
+  return PaintedFrame{std::move(painted.picture),
+                      std::shared_ptr<const GuideSet>(guides, &guides->guides),
+                      std::move(painted.report),
+                      std::move(painted.kept.field),
+                      std::move(painted.kept.styles),
+                      std::move(painted.kept.field_styles),
+                      choice.made};
+}
+
+// Of the moment at which it is decided how a scene is framed.
+Expected<SceneSphere> Workspace::State::SphereSeen(std::optional<int> frame) {
+  if (!animation) return SphereAround(posed->animation.start ? *posed->animation.start : posed->scene);
+  std::optional<SceneSphere>& sphere = frame ? sphere_at_start : sphere_at_rest;
+  if (sphere) return *sphere;
+  if (frame && animation->moves()) {
+    SCUMBLE_ASSIGN(const Scene start, animation->SceneAt(0.0));
+    sphere = SphereAround(start);
+  } else {
+    sphere = SphereAround(animation->rest());
+  }
+  return *sphere;
+}
+
+Expected<SceneDescription> Workspace::State::Describe(const SceneRequest& scene, std::optional<int> frame) {
+  SCUMBLE_RETURN_IF_ERROR(CheckSceneRequest(scene));
+  SCUMBLE_RETURN_IF_ERROR(LoadScene(scene, frame));
+  // What is posed for the layers of the last picture stays so.
+  const LayersFor layers_for = [known = posed ? posed->layers : LayerSet()](const SceneStyleRequests&) {
+    return Expected<LayerSet>(known);
+  };
+  SCUMBLE_RETURN_IF_ERROR(Pose(scene, frame, layers_for));
+  SceneDescription description;
+  const Scene& names = animation ? animation->rest() : posed->scene;
+  NameList cameras, objects, materials;
+  for (const Camera& camera : names.cameras) cameras.Add(camera.name);
+  for (const Instance& instance : animation ? animation->objects() : names.instances) {
+    objects.Add(instance.object);
+    materials.Add(names.materials[std::size_t(names.meshes[std::size_t(instance.mesh)].material)].name);
+  }
+  description.cameras = cameras.Take(), description.objects = objects.Take(), description.materials = materials.Take();
+  description.lights = animation ? names.lights.size() : own_lights.lights.size();
+  const BlenderAnimation& blender = posed->animation;
+  FrameRate rate = scene.fps.value_or(FrameRate());
+  if (const auto told = ParseFrameRate(blender.fps); told && !scene.fps) rate = *told;
+  const double fps = double(rate.numerator) / double(rate.denominator);
+  if (!animation && blender.last > blender.first) description.animation = FrameSpan{blender.first, blender.last, fps};
+  if (animation && animation->moves()) {
+    const double last = std::ceil(animation->duration_seconds() * fps - 1e-6);
+    description.animation = FrameSpan{0, int(std::clamp(last, 0.0, double(kMaxFrame))), fps};
+  }
+  SCUMBLE_ASSIGN(const SceneSphere sphere, SphereSeen(frame));
+  description.eye = OrbitOf(sphere, posed->view.camera, double(scene.size.width) / scene.size.height);
+  description.files = SceneFiles(scene.scene);
+  description.files.insert(description.files.end(), blender.files.begin(), blender.files.end());
+  for (const auto& [path, stamp] : style_stamps) description.style_files.push_back(path);
+  return description;
 }
 
 Workspace::Workspace(RunContext context) : state_(std::make_unique<State>(std::move(context))) {}
@@ -306,9 +433,14 @@ Workspace::Workspace(Workspace&&) noexcept = default;
 Workspace& Workspace::operator=(Workspace&&) noexcept = default;
 
 Expected<PaintedFrame> Workspace::Paint(const SceneRequest& scene, const StyleRequest& style,
-                                        const PictureRequest& picture) {
+                                        const PictureRequest& picture, const BudgetRequest& budget) {
   const State::Running running(*state_);
-  return state_->Paint(scene, style, picture);
+  return state_->Paint(scene, style, picture, budget);
+}
+
+Expected<SceneDescription> Workspace::Describe(const SceneRequest& scene, std::optional<int> frame) {
+  const State::Running running(*state_);
+  return state_->Describe(scene, frame);
 }
 
 Expected<std::shared_ptr<const GuideSet>> Workspace::Guides(const SceneRequest& scene, std::optional<int> frame,

@@ -9,6 +9,7 @@
 //                                    No file is loaded.
 //   the frame of an animation        pose, guides, picture. No file is loaded (a .blend is exported again).
 //   a file on disk                   what was read from it, and all that was made of that
+//   quality, budget                  the styles, and what the chosen step changes of guides and exemplars
 //
 // Pictures are those of `scumble stylize` with the same request, byte for byte.
 #pragma once
@@ -16,10 +17,14 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "core/image/guides.h"
 #include "core/image/status.h"
 #include "pipeline/frame/frame_report.h"
+#include "pipeline/frame/paint_picture.h"
+#include "pipeline/quality/budget_choice.h"
 #include "pipeline/requests.h"
 #include "pipeline/run_context.h"
 #include "scumble/picture.h"
@@ -41,6 +46,27 @@ struct PaintedFrame {
   Picture picture;
   std::shared_ptr<const GuideSet> guides;
   FrameReport report;  // without the step of writing
+  // Only with PictureRequest::keep_field, as KeptField has them.
+  std::shared_ptr<const SourceField> field;
+  std::shared_ptr<const StyleMap> styles;
+  std::vector<FieldStyle> field_styles;
+  std::optional<BudgetChoice> choice;  // where a quality or a budget was asked for
+};
+
+// Frames in which a scene moves.
+struct FrameSpan {
+  int first = 0;
+  int last = 0;
+  double fps = 24.0;
+};
+
+struct SceneDescription {
+  std::vector<std::string> cameras, objects, materials;  // by name, each once, in the order of the file
+  std::optional<FrameSpan> animation;                    // none: nothing moves
+  std::size_t lights = 0;                                // of the file's own
+  ViewAngles eye;                                        // OrbitOf the camera that the request is seen by
+  std::vector<std::string> files;                        // that the scene is read from
+  std::vector<std::string> style_files;                  // that the styles of the last Paint were read from
 };
 
 class Workspace {
@@ -52,7 +78,15 @@ class Workspace {
 
   // Paints one frame; no file is written. picture.seed, picture.fps and picture.frame replace the scene's. After an
   // error, kCancelled included, the next request starts from what is still valid. One call at a time.
-  Expected<PaintedFrame> Paint(const SceneRequest& scene, const StyleRequest& style, const PictureRequest& picture);
+  //
+  // With a quality or a budget the step of the ladder is chosen as `scumble stylize` does, and chosen again where the
+  // styles, the size or other settings change; one for a budget also where the scene's files do. It stays as the view
+  // and the frame change.
+  Expected<PaintedFrame> Paint(const SceneRequest& scene, const StyleRequest& style, const PictureRequest& picture,
+                               const BudgetRequest& budget = {});
+
+  // Loads and poses the scene if it is stale; casts no ray.
+  Expected<SceneDescription> Describe(const SceneRequest& scene, std::optional<int> frame);
 
   // The guides of a scene: the layers that every guide set holds, and these.
   Expected<std::shared_ptr<const GuideSet>> Guides(const SceneRequest& scene, std::optional<int> frame,

@@ -133,7 +133,14 @@ Status AnimatedScene::MoveTo(double seconds, Scene& scene) const {
   if (!std::isfinite(seconds)) return UsageError("a scene cannot be seen at " + std::to_string(seconds) + " s");
   if (!rig_) return Ok();
   SCUMBLE_CHECK_EQ(scene.meshes.size(), rest_.meshes.size());
-  SCUMBLE_CHECK(scene.cameras.size() >= rest_.cameras.size() && scene.lights.size() >= rest_.lights.size());
+  SCUMBLE_CHECK(scene.cameras.size() >= rest_.cameras.size());
+  if (!scene.has_own_lights) {  // lights in place of the file's do not move with its nodes
+    std::vector<Light> others = std::exchange(scene.lights, rest_.lights);
+    const Status posed = rig_->Pose(seconds, scene);
+    scene.lights = std::move(others);
+    return posed;
+  }
+  SCUMBLE_CHECK(scene.lights.size() >= rest_.lights.size());
   return rig_->Pose(seconds, scene);
 }
 

@@ -17,11 +17,6 @@ constexpr double kRadiansPerDegree = pi / 180.0;
 constexpr double kFramingYfovDegrees = 35.0;
 constexpr double kFramingMargin = 1.1;  // the sphere takes 1 / 1.1 of the narrower side
 
-struct Sphere {
-  glm::dvec3 center{0.0};
-  double radius = 1.0;
-};
-
 template <class Visit>
 void ForEachPoint(const Scene& scene, Visit visit) {
   for (const Instance& instance : scene.instances) {
@@ -29,21 +24,6 @@ void ForEachPoint(const Scene& scene, Visit visit) {
       visit(glm::dvec3(instance.world_from_object * glm::dvec4(glm::dvec3(position), 1.0)));
     }
   }
-}
-
-// Around the middle of the bounding box: at most √3 times too large, and independent of the order of vertices.
-Sphere BoundingSphere(const Scene& scene) {
-  glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
-  ForEachPoint(scene, [&](const glm::dvec3& p) {
-    low = glm::min(low, p);
-    high = glm::max(high, p);
-  });
-  if (!(low.x <= high.x)) return {};
-  Sphere sphere{0.5 * low + 0.5 * high, 0.0};
-  ForEachPoint(scene,
-               [&](const glm::dvec3& p) { sphere.radius = std::max(sphere.radius, glm::length(p - sphere.center)); });
-  if (!(sphere.radius > 0.0)) sphere.radius = 1.0;
-  return sphere;
 }
 
 // Rotation whose +Z points at (azimuth, elevation), +X level. Built from the angles and not from a world "up", so that
@@ -70,6 +50,7 @@ std::string FramingNote(const Scene& scene, const ViewAngles& view, bool asked_f
   } else {
     note << ", framed whole";
   }
+  if (view.right != 0.0 || view.up != 0.0) note << ", moved " << view.right << " m right, " << view.up << " m up";
   return note.str();
 }
 
@@ -80,23 +61,77 @@ std::string BorderNote(const Camera& camera) {
          (camera.border_size.empty() ? "" : ": " + camera.border_size + " pixels in the file");
 }
 
+// The picture's height as a share of the side that the camera's angle or scale is of.
+double VerticalShare(const Camera& camera, double aspect) {
+  const bool horizontal = camera.fit == CameraFit::kHorizontal || (camera.fit == CameraFit::kLonger && aspect >= 1.0);
+  if (horizontal) return 1.0 / aspect;
+  if (camera.fit == CameraFit::kVertical && camera.aspect && *camera.aspect > aspect) return *camera.aspect / aspect;
+  return 1.0;
+}
+
+// Half the picture's vertical angle of a perspective camera, in radians.
+double HalfHeightOf(const Camera& camera, double aspect) {
+  const double half = std::tan(0.5 * camera.yfov_degrees * kRadiansPerDegree);
+  return std::atan(half * VerticalShare(camera, aspect));
+}
+
 }  // namespace
+
+SceneSphere SphereAround(const Scene& scene) {
+  glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
+  ForEachPoint(scene, [&](const glm::dvec3& p) {
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  });
+  if (!(low.x <= high.x)) return {};
+  SceneSphere sphere{0.5 * low + 0.5 * high, 0.0};
+  ForEachPoint(scene,
+               [&](const glm::dvec3& p) { sphere.radius = std::max(sphere.radius, glm::length(p - sphere.center)); });
+  if (!(sphere.radius > 0.0)) sphere.radius = 1.0;
+  return sphere;
+}
 
 Camera FramingCamera(const Scene& scene, const ViewAngles& view, double aspect) {
   SCUMBLE_CHECK(aspect > 0.0 && std::isfinite(aspect));
-  const Sphere sphere = BoundingSphere(scene);
-  const double half_y = 0.5 * kFramingYfovDegrees * kRadiansPerDegree;
+  const SceneSphere sphere = SphereAround(scene);
+  const double yfov = view.fov > 0.0 ? view.fov : kFramingYfovDegrees;
+  const double half_y = 0.5 * yfov * kRadiansPerDegree;
   const double half_narrow = std::min(half_y, std::atan(std::tan(half_y) * aspect));
   // The margin widens the picture, not the distance, so it is an equal share of the picture at any angle of view.
   const double half_framed = std::atan(std::tan(half_narrow) / kFramingMargin);
   const double distance = view.distance > 0.0 ? view.distance : sphere.radius / std::sin(half_framed);
   Camera camera;
   camera.name = "framing";
-  camera.yfov_degrees = kFramingYfovDegrees;
+  camera.yfov_degrees = yfov;
   camera.world_from_camera = Facing(view.azimuth, view.elevation);
+  const glm::dvec3 right(camera.world_from_camera[0]), up(camera.world_from_camera[1]);
   const glm::dvec3 back(camera.world_from_camera[2]);
-  camera.world_from_camera[3] = glm::dvec4(sphere.center + distance * back, 1.0);
+  const glm::dvec3 target = sphere.center + view.right * right + view.up * up;
+  camera.world_from_camera[3] = glm::dvec4(target + distance * back, 1.0);
   return camera;
+}
+
+ViewAngles OrbitOf(const SceneSphere& sphere, const Camera& camera, double aspect) {
+  const glm::dmat4& world = camera.world_from_camera;
+  const glm::dvec3 back = glm::normalize(glm::dvec3(world[2])), side(world[0]);
+  ViewAngles view;
+  view.elevation = std::asin(std::clamp(back.y, -1.0, 1.0)) / kRadiansPerDegree;
+  // Straight up and straight down the direction has no azimuth, but the picture's right has.
+  const bool level = std::hypot(back.x, back.z) > 1e-9;
+  view.azimuth = (level ? std::atan2(back.x, back.z) : std::atan2(-side.z, side.x)) / kRadiansPerDegree;
+  const glm::dmat4 facing = Facing(view.azimuth, view.elevation);
+  const glm::dvec3 from_center = glm::dvec3(world[3]) - sphere.center;
+  view.right = glm::dot(from_center, glm::dvec3(facing[0]));
+  view.up = glm::dot(from_center, glm::dvec3(facing[1]));
+  if (camera.orthographic) {
+    constexpr double kFarAwayDegrees = 1.0;
+    view.fov = kFarAwayDegrees;
+    view.distance = camera.ymag * VerticalShare(camera, aspect) / std::tan(0.5 * kFarAwayDegrees * kRadiansPerDegree);
+    return view;
+  }
+  view.distance = std::max(glm::dot(from_center, back), 1e-6 * sphere.radius);
+  view.fov = 2.0 * HalfHeightOf(camera, aspect) / kRadiansPerDegree;
+  return view;
 }
 
 Light KeyLight(const Camera& camera, double azimuth, double elevation) {
@@ -106,6 +141,12 @@ Light KeyLight(const Camera& camera, double azimuth, double elevation) {
   light.intensity = pi;
   light.world_from_light = camera.world_from_camera * Facing(azimuth, elevation);
   return light;
+}
+
+void ReplaceLights(Scene& scene, const Camera& camera, const LightAngles& light) {
+  scene.lights = {KeyLight(camera, light.azimuth, light.elevation)};
+  scene.world_radiance = glm::vec3(0.0f);
+  scene.has_own_lights = false;
 }
 
 namespace {

@@ -16,14 +16,38 @@ struct ViewAngles {
   double azimuth = 35.0;
   double elevation = 20.0;
   double distance = 0.0;  // m from the centre of the scene's bounding sphere; 0 frames it with a margin
+  double right = 0.0;     // m in the picture plane from that centre to what is looked at
+  double up = 0.0;        // likewise
+  double fov = 0.0;       // the picture's vertical angle of view, below 180; 0: 35
 };
+
+// The direction of a sun in the camera's view space, degrees (core/image/direction.h).
+struct LightAngles {
+  double azimuth = kKeyLightAzimuth;
+  double elevation = kKeyLightElevation;
+};
+
+// Around the middle of a scene's bounding box: at most √3 times too large, and independent of the order of vertices.
+struct SceneSphere {
+  glm::dvec3 center{0.0};
+  double radius = 1.0;
+};
+SceneSphere SphereAround(const Scene& scene);
 
 // A perspective camera that looks at the scene's centre. `aspect` is width / height of the picture.
 Camera FramingCamera(const Scene& scene, const ViewAngles& view, double aspect);
 
+// The view whose FramingCamera stands where the camera stands, looks where it looks, and has its angle of view. Roll,
+// shift, border and clipping are left out. A camera that has the scene's centre behind it is moved forward to it. An
+// orthographic one becomes a view from far away, of a degree, that shows as much of the centre's plane.
+ViewAngles OrbitOf(const SceneSphere& sphere, const Camera& camera, double aspect);
+
 // A sun of strength π (white Lambert facing it has radiance 1) at these angles (core/image/direction.h) of the given
 // camera's view space.
 Light KeyLight(const Camera& camera, double azimuth = kKeyLightAzimuth, double elevation = kKeyLightElevation);
+
+// Puts one KeyLight from these angles in place of the scene's lights and its world.
+void ReplaceLights(Scene& scene, const Camera& camera, const LightAngles& light);
 
 // Prepares the scene for rendering. Picks the camera by name (empty: the first; none in the file or `view` given: a
 // framing one). Adds the key light to the scene if it has no light and `needs_light`; a surface that glows by a texture

@@ -192,6 +192,7 @@ struct Scene {
   std::vector<std::shared_ptr<const EncodedTexture>> encoded_textures;
   std::vector<Camera> cameras;
   std::vector<Light> lights;
+  bool has_own_lights = true;         // false: `lights` are others than the file's
   glm::vec3 world_radiance{0.0f};     // from every direction without a hit; linear
   std::vector<std::string> warnings;  // unsupported requests of the file, in the user's words
   std::vector<std::string> notes;     // what the loader decided where the file leaves it open, likewise

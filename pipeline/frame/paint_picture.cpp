@@ -56,6 +56,24 @@ StyleInReport ReportOf(const std::string& given, const Style& style, const Prepa
   return report;
 }
 
+// Takes the field out of `scratch`.
+KeptField TakeField(const StyleSet& styles, const std::vector<PreparedStyle>& prepared, StyleMap* map,
+                    TransferScratch& scratch) {
+  KeptField kept;
+  kept.field = std::make_shared<const SourceField>(std::exchange(scratch.field, {}));
+  if (map) kept.styles = std::make_shared<const StyleMap>(std::move(*map));
+  for (std::size_t i = 0; i < prepared.size(); ++i) {
+    const Style& style = styles.styles[i];
+    FieldStyle one{styles.given[i], style.name, prepared[i].exemplar->width(), prepared[i].exemplar->height(), {}};
+    for (const Exemplar& exemplar : style.exemplars) {
+      const glm::ivec2 origin = exemplar.Origin();
+      one.exemplars.push_back({exemplar.name, origin.x, origin.y, exemplar.picture.width, exemplar.picture.height});
+    }
+    kept.field_styles.push_back(std::move(one));
+  }
+  return kept;
+}
+
 bool LooksAtLightWhenPrepared(const PreparedStyle& style) {
   return style.illumination.active() || (style.space && style.space->has_radiance());
 }
@@ -315,6 +333,7 @@ Expected<PaintedPicture> PaintInMemory(StyleSet& styles, const GuideSet& given, 
   report.steps.push_back(SpreadOf("compose", compose));
   if (!upscale.empty()) report.steps.push_back(SpreadOf("upscale", upscale));
   made.report = {std::move(report), source.plan, source.memory, source.cost, 0, 0.0};
+  if (request.keep_field) made.kept = TakeField(styles, state.prepared, needs_map ? &map : nullptr, scratch);
   made.picture = std::move(picture);
   return made;
 }

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -72,11 +73,35 @@ Status PrepareFrame(StyleSet& styles, const GuideSet& guides, const PictureReque
 // the next frame changes.
 using FrameWrite = std::function<Expected<FrameReport>()>;
 
+// An exemplar of a source field.
+struct FieldExemplar {
+  std::string file;
+  int left = 0, top = 0;      // of the part that is used, in the file's pixels
+  int width = 0, height = 0;  // of that part
+};
+
+// A style of a source field. Position x of the field is at left + (x + 0.5) · FieldExemplar::width / width in the file;
+// likewise y.
+struct FieldStyle {
+  std::string given;          // by the user or the scene
+  std::string name;           // its own
+  int width = 0, height = 0;  // of its exemplars as they are resized: the field's positions are pixels of these
+  std::vector<FieldExemplar> exemplars;
+};
+
+// Where a picture's paint comes from. The field has the picture's size, but for a picture that is scaled up.
+struct KeptField {
+  std::shared_ptr<const SourceField> field;
+  std::shared_ptr<const StyleMap> styles;  // null where one style paints all
+  std::vector<FieldStyle> field_styles;    // by StyleMap::style
+};
+
 // A picture in memory, how its file is to be written, and its report without the step of writing.
 struct PaintedPicture {
   Picture picture;
   PictureWriteOptions write;
   FrameReport report;
+  KeptField kept;  // only with PictureRequest::keep_field
 };
 
 // Prepares, transfers `repeat` times and makes the picture, or the explanation that was asked for.

@@ -24,6 +24,7 @@ bool IsBlenderScene(const std::string& path);
 // What is the same in all frames of a .blend.
 struct BlenderAnimation {
   std::string fps;                 // frames a second, as ParseFrameRate takes them; empty: unknown
+  int first = 0, last = 0;         // of the frames that are rendered
   std::vector<std::string> files;  // that it reads besides itself: linked libraries, pictures, caches
   std::optional<Scene> start;  // the scene at its first frame, where that decides how a frame with a number is seen: it
                                // has no camera, perhaps no lamp, or it was asked for

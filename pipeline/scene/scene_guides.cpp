@@ -54,9 +54,15 @@ Expected<Scene> LoadAnyScene(const SceneRequest& options, const RunContext& cont
 bool IsScene(const std::string& path) { return HasEnding(path, {".glb", ".gltf", ".obj", ".ply", ".blend"}); }
 
 std::string ViewToText(const ViewAngles& view) {
-  return fmt::format("{},{}{}", view.azimuth, view.elevation,
-                     view.distance > 0.0 ? fmt::format(",{}", view.distance) : "");
+  std::string text = fmt::format("{},{}", view.azimuth, view.elevation);
+  const bool has_fov = view.fov > 0.0, is_moved = has_fov || view.right != 0.0 || view.up != 0.0;
+  if (is_moved || view.distance > 0.0) text += fmt::format(",{}", view.distance);
+  if (is_moved) text += fmt::format(",{},{}", view.right, view.up);
+  if (has_fov) text += fmt::format(",{}", view.fov);
+  return text;
 }
+
+std::string LightToText(const LightAngles& light) { return fmt::format("{},{}", light.azimuth, light.elevation); }
 
 Expected<Scene> OpenScene(const SceneRequest& options, const RunContext& context, BlenderAnimation* animation,
                           bool warns) {
@@ -105,16 +111,28 @@ Expected<SceneGuides> MakeGuidesOf(Scene& scene, const SceneRequest& options, co
   return CastScene(scene, prepared.camera, nullptr, options, layers, context, progress, plan_only);
 }
 
-bool NeedsKeyLight(const SceneRequest& options, const LayerSet& layers) {
-  if (!options.key_light) return false;
+namespace {
+
+bool NeedLight(const LayerSet& layers) {
   const auto needs = {Layer::kLuminance, Layer::kShadow,  Layer::kLpeFull, Layer::kLpeLDE,
                       Layer::kLpeLSE,    Layer::kLpeLDDE, Layer::kLpeLD12E};
   return std::any_of(needs.begin(), needs.end(), [&](Layer layer) { return layers.Has(layer); });
 }
 
+}  // namespace
+
+bool NeedsKeyLight(const SceneRequest& options, const LayerSet& layers) {
+  return options.key_light && !options.light && NeedLight(layers);
+}
+
+bool ReplacesLights(const SceneRequest& options, const LayerSet& layers) { return options.light && NeedLight(layers); }
+
 Expected<PreparedView> ViewScene(Scene& scene, const SceneRequest& options, const LayerSet& layers) {
   const double aspect = static_cast<double>(options.size.width) / options.size.height;
-  return PrepareView(scene, options.camera, options.view, aspect, NeedsKeyLight(options, layers));
+  SCUMBLE_ASSIGN(PreparedView seen,
+                 PrepareView(scene, options.camera, options.view, aspect, NeedsKeyLight(options, layers)));
+  if (ReplacesLights(options, layers)) ReplaceLights(scene, seen.camera, *options.light);
+  return seen;
 }
 
 namespace {
@@ -139,6 +157,7 @@ std::string GuideSettings(const SceneRequest& options) {
     text += fmt::format("; {} '{}'", name, value);
   };
   add("camera", options.camera), add("view", options.view ? ViewToText(*options.view) : "");
+  if (options.light) add("light", LightToText(*options.light));
   add("animation", options.animation);
   add("auto smooth", options.auto_smooth_degrees ? fmt::format("{}", *options.auto_smooth_degrees) : "");
   add("fps", options.fps && *options.fps != FrameRate() ? FrameRateToText(*options.fps) : "");

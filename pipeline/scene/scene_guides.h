@@ -44,8 +44,11 @@ struct SceneGuides {
 // Whether the name has a scene's ending, in letters of either case.
 bool IsScene(const std::string& path);
 
-// "AZIMUTH,ELEVATION[,DISTANCE]" in degrees and metres.
+// "AZIMUTH,ELEVATION[,DISTANCE[,RIGHT,UP[,FOV]]]" in degrees and metres, as --view takes it.
 std::string ViewToText(const ViewAngles& view);
+
+// "AZIMUTH,ELEVATION" in degrees, as --light takes it.
+std::string LightToText(const LightAngles& light);
 
 // How the request's scene is loaded; textures are decoded when they are needed.
 LoadOptions LoadOptionsOf(const SceneRequest& request);
@@ -67,7 +70,11 @@ Expected<Scene> OpenScene(const SceneRequest& options, const RunContext& context
 // Whether a layer needs light, so that a scene without any gets a key light.
 bool NeedsKeyLight(const SceneRequest& options, const LayerSet& layers);
 
-// How an open scene is seen; the key light, where a layer needs one, is added to it.
+// Whether a layer needs light, and the request has a sun in place of the scene's lights.
+bool ReplacesLights(const SceneRequest& options, const LayerSet& layers);
+
+// How an open scene is seen; the key light, where a layer needs one, is added to it. The request's own light takes the
+// place of the scene's.
 Expected<PreparedView> ViewScene(Scene& scene, const SceneRequest& options, const LayerSet& layers);
 
 // The attribute that holds the samples which guides were asked to be cast with, and its value: "64", or "4-64" where

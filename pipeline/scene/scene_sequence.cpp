@@ -9,6 +9,12 @@
 
 namespace scumble {
 
+OwnLights OwnLights::Of(const Scene& scene) { return {scene.lights, scene.world_radiance}; }
+
+void OwnLights::PutBack(Scene& scene) const {
+  scene.lights = lights, scene.world_radiance = world, scene.has_own_lights = true;
+}
+
 namespace {
 
 // How a frame of a .blend is seen. Where the file has no camera or no light, the scene's first frame decides.
@@ -16,13 +22,14 @@ Expected<PreparedView> ViewBlender(Scene& scene, BlenderAnimation& animation, co
                                    const LayerSet& layers) {
   if (!animation.start) return ViewScene(scene, options, layers);
   Scene& start = *animation.start;
-  const std::size_t lights = start.lights.size();
+  const OwnLights own = OwnLights::Of(start);
   SCUMBLE_ASSIGN(PreparedView view, ViewScene(start, options, layers));
-  if (start.lights.size() > lights) scene.lights.push_back(start.lights.back());
-  start.lights.resize(lights);
+  if (start.lights.size() > own.lights.size()) scene.lights.push_back(start.lights.back());
+  own.PutBack(start);
+  if (ReplacesLights(options, layers)) ReplaceLights(scene, view.camera, *options.light);
   if (options.view || start.cameras.empty()) return view;
   SceneRequest without_light = options;
-  without_light.key_light = false;
+  without_light.key_light = false, without_light.light.reset();
   SCUMBLE_ASSIGN(const PreparedView now, ViewScene(scene, without_light, layers));
   view.camera = now.camera;
   return view;
@@ -254,8 +261,8 @@ Expected<StaticScene> PoseScene(const AnimatedScene& animation, std::optional<in
   return result;
 }
 
-Status ViewAgain(StaticScene& rest, std::size_t lights, const SceneRequest& options, const LayerSet& layers) {
-  rest.scene.lights.resize(lights);
+Status ViewAgain(StaticScene& rest, const OwnLights& lights, const SceneRequest& options, const LayerSet& layers) {
+  lights.PutBack(rest.scene);
   SCUMBLE_ASSIGN(rest.view, ViewBlender(rest.scene, rest.animation, options, layers));
   rest.layers = layers;
   return Ok();

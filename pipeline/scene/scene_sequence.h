@@ -107,6 +107,15 @@ struct StaticScene {
   double load_ms = 0.0;
 };
 
+// The lights that a scene came with.
+struct OwnLights {
+  std::vector<Light> lights;
+  glm::vec3 world{0.0f};
+
+  static OwnLights Of(const Scene& scene);
+  void PutBack(Scene& scene) const;
+};
+
 // Ok, or a usage error: the layer motion and --animation need a frame's number.
 Status CheckAtRest(const SceneRequest& options, bool motion);
 
@@ -119,7 +128,7 @@ Expected<StaticScene> PoseScene(const AnimatedScene& animation, std::optional<in
                                 const LayersFor& layers_for, const RunContext& context, bool warns);
 
 // Decides again how a posed scene of Blender's is seen, for other layers or through another camera.
-Status ViewAgain(StaticScene& rest, std::size_t lights, const SceneRequest& options, const LayerSet& layers);
+Status ViewAgain(StaticScene& rest, const OwnLights& lights, const SceneRequest& options, const LayerSet& layers);
 
 // Opens a scene at a frame, seen as SceneFrames sees it; without a number, at rest.
 Expected<StaticScene> OpenSceneAt(std::optional<int> frame, const SceneRequest& options, const LayersFor& layers_for,
