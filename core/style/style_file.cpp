@@ -422,7 +422,57 @@ Expected<Style> ReadPictureStyle(const fs::path& path, const StyleRoom& room) {
   return style;
 }
 
+// Of a value, or of key frames at frame 0.
+std::optional<KeyValue> ValueAtStart(const toml::node& node) {
+  const auto* pairs = node.as_array();
+  if (!pairs) return ValueOf(node);
+  StyleTrack track;
+  for (const auto& item : *pairs) {
+    const auto* pair = item.as_array();
+    const auto* frame = pair && pair->size() == 2 ? pair->get(0)->as_integer() : nullptr;
+    const auto value = frame ? ValueOf(*pair->get(1)) : std::nullopt;
+    if (value) track.keys.push_back({frame->get(), *value});
+  }
+  if (track.keys.empty()) return std::nullopt;
+  return ValueAt(track, 0);
+}
+
+void CollectValues(const toml::table& table, const std::string& section, std::map<std::string, KeyValue>& values) {
+  for (const auto& [key, node] : table) {
+    const std::string name = section + std::string(key.str());
+    if (const auto* inner = node.as_table()) CollectValues(*inner, name + ".", values);
+    const auto known = values.find(name);
+    if (known == values.end()) continue;
+    auto value = ValueAtStart(node);
+    if (value && std::holds_alternative<double>(known->second)) {
+      if (const auto number = AsNumber(*value)) value = *number;
+    }
+    if (value) known->second = *value;
+  }
+}
+
 }  // namespace
+
+Expected<std::map<std::string, KeyValue>> StyleValues(const fs::path& path) {
+  std::map<std::string, KeyValue> values;
+  for (const StyleKey& key : StyleKeys()) values[key.name] = key.Default();
+  std::error_code failed;
+  const fs::file_status kind = fs::status(path, failed);
+  if (!fs::exists(kind)) return InputError("cannot read style " + path.string() + ": there is no such file or folder");
+  const bool is_picture = !fs::is_directory(kind) && path.extension() != ".toml";
+  const fs::path file = fs::is_directory(kind) ? path / "style.toml"
+                        : is_picture           ? path.parent_path() / "style.toml"
+                                               : path;
+  if (is_picture && !Exists(file)) return values;
+  SCUMBLE_ASSIGN(const auto bytes, ReadWholeFile(file, kMaxStyleBytes));
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  Expected<toml::table> root = ParseToml(text, file.string());
+  if (!root && !is_picture) return std::move(root).error();
+  // A picture beside a style.toml that does not name it first has no file.
+  const auto image = root ? (*root)["exemplar"][0]["image"].value<std::string>() : std::nullopt;
+  if (!is_picture || (image && fs::path(*image).filename() == path.filename())) CollectValues(*root, "", values);
+  return values;
+}
 
 Expected<Style> LoadStyle(const fs::path& path, const std::vector<std::string>& overrides, const StyleRoom& room) {
   std::error_code failed;

@@ -4,11 +4,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
 #include "core/image/status.h"
 #include "core/image/style.h"
+#include "core/style/style_keys.h"
 
 namespace scumble {
 
@@ -34,6 +36,10 @@ using StyleRoom = std::function<Status(std::uint64_t bytes)>;
 // of the picture's size, make it an exemplar of that scene, of any shape.
 Expected<Style> LoadStyle(const std::filesystem::path& path, const std::vector<std::string>& overrides = {},
                           const StyleRoom& room = {});
+
+// The value of every key of StyleKeys() in the style's file, or the default; of key frames that of frame 0. Only its
+// TOML is read. Numbers of kNumber are doubles. Errors are those of LoadStyle, but values are not checked.
+Expected<std::map<std::string, KeyValue>> StyleValues(const std::filesystem::path& path);
 
 // The folders under `root` that hold a style.toml, sorted by name.
 std::vector<std::filesystem::path> FindStyles(const std::filesystem::path& root);

@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "core/io/picture_file.h"
@@ -14,9 +15,8 @@
 namespace scumble {
 namespace {
 
-using Setter = decltype(StyleKey::set);
-
 constexpr double kMaxGuideWeight = 1000.0;
+constexpr double kMostJitterFps = 1000.0;
 
 std::string Range(double low, double high) {
   char text[80];
@@ -37,99 +37,85 @@ T Rounded(double number) {
   return number > 0.0 ? std::max(rounded, Limits::denorm_min()) : rounded;
 }
 
+// `most` is a slider's where `high` is infinite.
 template <class T>
-Setter Number(T TransferSettings::*field, double low, double high) {
-  return [=](Style& style, const KeyValue& value, const auto&) -> Status {
+KeyForm Number(T TransferSettings::*field, double low, double high, double step, double most = 0.0) {
+  KeyForm form{KeyKind::kNumber, low, std::isinf(high) ? most : high, std::isinf(high), step, {}, {}};
+  form.set = [=](Style& style, const KeyValue& value, const auto&) -> Status {
     const auto number = AsNumber(value);
     if (!number || !(*number >= low && *number <= high)) return UsageError("expected a number, " + Range(low, high));
     style.transfer.*field = Rounded<T>(*number);
     return Ok();
   };
+  return form;
 }
 
-Setter Whole(int TransferSettings::*field, int low, int high) {
-  return [=](Style& style, const KeyValue& value, const auto&) -> Status {
+KeyForm Whole(int TransferSettings::*field, int low, int high) {
+  KeyForm form{KeyKind::kWhole, double(low), double(high), false, 1.0, {}, {}};
+  form.set = [=](Style& style, const KeyValue& value, const auto&) -> Status {
     const auto* number = std::get_if<std::int64_t>(&value);
     if (!number || *number < low || *number > high) return UsageError("expected a whole number, " + Range(low, high));
     style.transfer.*field = static_cast<int>(*number);
     return Ok();
   };
+  return form;
 }
 
-Setter Flag(bool TransferSettings::*field) {
-  return [=](Style& style, const KeyValue& value, const auto&) -> Status {
+KeyForm Flag(bool TransferSettings::*field) {
+  KeyForm form{KeyKind::kFlag, 0.0, 0.0, false, 0.0, {}, {}};
+  form.set = [=](Style& style, const KeyValue& value, const auto&) -> Status {
     const auto* flag = std::get_if<bool>(&value);
     if (!flag) return UsageError("expected true or false");
     style.transfer.*field = *flag;
     return Ok();
   };
+  return form;
 }
 
-Setter Text(std::string Style::*field) {
-  return [=](Style& style, const KeyValue& value, const auto&) -> Status {
+KeyForm Text(std::string Style::*field) {
+  KeyForm form;
+  form.set = [=](Style& style, const KeyValue& value, const auto&) -> Status {
     const auto* text = std::get_if<std::string>(&value);
     if (!text) return UsageError("expected a text in quotes");
     style.*field = *text;
     return Ok();
   };
+  return form;
 }
 
-Status SetMethod(Style& style, const KeyValue& value, const std::filesystem::path&) {
-  const auto* text = std::get_if<std::string>(&value);
-  if (text && *text == "litsphere") return style.transfer.method = Method::kLitSphere, Ok();
-  if (text && *text == "styleblit") return style.transfer.method = Method::kStyleBlit, Ok();
-  if (text && *text == "bruteforce") return style.transfer.method = Method::kBruteForce, Ok();
-  if (text && *text == "stylit") return UnavailableError("method stylit is not built into this version");
-  return UsageError("expected \"litsphere\", \"styleblit\" or \"bruteforce\"");
+template <class T>
+KeyForm Choice(T TransferSettings::*field, const std::vector<std::pair<std::string, T>>& choices) {
+  KeyForm form{KeyKind::kChoice, 0.0, 0.0, false, 0.0, {}, {}};
+  std::string expected = "expected ";
+  for (std::size_t i = 0; i < choices.size(); ++i) {
+    form.choices.push_back(choices[i].first);
+    expected += (i == 0 ? "\"" : i + 1 < choices.size() ? ", \"" : " or \"") + choices[i].first + '"';
+  }
+  form.set = [=](Style& style, const KeyValue& value, const auto&) -> Status {
+    const auto* text = std::get_if<std::string>(&value);
+    for (const auto& [name, choice] : choices) {
+      if (text && *text == name) return style.transfer.*field = choice, Ok();
+    }
+    return UsageError(expected);
+  };
+  return form;
 }
 
-Status SetNearest(Style& style, const KeyValue& value, const std::filesystem::path&) {
-  const auto* text = std::get_if<std::string>(&value);
-  if (text && *text == "auto") return style.transfer.nearest = NearestSearch::kAuto, Ok();
-  if (text && *text == "analytic") return style.transfer.nearest = NearestSearch::kAnalytic, Ok();
-  if (text && *text == "table") return style.transfer.nearest = NearestSearch::kTable, Ok();
-  if (text && *text == "tree") return style.transfer.nearest = NearestSearch::kTree, Ok();
-  return UsageError("expected \"auto\", \"analytic\", \"table\" or \"tree\"");
-}
-
-Status SetMetric(Style& style, const KeyValue& value, const std::filesystem::path&) {
-  const auto* text = std::get_if<std::string>(&value);
-  if (text && *text == "l2") return style.transfer.threshold_metric = ThresholdMetric::kL2, Ok();
-  if (text && *text == "l1") return style.transfer.threshold_metric = ThresholdMetric::kL1, Ok();
-  return UsageError("expected \"l2\" or \"l1\"");
-}
-
-Status SetLuminanceError(Style& style, const KeyValue& value, const std::filesystem::path&) {
-  const auto* text = std::get_if<std::string>(&value);
-  if (text && *text == "excess") return style.transfer.luminance_error = LuminanceError::kExcess, Ok();
-  if (text && *text == "published") return style.transfer.luminance_error = LuminanceError::kPublished, Ok();
-  return UsageError("expected \"excess\" or \"published\"");
-}
-
-Status SetColorizeMode(Style& style, const KeyValue& value, const std::filesystem::path&) {
-  const auto* text = std::get_if<std::string>(&value);
-  if (text && *text == "multiply") return style.transfer.colorize_mode = ColorizeMode::kMultiply, Ok();
-  if (text && *text == "oklab") return style.transfer.colorize_mode = ColorizeMode::kOklab, Ok();
-  return UsageError("expected \"multiply\" or \"oklab\"");
-}
-
-Status SetEdge(Style& style, const KeyValue& value, const std::filesystem::path&) {
-  const auto* text = std::get_if<std::string>(&value);
-  if (text && *text == "exact") return style.transfer.edge = EdgeMode::kExact, Ok();
-  if (text && *text == "exemplar") return style.transfer.edge = EdgeMode::kExemplar, Ok();
-  return UsageError("expected \"exact\" or \"exemplar\"");
-}
-
-Status SetShadow(Style& style, const KeyValue& value, const std::filesystem::path&) {
-  const auto* text = std::get_if<std::string>(&value);
-  if (text && *text == "none") return style.transfer.shadow = ShadowMode::kNone, Ok();
-  if (text && *text == "paint") return style.transfer.shadow = ShadowMode::kPaint, Ok();
-  return UsageError("expected \"none\" or \"paint\"");
+KeyForm MethodChoice() {
+  KeyForm form = Choice<Method>(
+      &TransferSettings::method,
+      {{"litsphere", Method::kLitSphere}, {"styleblit", Method::kStyleBlit}, {"bruteforce", Method::kBruteForce}});
+  form.set = [known = form.set](Style& style, const KeyValue& value, const std::filesystem::path& folder) -> Status {
+    const auto* text = std::get_if<std::string>(&value);
+    if (text && *text == "stylit") return UnavailableError("method stylit is not built into this version");
+    return known(style, value, folder);
+  };
+  return form;
 }
 
 Status SetJitterFps(Style& style, const KeyValue& value, const std::filesystem::path&) {
   const auto number = AsNumber(value);
-  if (!number || !(*number == -1.0 || (*number >= 0.0 && *number <= 1000.0))) {
+  if (!number || !(*number == -1.0 || (*number >= 0.0 && *number <= kMostJitterFps))) {
     return UsageError("expected -1 (every frame), 0 (frozen) or up to 1000 renewals a second");
   }
   style.transfer.jitter_fps = *number;
@@ -162,8 +148,9 @@ Status SetPaper(Style& style, const KeyValue& value, const std::filesystem::path
   return Ok();
 }
 
-Setter GuideWeight(Layer layer) {
-  return [=](Style& style, const KeyValue& value, const auto&) -> Status {
+KeyForm GuideWeight(Layer layer) {
+  KeyForm form{KeyKind::kNumber, 0.0, kMaxGuideWeight, false, 0.1, {}, {}};
+  form.set = [=](Style& style, const KeyValue& value, const auto&) -> Status {
     const auto number = AsNumber(value);
     if (!number || !(*number >= 0.0 && *number <= kMaxGuideWeight)) {
       return UsageError("expected a number, " + Range(0.0, kMaxGuideWeight));
@@ -171,6 +158,7 @@ Setter GuideWeight(Layer layer) {
     style.transfer.guide_weights[layer] = static_cast<float>(*number);
     return Ok();
   };
+  return form;
 }
 
 // transfer.guide_weights.normal and so on.
@@ -178,10 +166,10 @@ void AddGuideWeights(std::vector<StyleKey>& keys) {
   for (const LayerInfo& info : AllLayers()) {
     if (!GuideWeights::CanWeigh(info.layer)) continue;
     const bool normal = info.layer == Layer::kNormal;
-    keys.push_back({kGuideWeights + std::string(info.name), normal ? "1.0" : "0.0",
+    keys.push_back({GuideWeight(info.layer), kGuideWeights + std::string(info.name), normal ? "1.0" : "0.0",
                     normal ? "how much normals count where paint is looked for and pieces end, 0 to 1000"
                            : "the same of " + std::string(info.meaning),
-                    true, GuideWeight(info.layer)});
+                    true, "Guide weights", true});
   }
 }
 
@@ -189,58 +177,109 @@ std::vector<StyleKey> MakeKeys() {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   using T = TransferSettings;
   std::vector<StyleKey> keys = {
-      {"name", "\"\"", "what the style is called", true, Text(&Style::name)},
-      {"licence", "\"\"", "SPDX name of the licence", true, Text(&Style::licence)},
-      {"transfer.method", "\"styleblit\"", "litsphere, styleblit or bruteforce", true, SetMethod},
-      {"transfer.nearest", "\"auto\"", "how sources are found: analytic (spheres), table, or tree: exact and slow",
-       true, SetNearest},
-      {"transfer.nearest_error", "0.0",
+      {Text(&Style::name), "name", "\"\"", "what the style is called", true, "Style", false},
+      {Text(&Style::licence), "licence", "\"\"", "SPDX name of the licence", true, "Style", false},
+      {MethodChoice(), "transfer.method", "\"styleblit\"", "litsphere, styleblit or bruteforce", true, "Matching",
+       true},
+      {Choice<NearestSearch>(&T::nearest, {{"auto", NearestSearch::kAuto},
+                                           {"analytic", NearestSearch::kAnalytic},
+                                           {"table", NearestSearch::kTable},
+                                           {"tree", NearestSearch::kTree}}),
+       "transfer.nearest", "\"auto\"", "how sources are found: analytic (spheres), table, or tree: exact and slow",
+       true, "Matching", true},
+      {Number(&T::nearest_error, 0.0, 10.0, 0.1), "transfer.nearest_error", "0.0",
        "how much farther than the nearest a source from the tree may be, as a share, 0 to 10; 0: exact", true,
-       Number(&T::nearest_error, 0.0, 10.0)},
-      {"transfer.threshold", "0.125", "largest guide distance inside a chunk, between unit normals", true,
-       Number(&T::threshold, 0.0, kInfinity)},
-      {"transfer.threshold_metric", "\"l2\"", "l2, or l1: the authors' own test", true, SetMetric},
-      {"transfer.levels", "7", "seed grids of 2^(levels-1) to 1 pixels, 1 to 16", true, Whole(&T::levels, 1, 16)},
-      {"transfer.jitter", "1.0", "how far seeds leave their grid, 0 to 1", true, Number(&T::jitter, 0.0, 1.0)},
-      {"transfer.jitter_fps", "0", "renewals of the jitter a second; 0 frozen, -1 every frame", true, SetJitterFps},
-      {"transfer.coherent", "false", "pieces stick to surfaces that move, instead of the screen", true,
-       Flag(&T::coherent)},
-      {"transfer.blend_radius", "1", "voting window, pixels, 0 to 64", true, Whole(&T::blend_radius, 0, 64)},
-      {"transfer.edge_aware", "true", "votes do not cross object borders, depth steps and creases", true,
-       Flag(&T::edge_aware)},
-      {"transfer.crease", "60", "angle of normals that votes do not cross, degrees, 0 to 180; 180: any is crossed",
-       true, Number(&T::crease, 0.0, 180.0)},
-      {"transfer.depth_tolerance", "0.002",
+       "Matching", true},
+      {Number(&T::threshold, 0.0, kInfinity, 0.005, 2.0), "transfer.threshold", "0.125",
+       "largest guide distance inside a chunk, between unit normals", true, "Matching", false},
+      {Choice<ThresholdMetric>(&T::threshold_metric, {{"l2", ThresholdMetric::kL2}, {"l1", ThresholdMetric::kL1}}),
+       "transfer.threshold_metric", "\"l2\"", "l2, or l1: the authors' own test", true, "Matching", false},
+      {Whole(&T::levels, 1, 16), "transfer.levels", "7", "seed grids of 2^(levels-1) to 1 pixels, 1 to 16", true,
+       "Matching", true},
+      {Number(&T::jitter, 0.0, 1.0, 0.05), "transfer.jitter", "1.0", "how far seeds leave their grid, 0 to 1", true,
+       "Movement", false},
+      {{KeyKind::kNumber, -1.0, kMostJitterFps, false, 1.0, {}, SetJitterFps},
+       "transfer.jitter_fps",
+       "0",
+       "renewals of the jitter a second; 0 frozen, -1 every frame",
+       true,
+       "Movement",
+       false},
+      {Flag(&T::coherent), "transfer.coherent", "false", "pieces stick to surfaces that move, instead of the screen",
+       true, "Matching", false},
+      {Whole(&T::blend_radius, 0, 64), "transfer.blend_radius", "1", "voting window, pixels, 0 to 64", true, "Blending",
+       true},
+      {Flag(&T::edge_aware), "transfer.edge_aware", "true",
+       "votes do not cross object borders, depth steps and creases", true, "Blending", true},
+      {Number(&T::crease, 0.0, 180.0, 1.0), "transfer.crease", "60",
+       "angle of normals that votes do not cross, degrees, 0 to 180; 180: any is crossed", true, "Blending", false},
+      {Number(&T::depth_tolerance, 0.0, 1.0, 0.0005), "transfer.depth_tolerance", "0.002",
        "depth step that votes do cross, as a share of the distance (orthographic: of the view's height), 0 to 1", true,
-       Number(&T::depth_tolerance, 0.0, 1.0)},
-      {"transfer.luminance_weight", "0.3", "how much light counts inside a chunk, with several exemplars", true,
-       Number(&T::luminance_weight, 0.0, kInfinity)},
-      {"transfer.luminance_error", "\"excess\"", "excess, or published: the thesis's own", true, SetLuminanceError},
-      {"transfer.colorize", "0.0", "0 exemplar colours to 1 fully tinted by the scene", true,
-       Number(&T::colorize, 0.0, 1.0)},
-      {"transfer.colorize_mode", "\"multiply\"", "multiply, or oklab: for coloured exemplars", true, SetColorizeMode},
-      {"transfer.variety", "0.0", "freedom of choice on flat surfaces, degrees, 0 to 90", true,
-       Number(&T::variety, 0.0, 90.0)},
-      {"transfer.hybrid", "0.0",
+       "Blending", false},
+      {Number(&T::luminance_weight, 0.0, kInfinity, 0.05, 4.0), "transfer.luminance_weight", "0.3",
+       "how much light counts inside a chunk, with several exemplars", true, "Light and colour", true},
+      {Choice<LuminanceError>(&T::luminance_error,
+                              {{"excess", LuminanceError::kExcess}, {"published", LuminanceError::kPublished}}),
+       "transfer.luminance_error", "\"excess\"", "excess, or published: the thesis's own", true, "Light and colour",
+       true},
+      {Number(&T::colorize, 0.0, 1.0, 0.05), "transfer.colorize", "0.0",
+       "0 exemplar colours to 1 fully tinted by the scene", true, "Light and colour", true},
+      {Choice<ColorizeMode>(&T::colorize_mode,
+                            {{"multiply", ColorizeMode::kMultiply}, {"oklab", ColorizeMode::kOklab}}),
+       "transfer.colorize_mode", "\"multiply\"", "multiply, or oklab: for coloured exemplars", true, "Light and colour",
+       true},
+      {Number(&T::variety, 0.0, 90.0, 1.0), "transfer.variety", "0.0",
+       "freedom of choice on flat surfaces, degrees, 0 to 90", true, "Matching", false},
+      {Number(&T::hybrid, 0.0, kInfinity, 0.5, 64.0), "transfer.hybrid", "0.0",
        "tone by Lit Sphere, texture in pieces: width of the split, sigma in exemplar pixels, 0 or more; 0: no split",
-       true, Number(&T::hybrid, 0.0, kInfinity)},
-      {"transfer.match_step", "1", "pixels from one that is matched to the next, 1 to 8; 1: all are, slowest and best",
-       true, Whole(&T::match_step, 1, kMaxMatchStep)},
-      {"transfer.scale", "1.0", "exemplar size, above 0 to 64", true, Number(&T::scale, 1e-3, 64.0)},
-      {"transfer.rim", "2", "exemplar pixels at the painted edge that are never used, at least", true,
-       Number(&T::rim, 0.0, 16384.0)},
-      {"transfer.reference_height", "1080", "lengths are pixels at this output height; 0: plain pixels", true,
-       Whole(&T::reference_height, 0, 32768)},
-      {"transfer.edge", "\"exact\"", "silhouettes: exact, or exemplar: its painted edge goes on along them", true,
-       SetEdge},
-      {"transfer.shadow", "\"none\"", "none, or paint: shadows on what --assign NAME=catcher names", true, SetShadow},
-      {"transfer.paper", "\"\"", "picture or colour behind; empty: transparent", true, SetPaper},
+       true, "Blending", true},
+      {Whole(&T::match_step, 1, kMaxMatchStep), "transfer.match_step", "1",
+       "pixels from one that is matched to the next, 1 to 8; 1: all are, slowest and best", true, "Matching", false},
+      {Number(&T::scale, 1e-3, 64.0, 0.05), "transfer.scale", "1.0", "exemplar size, above 0 to 64", true,
+       "Sphere and paper", true},
+      {Number(&T::rim, 0.0, 16384.0, 0.5), "transfer.rim", "2",
+       "exemplar pixels at the painted edge that are never used, at least", true, "Sphere and paper", true},
+      {Whole(&T::reference_height, 0, 32768), "transfer.reference_height", "1080",
+       "lengths are pixels at this output height; 0: plain pixels", true, "Sphere and paper", true},
+      {Choice<EdgeMode>(&T::edge, {{"exact", EdgeMode::kExact}, {"exemplar", EdgeMode::kExemplar}}), "transfer.edge",
+       "\"exact\"", "silhouettes: exact, or exemplar: its painted edge goes on along them", true, "Sphere and paper",
+       true},
+      {Choice<ShadowMode>(&T::shadow, {{"none", ShadowMode::kNone}, {"paint", ShadowMode::kPaint}}), "transfer.shadow",
+       "\"none\"", "none, or paint: shadows on what --assign NAME=catcher names", true, "Light and colour", true},
+      {{KeyKind::kFile, 0.0, 0.0, false, 0.0, {}, SetPaper},
+       "transfer.paper",
+       "\"\"",
+       "picture or colour behind; empty: transparent",
+       true,
+       "Sphere and paper",
+       true},
   };
   AddGuideWeights(keys);
   return keys;
 }
 
 }  // namespace
+
+std::string KindName(KeyKind kind) {
+  constexpr const char* kNames[] = {"number", "whole", "flag", "choice", "text", "file"};
+  return kNames[static_cast<std::size_t>(kind)];
+}
+
+KeyValue StyleKey::Default() const {
+  const char *begin = default_value.data(), *end = begin + default_value.size();
+  if (kind == KeyKind::kFlag) return default_value == "true";
+  if (kind == KeyKind::kWhole) {
+    std::int64_t whole = 0;
+    std::from_chars(begin, end, whole);
+    return whole;
+  }
+  if (kind == KeyKind::kNumber) {
+    double number = 0.0;
+    std::from_chars(begin, end, number);
+    return number;
+  }
+  return default_value.substr(1, default_value.size() - 2);  // without the quotes
+}
 
 std::optional<double> AsNumber(const KeyValue& value) {
   if (const auto* number = std::get_if<double>(&value)) return *number;

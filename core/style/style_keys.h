@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "core/image/status.h"
 #include "core/image/style.h"
@@ -23,14 +24,32 @@ using KeyValue = std::variant<bool, std::int64_t, double, std::string>;
 // Of a number, whole or not; of others none.
 std::optional<double> AsNumber(const KeyValue& value);
 
-struct StyleKey {
-  std::string name;           // "transfer.threshold"
-  std::string default_value;  // as TOML text
-  std::string help;           // one line: meaning, unit, range
-  bool built_in = true;       // false: the feature does not exist yet, and only the default is accepted
+enum class KeyKind { kNumber, kWhole, kFlag, kChoice, kText, kFile };
+
+// "number", "whole", "flag", "choice", "text", "file".
+std::string KindName(KeyKind kind);
+
+// What a key's values are, for controls. `set` checks by the same numbers and choices.
+struct KeyForm {
+  KeyKind kind = KeyKind::kText;
+  double least = 0.0, most = 0.0;    // of numbers; where they are unlimited, `most` is what a slider ends at
+  bool unlimited = false;            // there is no upper limit
+  double step = 0.0;                 // of numbers: a sensible one for a control
+  std::vector<std::string> choices;  // of kChoice
   // Puts the value into the style; relative paths are under `folder`. If a value does not fit, the error is kUsage and
   // gives the expected form. If a file cannot be read, the error is kInput.
   std::function<Status(Style&, const KeyValue&, const std::filesystem::path& folder)> set;
+};
+
+struct StyleKey : KeyForm {
+  std::string name;             // "transfer.threshold"
+  std::string default_value;    // as TOML text
+  std::string help;             // one line: meaning, unit, range
+  bool built_in = true;         // false: the feature does not exist yet, and only the default is accepted
+  std::string group;            // of keys that belong together: "Matching"
+  bool needs_preparing = true;  // false: a change prepares no exemplar again
+
+  KeyValue Default() const;  // default_value by its kind
 };
 
 // All keys but those of [[exemplar]], in the order of the documentation.

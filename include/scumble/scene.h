@@ -11,18 +11,28 @@ struct SceneView {
   double azimuth = 35.0;    // degrees, from +Z towards +X
   double elevation = 20.0;  // degrees above the horizon, -90 … 90
   double distance = 0.0;    // metres; 0: the scene is framed
+  double right = 0.0;       // metres in the picture plane from that centre to what is looked at
+  double up = 0.0;          // likewise
+  double fov = 0.0;         // the picture's vertical angle of view, degrees, below 180; 0: 35
+};
+
+// The direction of a sun, degrees of the view: (0, 0) is from the viewer, (90, 0) from the right, (0, 90) from above.
+struct SceneLight {
+  double azimuth = -40.0;
+  double elevation = 40.0;  // -90 … 90
 };
 
 struct SceneSettings {
-  std::string file;                // .glb, .gltf, .obj, .ply; .blend where Blender is installed
-  int width = 1280, height = 720;  // pixels
-  std::string camera;              // by name; empty: the scene's first, or a view that frames it
-  std::optional<SceneView> view;   // instead of a camera
-  std::optional<int> frame;        // of an animation; empty: at rest
-  std::string animation;           // by name, where a file has several; "*": all; empty: the first
-  std::string blender_scene;       // of a .blend, by name; empty: the one that was open when it was saved
-  std::string view_layer;          // of a .blend, by name; empty: the first one that is rendered
-  double frames_per_second = 0.0;  // 0: a .blend's own, otherwise 24
+  std::string file;                 // .glb, .gltf, .obj, .ply; .blend where Blender is installed
+  int width = 1280, height = 720;   // pixels
+  std::string camera;               // by name; empty: the scene's first, or a view that frames it
+  std::optional<SceneView> view;    // instead of a camera
+  std::optional<SceneLight> light;  // one sun in place of the scene's lights and world; surfaces still glow
+  std::optional<int> frame;         // of an animation; empty: at rest
+  std::string animation;            // by name, where a file has several; "*": all; empty: the first
+  std::string blender_scene;        // of a .blend, by name; empty: the one that was open when it was saved
+  std::string view_layer;           // of a .blend, by name; empty: the first one that is rendered
+  double frames_per_second = 0.0;   // 0: a .blend's own, otherwise 24
   // Degrees between faces, 0 … 180, up to which they are smooth where the file gives no normals; 0: flat. Empty: glTF
   // is flat, OBJ as its smoothing groups say, other OBJ and PLY smooth up to 60.
   std::optional<double> auto_smooth;

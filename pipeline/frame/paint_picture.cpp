@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <memory>
 #include <numeric>
-#include <set>
 #include <utility>
 
 #include "core/image/painting/soft_edge.h"
@@ -14,6 +13,7 @@
 #include "core/io/picture_file.h"
 #include "core/style/place_sphere.h"
 #include "core/style/style_keyframes.h"
+#include "core/style/style_keys.h"
 #include "measure/mosaic/coherence.h"
 #include "measure/painting/paint_faults.h"
 #include "pipeline/frame/explain_frame.h"
@@ -179,11 +179,8 @@ std::string SamplesAsked(const std::map<std::string, std::string>& attributes) {
 }
 
 bool IsReadEachFrame(const std::string& key) {
-  static const std::set<std::string> kKeys = {
-      "transfer.threshold",  "transfer.threshold_metric", "transfer.jitter",
-      "transfer.jitter_fps", "transfer.coherent",         "transfer.variety",
-      "transfer.crease",     "transfer.depth_tolerance",  "transfer.match_step"};
-  return kKeys.count(key) > 0;
+  const StyleKey* const found = FindStyleKey(key);
+  return found && !found->needs_preparing;
 }
 
 Status PrepareFrame(StyleSet& styles, const GuideSet& guides, const PictureRequest& request, const RunContext& context,

@@ -26,6 +26,7 @@ std::vector<std::pair<std::string, std::string>> SceneArguments(const TradeSetup
   };
   add("--camera", scene.camera, usual.camera);
   if (scene.view) given.emplace_back("--view", ViewToText(*scene.view));
+  if (scene.light) given.emplace_back("--light", LightToText(*scene.light));
   if (scene.auto_smooth_degrees) given.emplace_back("--auto-smooth", fmt::format("{}", *scene.auto_smooth_degrees));
   add("--aa", std::to_string(scene.aa), std::to_string(usual.aa));
   if (scene.normal_frame == NormalFrame::kEye) given.emplace_back("--normal-frame", "eye");

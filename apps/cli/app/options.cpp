@@ -106,9 +106,15 @@ void AddViewOptions(CLI::App& verb, SceneOptions& options) {
   verb.add_option("--camera", options.request.camera, "camera by name; left out: the scene's first")->type_name("NAME");
   verb.add_option(
           "--view", options.view,
-          "look at the scene's centre instead of through a camera: AZIMUTH,ELEVATION[,DISTANCE] in degrees from "
-          "+Z towards +X, degrees above the horizon, metres; without DISTANCE the scene is framed")
-      ->type_name("AZ,EL[,DIST]");
+          "look at the scene's centre instead of through a camera: AZIMUTH,ELEVATION[,DISTANCE[,RIGHT,UP[,FOV]]] in "
+          "degrees from +Z towards +X, degrees above the horizon, metres; without DISTANCE, or with 0, the scene is "
+          "framed; RIGHT and UP move what is looked at in the picture plane, metres; FOV is the vertical angle of "
+          "view, degrees, otherwise 35")
+      ->type_name("AZ,EL[,DIST[,RIGHT,UP[,FOV]]]");
+  verb.add_option("--light", options.light,
+                  "one sun in place of the scene's lights and world: AZIMUTH,ELEVATION in degrees of the view, 0,0 "
+                  "from the viewer, 90,0 from the right, 0,90 from above; surfaces that glow still do")
+      ->type_name("AZ,EL");
   verb.add_option("--auto-smooth", options.request.auto_smooth_degrees,
                   "where the file gives no normals, faces up to so many degrees apart are smooth, 0 to 180; 0: flat. "
                   "Left out: glTF is flat, OBJ as its smoothing groups say, other OBJ and PLY smooth up to 60")
@@ -215,10 +221,20 @@ namespace {
 
 Expected<std::optional<ViewAngles>> ParseView(const std::string& text) {
   if (text.empty()) return std::optional<ViewAngles>();
-  SCUMBLE_ASSIGN(const auto numbers, ParseNumbers(text, 2, 3, "--view"));
+  SCUMBLE_ASSIGN(auto numbers, ParseNumbers(text, 2, 6, "--view"));
   if (numbers[1] < -90.0 || numbers[1] > 90.0) return UsageError("--view " + text + ": elevation must be -90 to 90");
-  if (numbers.size() == 3 && numbers[2] < 0.0) return UsageError("--view " + text + ": distance must be 0 or more");
-  return std::optional(ViewAngles{numbers[0], numbers[1], numbers.size() == 3 ? numbers[2] : 0.0});
+  if (numbers.size() == 4) return UsageError("--view " + text + ": RIGHT needs UP: AZ,EL,DIST,RIGHT,UP");
+  numbers.resize(6, 0.0);
+  if (numbers[2] < 0.0) return UsageError("--view " + text + ": distance must be 0 or more");
+  if (numbers[5] < 0.0 || numbers[5] >= 180.0) return UsageError("--view " + text + ": FOV must be 0 to below 180");
+  return std::optional(ViewAngles{numbers[0], numbers[1], numbers[2], numbers[3], numbers[4], numbers[5]});
+}
+
+Expected<std::optional<LightAngles>> ParseLight(const std::string& text) {
+  if (text.empty()) return std::optional<LightAngles>();
+  SCUMBLE_ASSIGN(const auto numbers, ParseNumbers(text, 2, 2, "--light"));
+  if (numbers[1] < -90.0 || numbers[1] > 90.0) return UsageError("--light " + text + ": elevation must be -90 to 90");
+  return std::optional(LightAngles{numbers[0], numbers[1]});
 }
 
 }  // namespace
@@ -227,6 +243,7 @@ Expected<SceneRequest> ToRequest(const SceneOptions& options) {
   SceneRequest request = options.request;
   SCUMBLE_ASSIGN(request.size, ParseSize(options.size));
   SCUMBLE_ASSIGN(request.view, ParseView(options.view));
+  SCUMBLE_ASSIGN(request.light, ParseLight(options.light));
   request.normal_frame = options.normal_frame == "eye" ? NormalFrame::kEye : NormalFrame::kCamera;
   if (!options.fps.empty()) {
     SCUMBLE_ASSIGN(request.fps, ParseFrameRate(options.fps));

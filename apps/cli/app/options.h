@@ -50,6 +50,7 @@ struct SceneOptions {
   SceneRequest request;
   std::string size = "1280x720";
   std::string view;
+  std::string light;
   std::string normal_frame = "camera";
   std::string fps;
   bool explain = false;

@@ -109,11 +109,14 @@ TEST_F(CliUsage, SizesAndViews) {
   }
   // Refused before any memory is asked for.
   ExpectError({"guidegen", scene, "--size", "32768", "-o", "g.exr"}, 2, {"--size 32768: expected at most 268435456"});
-  for (const char* view : {"30", "nan,10", "1,2,3,4", "1,,2"}) {
+  for (const char* view : {"30", "nan,10", "1,2,3,4,5,6,7", "1,,2"}) {
     ExpectError({"guidegen", scene, "--view", view, "-o", "g.exr"}, 2,
-                {"--view " + std::string(view) + ": expected 2 to 3 numbers with commas between"});
+                {"--view " + std::string(view) + ": expected 2 to 6 numbers with commas between"});
   }
   ExpectError({"guidegen", scene, "--view", "30,100", "-o", "g.exr"}, 2, {"elevation must be -90 to 90"});
+  ExpectError({"guidegen", scene, "--view", "1,2,3,4", "-o", "g.exr"}, 2, {"RIGHT needs UP"});
+  ExpectError({"guidegen", scene, "--view", "1,2,3,4,5,180", "-o", "g.exr"}, 2, {"FOV must be 0 to below 180"});
+  ExpectError({"guidegen", scene, "--light", "1,91", "-o", "g.exr"}, 2, {"--light 1,91: elevation must be -90 to 90"});
   ExpectError({"guidegen", scene, "--view", "30,10,-4", "-o", "g.exr"}, 2, {"distance must be 0 or more"});
   EXPECT_FALSE(Exists("g.exr"));
 }
