@@ -53,7 +53,7 @@ THIRD_PARTY = {
     "toml++/": {"style"},
     "apriltag/": {"style"},
     "fmt/": {"measure", "cli", "pipeline"},
-    "nlohmann/": {"measure", "cli"},
+    "nlohmann/": {"measure", "cli", "pipeline"},
     "CLI/": {"cli"},
 }
 

@@ -14,6 +14,7 @@
 #include "apps/cli/verbs/styles_tune.h"
 #include "core/style/style_file.h"
 #include "core/style/style_keys.h"
+#include "pipeline/style/style_keys_json.h"
 #include "pipeline/style/style_locations.h"
 #include "pipeline/tradeoff/tune_style.h"
 
@@ -22,7 +23,7 @@ namespace {
 
 // A key that [[exemplar]] has.
 struct StyleKeyLine {
-  const char *key, *default_value, *help;
+  const char *key, *default_value, *help, *kind;
 };
 
 Expected<ExitCode> ListStyles(const Globals& globals) {
@@ -55,23 +56,27 @@ Expected<ExitCode> ListStyles(const Globals& globals) {
 }
 
 Expected<ExitCode> ListKeys(const Globals& globals) {
-  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  nlohmann::ordered_json json = StyleKeysJson();
   std::string text;
   for (const StyleKey& key : StyleKeys()) {
     const std::string help = key.help + (key.built_in ? "" : " (not built in yet: only the default is accepted)");
-    json.push_back({{"key", key.name}, {"default", key.default_value}, {"help", help}});
     text += fmt::format("{:<26} {:<12} {}\n", key.name, key.default_value, help);
   }
   const StyleKeyLine of_exemplars[] = {
-      {"exemplar.image", "", "picture of the painted sphere, required; in style.toml only"},
+      {"exemplar.image", "", "picture of the painted sphere, required; in style.toml only", "file"},
       {"exemplar.guides", "\"\"",
-       "guides of what is painted; empty: a sphere that fills the square or lies in it; in style.toml only"},
+       "guides of what is painted; empty: a sphere that fills the square or lies in it; in style.toml only", "file"},
       {"exemplar.luminance", "",
-       "of its light; left out: measured; --set exemplar.1.luminance=0.8 sets the first one's"},
+       "of its light; left out: measured; --set exemplar.1.luminance=0.8 sets the first one's", "number"},
       {"exemplar.fills", "false",
-       "the sphere fills the square, whatever its paint looks like: none is looked for in it"}};
-  for (const auto& [key, default_value, help] : of_exemplars) {
-    json.push_back({{"key", key}, {"default", default_value}, {"help", help}});
+       "the sphere fills the square, whatever its paint looks like: none is looked for in it", "flag"}};
+  for (const auto& [key, default_value, help, kind] : of_exemplars) {
+    json.push_back({{"name", key},
+                    {"default", nlohmann::ordered_json::parse(*default_value ? default_value : "null")},
+                    {"help", help},
+                    {"kind", kind},
+                    {"group", "Exemplar"},
+                    {"needs_preparing", true}});
     text += fmt::format("{:<26} {:<12} {}\n", key, default_value, help);
   }
   Print(globals.json ? JsonText(json) : text);
