@@ -479,6 +479,104 @@ TEST(Workspace, MistakesAreErrorsAndLeaveItUsable) {
   EXPECT_EQ(Painted(workspace, SceneOf("suzanne"), StyleOf("oil")).width, 96);
 }
 
+TEST(Workspace, PaintsByAQualityWhatTheProgramPaints) {
+  Workspace workspace(Context());
+  BudgetRequest draft;
+  draft.quality = Quality::kDraft;
+  const std::string options = kSource + "/scenes/suzanne.glb --size 96x56 --style ";
+  SceneRequest scene = SceneOf("suzanne");
+  scene.size = {96, 56};
+  for (const std::string style : {"oil", "chiaroscuro"}) {
+    const auto painted = workspace.Paint(scene, StyleOf(style), {}, draft);
+    ASSERT_TRUE(painted.ok()) << painted.error().message;
+    EXPECT_EQ(painted->picture.rgba, Stylized(options + style + " --quality draft").rgba) << style;
+    EXPECT_EQ(painted->choice.value().quality, "draft");
+  }
+  const WorkspaceCounters before = workspace.counters();
+  ASSERT_TRUE(workspace.Paint(scene, StyleOf("chiaroscuro", {"transfer.threshold=0.4"}), {}, draft).ok());
+  EXPECT_EQ(workspace.counters().guides_cast, before.guides_cast);
+  scene.view = ViewAngles{50, 10};
+  ASSERT_TRUE(workspace.Paint(scene, StyleOf("chiaroscuro", {"transfer.threshold=0.4"}), {}, draft).ok());
+  EXPECT_EQ(workspace.counters().styles_loaded, before.styles_loaded + 1) << "the choice stays as the view changes";
+  scene.view.reset();
+  EXPECT_EQ(Painted(workspace, scene, StyleOf("oil")).rgba, Stylized(options + "oil").rgba);
+}
+
+TEST(Workspace, ThePictureIsTheSameWithItsField) {
+  Workspace workspace(Context());
+  PictureRequest picture;
+  const Picture plain = Painted(workspace, SceneOf("suzanne"), StyleOf("oil"));
+  picture.keep_field = true;
+  for (int i = 0; i < 2; ++i) {
+    const auto painted = workspace.Paint(SceneOf("suzanne"), StyleOf("oil"), picture);
+    ASSERT_TRUE(painted.ok()) << painted.error().message;
+    EXPECT_EQ(painted->picture.rgba, plain.rgba);
+    ASSERT_TRUE(painted->field);
+    EXPECT_EQ(painted->field->width, 96);
+    EXPECT_EQ(painted->styles, nullptr);
+    ASSERT_EQ(painted->field_styles.size(), 1u);
+    const FieldStyle& style = painted->field_styles.front();
+    EXPECT_EQ(style.given, "oil");
+    EXPECT_GT(style.exemplars.front().width, 0);
+    EXPECT_TRUE(fs::exists(style.exemplars.front().file)) << style.exemplars.front().file;
+    for (const std::int16_t x : painted->field->x) ASSERT_LT(x, style.width);
+  }
+  EXPECT_FALSE(workspace.Paint(SceneOf("suzanne"), StyleOf("oil"), {})->field);
+}
+
+TEST(Workspace, DescribesTheSceneAndCastsNoRay) {
+  Workspace workspace(Context());
+  const auto toys = workspace.Describe(SceneOf("toys"), 1);
+  ASSERT_TRUE(toys.ok()) << toys.error().message;
+  EXPECT_EQ(workspace.counters().guides_cast, 0u);
+  EXPECT_EQ(workspace.counters().structures_built, 0u);
+  EXPECT_FALSE(toys->objects.empty() || toys->materials.empty() || toys->files.empty());
+  ASSERT_TRUE(toys->animation);
+  EXPECT_GT(toys->animation->last, 1);
+  // A view from the eye is the picture itself.
+  SceneRequest scene = SceneOf("suzanne");
+  const Picture seen = Painted(workspace, scene, StyleOf("oil"));
+  const auto suzanne = workspace.Describe(scene, std::nullopt);
+  ASSERT_TRUE(suzanne.ok()) << suzanne.error().message;
+  EXPECT_FALSE(suzanne->style_files.empty());
+  const WorkspaceCounters before = workspace.counters();
+  EXPECT_EQ(Painted(workspace, scene, StyleOf("oil")).rgba, seen.rgba);
+  EXPECT_EQ(workspace.counters().structures_built, before.structures_built) << "describing makes nothing stale";
+  scene.view = suzanne->eye;
+  const Picture orbit = Painted(workspace, scene, StyleOf("oil"));
+  std::size_t other = 0;
+  for (std::size_t i = 3; i < seen.rgba.size(); i += 4) other += (seen.rgba[i] > 0) != (orbit.rgba[i] > 0);
+  EXPECT_LT(other, seen.rgba.size() / 4 / 500);
+}
+
+TEST(Workspace, OneSunTakesThePlaceOfTheLights) {
+  Workspace workspace(Context());
+  SceneRequest scene = SceneOf("suzanne");
+  const auto shade = [&](const LightAngles& light) {
+    scene.light = light;
+    const auto guides = workspace.Guides(scene, std::nullopt, {Layer::kLuminance, Layer::kNormal, Layer::kShadow});
+    EXPECT_TRUE(guides.ok()) << guides.error().message;
+    const GuideSet& set = **guides;
+    const auto coverage = set.Plane(Layer::kCoverage), luminance = set.Plane(Layer::kLuminance);
+    const auto shadow = set.Plane(Layer::kShadow);
+    const glm::dvec3 towards = DirectionFromAngles(light.azimuth, light.elevation);
+    int compared = 0;
+    for (std::size_t i = 0; i < coverage.size(); ++i) {
+      if (coverage[i] < 1.0f || shadow[i] > 0.0f) continue;
+      const glm::dvec3 normal(set.Plane(Layer::kNormal, 0)[i], set.Plane(Layer::kNormal, 1)[i],
+                              set.Plane(Layer::kNormal, 2)[i]);
+      const double expected = std::max(0.0, glm::dot(normal, towards));
+      if (expected < 0.05) continue;
+      EXPECT_NEAR(luminance[i], expected, 0.02) << i;
+      ++compared;
+    }
+    EXPECT_GT(compared, 100);
+  };
+  shade({0.0, 0.0});
+  shade({60.0, 30.0});
+  EXPECT_EQ(workspace.counters().scenes_loaded, 1u);
+}
+
 TEST(Workspace, GivesGuidesAlone) {
   Workspace workspace(Context());
   const auto guides = workspace.Guides(SceneOf("suzanne"), std::nullopt, {Layer::kAlbedo});

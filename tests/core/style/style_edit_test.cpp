@@ -42,7 +42,43 @@ TEST(StyleEdit, OtherFormsOfTheSameTable) {
             "transfer = { threshold = 0.2, levels = 5 }\n");
 }
 
+TEST(StyleEdit, TakesEveryKeyOfTheTable) {
+  for (const StyleKey& key : StyleKeys()) {
+    const std::string value = TomlText(key.Default());
+    const std::string text = "# mine\n\n[[exemplar]]\nimage = \"lit.png\"  # äöü\n";
+    const std::string added = Edited(text, {key.name + "=" + value});
+    EXPECT_THAT(added, testing::HasSubstr("image = \"lit.png\"  # äöü\n")) << key.name;
+    EXPECT_THAT(added, testing::HasSubstr("= " + value + "\n")) << key.name;
+    EXPECT_EQ(Edited(added, {key.name + "=" + value}), added) << key.name;
+  }
+}
+
+TEST(StyleEdit, TextsFlagsAndTables) {
+  EXPECT_EQ(Edited("name = \"Öl\" # ä\n[transfer]\nedge_aware = true\n", {"name=\"Ölß\"", "transfer.edge_aware=false"}),
+            "name = \"Ölß\" # ä\n[transfer]\nedge_aware = false\n");
+  EXPECT_EQ(Edited("name = \"Öl\" # ä\n[transfer]\n", {"licence=\"CC0-1.0\""}),
+            "name = \"Öl\" # ä\nlicence = \"CC0-1.0\"\n[transfer]\n");
+  const std::string weights = "[transfer.guide_weights]\n\"lpe.LDE\" = 1.0  # light\n";
+  EXPECT_EQ(Edited(weights, {"transfer.guide_weights.lpe.LDE=2.5"}),
+            "[transfer.guide_weights]\n\"lpe.LDE\" = 2.5  # light\n");
+  EXPECT_EQ(Edited(weights, {"transfer.guide_weights.normal=0.5"}),
+            "[transfer.guide_weights]\nnormal = 0.5\n\"lpe.LDE\" = 1.0  # light\n");
+  EXPECT_EQ(Edited(weights, {"transfer.levels=5"}), weights + "\n[transfer]\nlevels = 5\n");
+  EXPECT_EQ(Edited("[transfer]\nthreshold = [[1, 0.1], [24, 0.3]]  # moves\n", {"transfer.threshold=0.2"}),
+            "[transfer]\nthreshold = 0.2  # moves\n");
+}
+
+TEST(StyleEdit, ValuesAreExact) {
+  EXPECT_EQ(TomlText(0.1234567890123), "0.1234567890123");
+  EXPECT_EQ(TomlText(std::string("a\"b\\c\n")), "\"a\\\"b\\\\c\\u000a\"");
+  EXPECT_EQ(TomlText(true), "true");
+  EXPECT_EQ(TomlText(std::int64_t(7)), "7");
+}
+
 TEST(StyleEdit, RefusesWhatItCannotChange) {
+  EXPECT_EQ(WithSettings("", {"transfer.bogus=1"}, "s").error().kind, ErrorKind::kUsage);
+  EXPECT_EQ(WithSettings("", {"transfer.paper=\"a\" b"}, "s").error().kind, ErrorKind::kUsage);
+  EXPECT_EQ(WithSettings("", {"name=1\n[transfer]"}, "s").error().kind, ErrorKind::kUsage);
   const auto inline_table = WithSettings("transfer = { levels = 5 }\n", {"transfer.threshold=0.2"}, "my/style.toml");
   ASSERT_FALSE(inline_table.ok());
   EXPECT_THAT(inline_table.error().message, testing::AllOf(testing::HasSubstr("my/style.toml"),

@@ -94,6 +94,48 @@ TEST_F(StyleFile, EveryDocumentedDefaultIsTheRealOne) {
   EXPECT_EQ(FindStyleKey("threshold"), nullptr);
 }
 
+TEST_F(StyleFile, FormsOfKeysAreWhatTheirSettersTake) {
+  for (const StyleKey& key : StyleKeys()) {
+    Style style;
+    const auto takes = [&](const KeyValue& value) { return key.set(style, value, folder_.path()).ok(); };
+    EXPECT_FALSE(key.group.empty()) << key.name;
+    EXPECT_TRUE(takes(key.Default())) << key.name;
+    const bool is_whole = key.kind == KeyKind::kWhole;
+    const auto number = [&](double value) { return is_whole ? KeyValue(std::int64_t(value)) : KeyValue(value); };
+    if (is_whole || key.kind == KeyKind::kNumber) {
+      EXPECT_TRUE(takes(number(key.least)) && takes(number(key.most)) && takes(number(key.least + key.step)))
+          << key.name;
+      EXPECT_FALSE(takes(number(is_whole ? key.least - 1.0 : key.least - 1e-4))) << key.name;
+      EXPECT_EQ(takes(number(key.most + 1.0)), key.unlimited) << key.name;
+      EXPECT_GT(key.step, 0.0) << key.name;
+    }
+    for (const std::string& choice : key.choices) EXPECT_TRUE(takes(choice)) << key.name << " " << choice;
+    EXPECT_EQ(key.kind == KeyKind::kChoice, key.choices.size() >= 2) << key.name;
+    EXPECT_TRUE(key.kind != KeyKind::kChoice || !takes(std::string("bogus"))) << key.name;
+    EXPECT_TRUE(key.kind != KeyKind::kFlag || (takes(true) && takes(false) && !takes(1.0))) << key.name;
+  }
+}
+
+TEST_F(StyleFile, ValuesAreTheFilesOrTheDefaults) {
+  ASSERT_TRUE(
+      Load("name = 'Mine'\n[transfer]\nthreshold = [[-10, 0.25], [10, 0.75]]\ncrease = 30\nedge_aware = false\n"
+           "guide_weights.lpe.LDE = 2\n" +
+           std::string(kExemplar)));
+  const auto values = StyleValues(folder_.path());
+  ASSERT_TRUE(values) << values.error().message;
+  EXPECT_EQ(values->size(), StyleKeys().size());
+  EXPECT_EQ(values->at("name"), KeyValue(std::string("Mine")));
+  EXPECT_EQ(values->at("transfer.threshold"), KeyValue(0.5)) << "at frame 0";
+  EXPECT_EQ(values->at("transfer.crease"), KeyValue(30.0));
+  EXPECT_EQ(values->at("transfer.edge_aware"), KeyValue(false));
+  EXPECT_EQ(values->at("transfer.guide_weights.lpe.LDE"), KeyValue(2.0));
+  EXPECT_EQ(values->at("transfer.levels"), KeyValue(std::int64_t(7)));
+  EXPECT_EQ(StyleValues(folder_ / "lit.png")->at("transfer.crease"), KeyValue(30.0)) << "which style.toml names";
+  ASSERT_TRUE(WritePicture(folder_ / "other.png", NoisyPicture(8, 8)));
+  EXPECT_EQ(StyleValues(folder_ / "other.png")->at("transfer.crease"), KeyValue(60.0));
+  EXPECT_FALSE(StyleValues(folder_ / "nothing"));
+}
+
 struct Valid {
   const char* line;
   std::function<double(const TransferSettings&)> get;

@@ -407,6 +407,31 @@ TEST(Framing, ScenesWithoutExtent) {
   EXPECT_EQ(camera.world_from_camera[3].x, 4.0);
 }
 
+TEST(Framing, AnOrbitStandsWhereItsCameraStands) {
+  const Scene scene = StretchedCube();
+  const SceneSphere sphere = SphereAround(scene);
+  const auto same = [&](const Camera& camera, double aspect) {
+    const Camera orbit = FramingCamera(scene, OrbitOf(sphere, camera, aspect), aspect);
+    for (const int column : {2, 3}) {
+      ExpectNear(glm::dvec3(orbit.world_from_camera[column]), glm::dvec3(camera.world_from_camera[column]), 1e-9);
+    }
+    return orbit.yfov_degrees;
+  };
+  for (const double elevation : {-90.0, -35.0, 0.0, 70.0, 90.0}) {
+    const ViewAngles view{.azimuth = 130, .elevation = elevation, .distance = 9, .right = 1.5, .up = -2, .fov = 50};
+    const Camera camera = FramingCamera(scene, view, 1.5);
+    EXPECT_NEAR(same(camera, 1.5), 50.0, 1e-9);
+    EXPECT_NEAR(OrbitOf(sphere, camera, 1.5).right, 1.5, 1e-9);
+  }
+  Camera wide = FramingCamera(scene, {}, 2.0);
+  wide.fit = CameraFit::kHorizontal, wide.yfov_degrees = 90;
+  EXPECT_NEAR(same(wide, 2.0), 2.0 * std::atan(0.5) * 180 / kPi, 1e-9);
+  Camera flat = FramingCamera(scene, {}, 2.0);
+  flat.orthographic = true, flat.ymag = 3.0;
+  const ViewAngles far_away = OrbitOf(sphere, flat, 2.0);
+  EXPECT_NEAR(far_away.distance * std::tan(0.5 * far_away.fov * kPi / 180), 3.0, 1e-9) << "shows as much";
+}
+
 TEST(Framing, TheKeyLightComesFromTheUpperLeftOfTheView) {
   const Camera camera = FramingCamera(StretchedCube(), {.azimuth = 130, .elevation = -35}, 1.0);
   const Light light = KeyLight(camera);
