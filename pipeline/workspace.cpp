@@ -69,7 +69,8 @@ std::string ChoiceText(const BudgetRequest& budget, const SceneRequest& scene, c
                   picture.upscale, !picture.over.empty(), picture.show ? int(*picture.show) : -1);
   if (budget.quality) return text;
   SceneRequest seen = scene;
-  seen.camera.clear(), seen.view.reset(), seen.light.reset(), seen.seed = 0;
+  seen.camera.clear(), seen.view.reset(), seen.seed = 0;
+  if (seen.light) seen.light = LightAngles();  // its direction does not matter, that it is one sun does
   return text + fmt::format("; {}; isa {}; half {}; field {}\n{}", GuideSettings(seen), scene.isa, scene.half,
                             picture.KeepsField(), SceneStamps(scene.scene));
 }
