@@ -136,9 +136,12 @@ Expected<std::string> WithSettings(std::string text, const std::vector<std::stri
   for (const std::string& setting : settings) {
     const auto [name, value] = Split(setting);
     if (!FindStyleKey(name)) return UsageError(name + " is no key of a style");
-    const auto wanted = Parse("value = " + value);
-    const auto wanted_value = wanted ? EditedValue(Find(*wanted, "value")) : std::nullopt;
-    if (!wanted_value) return UsageError(setting + ": expected a number, true, false or a text in quotes");
+    const std::string line = "value = " + value;
+    const auto wanted = Parse(line);
+    const toml::node* const node = wanted ? Find(*wanted, "value") : nullptr;
+    const auto wanted_value = EditedValue(node);
+    if (!wanted_value || PlaceOf(line, node->source().end) != line.size())
+      return UsageError(setting + ": expected a number, true, false or a text in quotes");
     const auto all = Parse(text);
     if (!all) return InputError(file + " is no TOML: mend it first, `scumble styles check` says where");
     std::vector<std::string> ways;

@@ -15,10 +15,10 @@ constexpr std::size_t kMaxFileBytes = std::size_t(16) << 20;
 constexpr const char* kExpected = "expected NAME=STYLE, as in 'Tree*=charcoal' or Glass=rendered";
 
 std::string Trimmed(std::string_view text) {
-  constexpr const char* kBlanks = " \t\r";
-  const std::size_t begin = text.find_first_not_of(kBlanks);
+  constexpr const char* kBlank = " \t\r";
+  const std::size_t begin = text.find_first_not_of(kBlank);
   if (begin == std::string_view::npos) return {};
-  return std::string(text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1));
+  return std::string(text.substr(begin, text.find_last_not_of(kBlank) - begin + 1));
 }
 
 // The last '=': names of objects are anyone's, names of styles rarely hold one.

@@ -549,9 +549,37 @@ TEST(Workspace, DescribesTheSceneAndCastsNoRay) {
   EXPECT_LT(other, seen.rgba.size() / 4 / 500);
 }
 
+// A unit sphere of fine facets with smooth normals.
+void WriteBall(const std::string& path) {
+  constexpr int kRings = 64, kSides = 128;
+  constexpr double kPi = 3.14159265358979323846;
+  std::ofstream file(path);
+  for (int ring = 0; ring <= kRings; ++ring) {
+    for (int side = 0; side < kSides; ++side) {
+      const double up = kPi * ring / kRings, around = 2.0 * kPi * side / kSides;
+      const double x = std::sin(up) * std::sin(around), y = std::cos(up), z = std::sin(up) * std::cos(around);
+      file << "v " << x << " " << y << " " << z << "\nvn " << x << " " << y << " " << z << "\n";
+    }
+  }
+  for (int ring = 0; ring < kRings; ++ring) {
+    for (int side = 0; side < kSides; ++side) {
+      file << "f";
+      const int next = (side + 1) % kSides;
+      for (const int i :
+           {ring * kSides + side, (ring + 1) * kSides + side, (ring + 1) * kSides + next, ring * kSides + next}) {
+        file << " " << i + 1 << "//" << i + 1;
+      }
+      file << "\n";
+    }
+  }
+}
+
 TEST(Workspace, OneSunTakesThePlaceOfTheLights) {
-  Workspace workspace(Context());
+  const TemporaryFolder folder;
   SceneRequest scene = SceneOf("suzanne");
+  scene.scene = (folder.path() / "ball.obj").string();
+  WriteBall(scene.scene);
+  Workspace workspace(Context());
   const auto shade = [&](const LightAngles& light) {
     scene.light = light;
     const auto guides = workspace.Guides(scene, std::nullopt, {Layer::kLuminance, Layer::kNormal, Layer::kShadow});
@@ -566,7 +594,7 @@ TEST(Workspace, OneSunTakesThePlaceOfTheLights) {
       const glm::dvec3 normal(set.Plane(Layer::kNormal, 0)[i], set.Plane(Layer::kNormal, 1)[i],
                               set.Plane(Layer::kNormal, 2)[i]);
       const double expected = std::max(0.0, glm::dot(normal, towards));
-      if (expected < 0.05) continue;
+      if (expected < 0.1) continue;  // where facets and smooth normals do not agree on the terminator
       EXPECT_NEAR(luminance[i], expected, 0.02) << i;
       ++compared;
     }

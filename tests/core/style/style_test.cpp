@@ -117,10 +117,10 @@ TEST_F(StyleFile, FormsOfKeysAreWhatTheirSettersTake) {
 }
 
 TEST_F(StyleFile, ValuesAreTheFilesOrTheDefaults) {
-  ASSERT_TRUE(
-      Load("name = 'Mine'\n[transfer]\nthreshold = [[-10, 0.25], [10, 0.75]]\ncrease = 30\nedge_aware = false\n"
-           "guide_weights.lpe.LDE = 2\n" +
-           std::string(kExemplar)));
+  std::ofstream(folder_ / "style.toml", std::ios::binary)
+      << "name = 'Mine'\n[transfer]\nthreshold = [[-10, 0.25], [10, 0.75]]\ncrease = 30\nedge_aware = false\n"
+      << "guide_weights.lpe.LDE = 2\n"
+      << kExemplar;
   const auto values = StyleValues(folder_.path());
   ASSERT_TRUE(values) << values.error().message;
   EXPECT_EQ(values->size(), StyleKeys().size());
