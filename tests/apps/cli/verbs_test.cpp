@@ -258,6 +258,11 @@ TEST_F(CliVerbs, EveryVerbSpeaksJson) {
   EXPECT_EQ(json({"info", "style"})["kind"], "style");
   EXPECT_TRUE(json({"styles"}).is_array());
   EXPECT_GE(json({"styles", "--keys"}).size(), 20u);
+  for (const auto& key : json({"styles", "--keys"})) {
+    for (const char* field : {"name", "default", "help", "kind", "group", "needs_preparing"}) {
+      EXPECT_TRUE(key.contains(field)) << key << " " << field;
+    }
+  }
   EXPECT_EQ(json({"styles", "check", "style"})["size"], 64);
 }
 
