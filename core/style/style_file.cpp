@@ -423,7 +423,7 @@ Expected<Style> ReadPictureStyle(const fs::path& path, const StyleRoom& room) {
 }
 
 // Of a value, or of key frames at frame 0.
-std::optional<KeyValue> ValueAtStart(const toml::node& node) {
+std::optional<KeyValue> ValueAtStart(const StyleKey& key, const toml::node& node) {
   const auto* pairs = node.as_array();
   if (!pairs) return ValueOf(node);
   StyleTrack track;
@@ -434,7 +434,10 @@ std::optional<KeyValue> ValueAtStart(const toml::node& node) {
     if (value) track.keys.push_back({frame->get(), *value});
   }
   if (track.keys.empty()) return std::nullopt;
-  return ValueAt(track, 0);
+  if (key.kind == KeyKind::kFile) return ValueAt(track, 0);  // AddTrack would read the files
+  Style scratch;
+  if (!AddTrack(scratch, key, std::move(track))) return std::nullopt;
+  return ValueAt(scratch.tracks.front(), 0);
 }
 
 void CollectValues(const toml::table& table, const std::string& section, std::map<std::string, KeyValue>& values) {
@@ -443,7 +446,7 @@ void CollectValues(const toml::table& table, const std::string& section, std::ma
     if (const auto* inner = node.as_table()) CollectValues(*inner, name + ".", values);
     const auto known = values.find(name);
     if (known == values.end()) continue;
-    auto value = ValueAtStart(node);
+    auto value = ValueAtStart(*FindStyleKey(name), node);
     if (value && std::holds_alternative<double>(known->second)) {
       if (const auto number = AsNumber(*value)) value = *number;
     }
