@@ -165,7 +165,7 @@ void HttpServer::Stop() {
   const std::uint64_t one = 1;
   static_cast<void>(!::write(state_->stop.number(), &one, sizeof(one)));
   state_->accepting.join();
-  for (Worker& worker : state_->workers) worker.thread.join();
+  for (State::Worker& worker : state_->workers) worker.thread.join();
   state_->workers.clear();
   state_->listener = Descriptor();
 }
