@@ -62,7 +62,7 @@ TEST(StudioSafety, HostIsOurs) {
 }
 
 TEST(StudioSafety, CookieHasTheToken) {
-  for (const std::string cookie :
+  for (const std::string& cookie :
        {std::string(), std::string("scumble_4321="), std::string("scumble_4321"),
         "scumble_4322=" + std::string(kTestToken), std::string("scumble_4321=0"),
         "scumble_4321=" + std::string(64, '0'), "xscumble_4321=" + std::string(kTestToken)}) {
