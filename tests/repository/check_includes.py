@@ -28,8 +28,12 @@ LIBRARIES = {
                 ["report", "compare", "mosaic", "energy", "texture", "painting", "crosscheck", "tradeoff"]),
     "pipeline": ("pipeline", {"public", "image", "io", "filter", "guidegen", "style", "transfer", "measure"},
                  ["style", "memory", "scene", "frame", "variant", "quality", "run", "tradeoff", "crosscheck"]),
-    "cli": ("apps/cli", {"public", "image", "io", "filter", "guidegen", "style", "transfer", "measure", "pipeline"},
+    "cli": ("apps/cli", {"public", "image", "io", "filter", "guidegen", "style", "transfer", "measure", "pipeline",
+                         "studio"},
             ["app", "verbs"]),
+    "studio": ("apps/studio",
+               {"public", "image", "io", "filter", "guidegen", "style", "transfer", "measure", "pipeline"},
+               ["http", "session"]),
 }
 
 # Third parties by the start of the included path, and the libraries that may name them.
@@ -53,12 +57,14 @@ THIRD_PARTY = {
     "toml++/": {"style"},
     "apriltag/": {"style"},
     "fmt/": {"measure", "cli", "pipeline"},
-    "nlohmann/": {"measure", "cli"},
+    "nlohmann/": {"measure", "cli", "studio"},
+    "boost/": {"studio"},
+    "turbojpeg.h": {"studio"},
     "CLI/": {"cli"},
 }
 
 # Headers of C, C++ and POSIX.
-STANDARD = re.compile(r"[a-z0-9_]+(\.h)?|sys/[a-z]+\.h")
+STANDARD = re.compile(r"[a-z0-9_]+(\.h)?|(sys|netinet|arpa)/[a-z]+\.h")
 
 INCLUDE = re.compile(r'\s*#\s*include\s*(?:"([^"]+)"|<([^>]+)>)')
 
