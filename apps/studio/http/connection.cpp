@@ -75,7 +75,7 @@ class Connection {
     return reader_.stage() != Stage::kFailed || Refuse(reader_.failure());
   }
 
-  bool ReadBody(const Target& target) {
+  bool ReadBody(const RequestTarget& target) {
     const Clock::time_point deadline = Clock::now() + site_.times.body;
     reader_.ReadBody(BodyLimit(target));
     if (reader_.stage() == Stage::kBody && reader_.head().expects_continue &&
@@ -95,7 +95,7 @@ class Connection {
   // False: the connection ends.
   bool AnswerOne() {
     const RequestHead head = reader_.head();
-    const Expected<Target> target = ParseTarget(head.target);
+    const Expected<RequestTarget> target = ParseTarget(head.target);
     if (const auto refusal = CheckRequest(head, target, site_.rules)) {
       if (head.has_body || !head.keep_alive) return Refuse(*refusal);
       reader_.ReadBody(0);
@@ -110,7 +110,7 @@ class Connection {
     return Send(AnswerTo(head, *target), head);
   }
 
-  HttpResponse AnswerTo(const RequestHead& head, const Target& target) {
+  HttpResponse AnswerTo(const RequestHead& head, const RequestTarget& target) {
     if (target.path == "/") return FileAnswer(site_, "index.html", head.if_none_match);
     if (target.path.starts_with(kFiles)) return FileAnswer(site_, target.path.substr(5), head.if_none_match);
     if (!target.path.starts_with(kCalls)) return ErrorAnswer(404, "usage", "there is nothing at this address");

@@ -33,7 +33,7 @@ std::optional<Refusal> CheckHost(const RequestHead& head, int port) {
   return Refusal{403, "the request is for another host: open the address that scumble studio printed"};
 }
 
-std::optional<Refusal> CheckMethod(const RequestHead& head, const Target& target) {
+std::optional<Refusal> CheckMethod(const RequestHead& head, const RequestTarget& target) {
   if (IsRead(head)) {
     if (head.has_body) return Refusal{400, "a request that only reads has no body"};
     return std::nullopt;
@@ -43,7 +43,7 @@ std::optional<Refusal> CheckMethod(const RequestHead& head, const Target& target
   return Refusal{405, "the method is not for this address: expected GET, or PATCH and POST of calls under /api/"};
 }
 
-std::optional<Refusal> CheckOrigin(const RequestHead& head, const Target& target) {
+std::optional<Refusal> CheckOrigin(const RequestHead& head, const RequestTarget& target) {
   if (IsRead(head) && target.path == "/") return std::nullopt;
   const bool from_us = head.sec_fetch_site.empty() || head.sec_fetch_site == "same-origin";
   const bool typed_in = IsRead(head) && head.sec_fetch_site == "none";
@@ -54,7 +54,7 @@ std::optional<Refusal> CheckOrigin(const RequestHead& head, const Target& target
   return std::nullopt;
 }
 
-std::optional<Refusal> CheckChange(const RequestHead& head, const Target& target) {
+std::optional<Refusal> CheckChange(const RequestHead& head, const RequestTarget& target) {
   if (IsRead(head)) return std::nullopt;
   if (head.x_scumble != "1") return Refusal{403, "the header X-Scumble: 1 is missing, which every change needs"};
   const std::string_view expected = target.path == kPaint ? "image/png" : "application/json";
@@ -78,13 +78,14 @@ std::optional<Refusal> CheckCookie(const RequestHead& head, const SafetyRules& r
                  "studio printed, with its token"};
 }
 
-bool IsFirstVisit(const RequestHead& head, const Target& target, const SafetyRules& rules) {
+bool IsFirstVisit(const RequestHead& head, const RequestTarget& target, const SafetyRules& rules) {
   const auto token = target.query.find("token");
   return IsRead(head) && target.path == "/" && token != target.query.end() &&
          EqualInConstantTime(token->second, rules.token);
 }
 
-std::optional<Refusal> CheckRequest(const RequestHead& head, const Expected<Target>& target, const SafetyRules& rules) {
+std::optional<Refusal> CheckRequest(const RequestHead& head, const Expected<RequestTarget>& target,
+                                    const SafetyRules& rules) {
   if (auto refusal = CheckHost(head, rules.port)) return refusal;
   if (head.is_ambiguous) return Refusal{400, "the request's header is ambiguous"};
   if (!target) return Refusal{400, target.error().message};
@@ -105,6 +106,6 @@ std::string PlainContentType(const std::string& text) {
   return LowerCase(std::string(Trimmed(std::string_view(text).substr(0, text.find(';')))));
 }
 
-std::uint64_t BodyLimit(const Target& target) { return target.path == kPaint ? 64u << 20 : 64u << 10; }
+std::uint64_t BodyLimit(const RequestTarget& target) { return target.path == kPaint ? 64u << 20 : 64u << 10; }
 
 }  // namespace scumble

@@ -43,19 +43,20 @@ struct Refusal {
 // its own.
 std::optional<Refusal> CheckHost(const RequestHead& head, int port);
 // GET and HEAD anywhere, PATCH and POST of calls.
-std::optional<Refusal> CheckMethod(const RequestHead& head, const Target& target);
+std::optional<Refusal> CheckMethod(const RequestHead& head, const RequestTarget& target);
 // The page itself may be reached from anywhere. All else is asked for by it alone, as Sec-Fetch-Site and Origin say.
-std::optional<Refusal> CheckOrigin(const RequestHead& head, const Target& target);
+std::optional<Refusal> CheckOrigin(const RequestHead& head, const RequestTarget& target);
 // Changes have the header X-Scumble and a content type that no form can send.
-std::optional<Refusal> CheckChange(const RequestHead& head, const Target& target);
+std::optional<Refusal> CheckChange(const RequestHead& head, const RequestTarget& target);
 // The cookie has the token.
 std::optional<Refusal> CheckCookie(const RequestHead& head, const SafetyRules& rules);
 
 // Whether this is the first visit, "/?token=T" with the right token: it needs no cookie and gets one.
-bool IsFirstVisit(const RequestHead& head, const Target& target, const SafetyRules& rules);
+bool IsFirstVisit(const RequestHead& head, const RequestTarget& target, const SafetyRules& rules);
 
 // All of these in this order; nothing where the request may be answered.
-std::optional<Refusal> CheckRequest(const RequestHead& head, const Expected<Target>& target, const SafetyRules& rules);
+std::optional<Refusal> CheckRequest(const RequestHead& head, const Expected<RequestTarget>& target,
+                                    const SafetyRules& rules);
 
 // The cookie's name has the port: a browser sends the cookies of all ports of a host.
 std::string CookieName(int port);
@@ -65,6 +66,6 @@ std::string SetCookieText(const SafetyRules& rules);
 std::string PlainContentType(const std::string& text);
 
 // Bytes of a body.
-std::uint64_t BodyLimit(const Target& target);
+std::uint64_t BodyLimit(const RequestTarget& target);
 
 }  // namespace scumble

@@ -44,14 +44,14 @@ std::optional<std::string> Decode(std::string_view text, bool is_query) {
 
 }  // namespace
 
-Expected<Target> ParseTarget(std::string_view text) {
+Expected<RequestTarget> ParseTarget(std::string_view text) {
   const Error refused = UsageError("the address is malformed: expected a path and a query as the page sends them");
   const std::size_t question = text.find('?');
   const auto path = Decode(text.substr(0, question), false);
   if (!path || !path->starts_with('/') || path->find("..") != path->npos || path->find("//") != path->npos) {
     return refused;
   }
-  Target target{*path, {}};
+  RequestTarget target{*path, {}};
   std::string_view rest = question == text.npos ? std::string_view() : text.substr(question + 1);
   while (!rest.empty()) {
     const std::string_view pair = rest.substr(0, rest.find('&'));

@@ -9,13 +9,13 @@
 
 namespace scumble {
 
-struct Target {
+struct RequestTarget {
   std::string path;  // begins with "/"
   std::map<std::string, std::string> query;
 };
 
 // kUsage for what no page of ours sends: another form than a path, a percent sign without two digits, control
 // characters, text that is no UTF-8, "..", "//", and a name that stands in the query twice.
-Expected<Target> ParseTarget(std::string_view text);
+Expected<RequestTarget> ParseTarget(std::string_view text);
 
 }  // namespace scumble
