@@ -288,6 +288,28 @@ def make_text():
         write("options", f"line{i}", words.replace(" ", "\n"))
 
 
+def make_requests():
+    """Requests to the studio's server, with the port and the token of tests/fuzz/http_fuzz.cpp."""
+    end = "\r\n"
+    host = "Host: 127.0.0.1:4321" + end
+    ours = host + "Cookie: a=b; scumble_4321=0123456789abcdef" + end
+    change = (ours + "Origin: http://127.0.0.1:4321" + end + "Sec-Fetch-Site: same-origin" + end + "X-Scumble: 1" + end
+              + "Content-Type: application/json" + end)
+    get = f"GET /api/pick?x=3&y=%34 HTTP/1.1{end}{ours}{end}"
+    write("http", "first", f"GET /?token=0123456789abcdef HTTP/1.1{end}{host}Sec-Fetch-Site: cross-site{end}{end}")
+    write("http", "page", f"GET / HTTP/1.1{end}{ours}If-None-Match: \"1\"{end}{end}")
+    write("http", "events", f"GET /api/events HTTP/1.1{end}{ours}Last-Event-ID: 7{end}{end}")
+    write("http", "two", get + f"HEAD /web/page.js HTTP/1.1{end}{ours}{end}")
+    write("http", "patch", f"PATCH /api/state HTTP/1.1{end}{change}Content-Length: 11{end}{end}" + '{"frame":2}' + get)
+    write("http", "chunked", f"POST /api/save-as HTTP/1.1{end}{change}Transfer-Encoding: chunked{end}{end}"
+          f"5;a=b{end}" + '{"nam' + f"{end}9{end}" + 'e": "x"}\n' + f"{end}0{end}Trailer: t{end}{end}" + get)
+    write("http", "paint", f"POST /api/paint?exemplar=0&stamp=1 HTTP/1.1{end}{ours}X-Scumble: 1{end}"
+          f"Content-Type: image/png{end}Content-Length: 4{end}Expect: 100-continue{end}{end}\x00PNG")
+    write("http", "foreign", f"POST /api/save HTTP/1.1{end}Host: evil.example{end}Origin: null{end}"
+          f"Content-Type: text/plain{end}Content-Length: 1{end}Content-Length: 1{end}{end}x")
+    write("http", "old", f"GET /web/..%2f%00 HTTP/1.0{end}Connection: keep-alive{end}{end}")
+
+
 def make_pictures():
     for kind, bits in ((0, 1), (0, 16), (2, 8), (3, 8), (4, 8), (6, 8), (6, 16)):
         write("png", f"kind{kind}_{bits}.png", png(3, 3, kind, bits))
@@ -376,5 +398,6 @@ if __name__ == "__main__":
     make_fragments()
     make_gltf()
     make_text()
+    make_requests()
     make_pictures()
     make_other_pictures()

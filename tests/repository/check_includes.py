@@ -28,8 +28,12 @@ LIBRARIES = {
                 ["report", "compare", "mosaic", "energy", "texture", "painting", "crosscheck", "tradeoff"]),
     "pipeline": ("pipeline", {"public", "image", "io", "filter", "guidegen", "style", "transfer", "measure"},
                  ["style", "memory", "scene", "frame", "variant", "quality", "run", "tradeoff", "crosscheck"]),
-    "cli": ("apps/cli", {"public", "image", "io", "filter", "guidegen", "style", "transfer", "measure", "pipeline"},
+    "cli": ("apps/cli", {"public", "image", "io", "filter", "guidegen", "style", "transfer", "measure", "pipeline",
+                         "studio"},
             ["app", "verbs"]),
+    "studio": ("apps/studio",
+               {"public", "image", "io", "filter", "guidegen", "style", "transfer", "measure", "pipeline"},
+               ["http", "session"]),
 }
 
 # Third parties by the start of the included path, and the libraries that may name them.
@@ -52,13 +56,15 @@ THIRD_PARTY = {
     "hwy/": {"filter", "guidegen", "transfer"},
     "toml++/": {"style"},
     "apriltag/": {"style"},
-    "fmt/": {"measure", "cli", "pipeline"},
-    "nlohmann/": {"measure", "cli", "pipeline"},
+    "fmt/": {"measure", "cli", "pipeline", "studio"},
+    "nlohmann/": {"measure", "cli", "pipeline", "studio"},
+    "boost/": {"studio"},
+    "turbojpeg.h": {"studio"},
     "CLI/": {"cli"},
 }
 
 # Headers of C, C++ and POSIX.
-STANDARD = re.compile(r"[a-z0-9_]+(\.h)?|sys/[a-z]+\.h")
+STANDARD = re.compile(r"[a-z0-9_]+(\.h)?|(sys|netinet|arpa)/[a-z]+\.h")
 
 INCLUDE = re.compile(r'\s*#\s*include\s*(?:"([^"]+)"|<([^>]+)>)')
 

@@ -47,6 +47,7 @@ void AddCompareVerb(CLI::App& app, Globals& globals, Action& chosen);
 void AddInfoVerb(CLI::App& app, Globals& globals, Action& chosen);
 void AddStylesVerb(CLI::App& app, Globals& globals, Action& chosen);
 void AddTradeoffVerb(CLI::App& app, Globals& globals, Action& chosen);
+void AddStudioVerb(CLI::App& app, Globals& globals, Action& chosen);
 
 ExitCode ExitCodeFor(ErrorKind kind);
 

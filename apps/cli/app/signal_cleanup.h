@@ -9,4 +9,10 @@ namespace scumble {
 // early.
 void CleanUpOnSignals();
 
+// From now on the signals of a user who wants the program to end (SIGINT, SIGTERM, SIGHUP) only set what
+// StopIsRequested says, so that it ends by itself. A second one acts as CleanUpOnSignals has it. An ignored signal
+// stays ignored.
+void StopOnSignals();
+bool StopIsRequested();
+
 }  // namespace scumble
