@@ -373,6 +373,7 @@ Expected<PaintedFrame> Workspace::State::Paint(SceneRequest scene, const StyleRe
   return PaintedFrame{std::move(painted.picture),
                       std::shared_ptr<const GuideSet>(guides, &guides->guides),
                       std::move(painted.report),
+                      std::move(painted.write),
                       std::move(painted.kept.field),
                       std::move(painted.kept.styles),
                       std::move(painted.kept.field_styles),

@@ -22,6 +22,7 @@
 
 #include "core/image/guides.h"
 #include "core/image/status.h"
+#include "core/io/picture_file.h"
 #include "pipeline/frame/frame_report.h"
 #include "pipeline/frame/paint_picture.h"
 #include "pipeline/quality/budget_choice.h"
@@ -45,7 +46,8 @@ struct WorkspaceCounters {
 struct PaintedFrame {
   Picture picture;
   std::shared_ptr<const GuideSet> guides;
-  FrameReport report;  // without the step of writing
+  FrameReport report;         // without the step of writing
+  PictureWriteOptions write;  // that make a file of the picture the one of `scumble stylize`
   // Only with PictureRequest::keep_field, as KeptField has them.
   std::shared_ptr<const SourceField> field;
   std::shared_ptr<const StyleMap> styles;

@@ -156,6 +156,66 @@ Expected<MergedHeader> InspectMergedLayers(const std::filesystem::path& path) {
   return InspectPng(zip, kMerged, path.string());
 }
 
+void PutOver(Picture& below, const Picture& above) {
+  for (std::size_t i = 0; i < below.rgba.size(); i += 4) {
+    const std::uint64_t a = above.rgba[i + 3], whole = 65535;
+    if (a == 0) continue;
+    const std::uint64_t rest = std::uint64_t(below.rgba[i + 3]) * (whole - a), sum = a * whole + rest;
+    for (std::size_t c = 0; c < 3; ++c) {
+      below.rgba[i + c] =
+          static_cast<std::uint16_t>((above.rgba[i + c] * a * whole + below.rgba[i + c] * rest + sum / 2) / sum);
+    }
+    below.rgba[i + 3] = static_cast<std::uint16_t>((sum + whole / 2) / whole);
+  }
+}
+
+Expected<std::vector<std::byte>> WithStrokes(const std::filesystem::path& path, const std::string& layer,
+                                             const Picture& strokes) {
+  constexpr const char* kStrokes = "data/scumble.png";
+  constexpr std::size_t kMostStackBytes = std::size_t(16) << 20;
+  SCUMBLE_ASSIGN(const ZipReader zip, OpenMerged(path));
+  SCUMBLE_ASSIGN(Picture merged, ReadPng(zip, kMerged, path.string()));
+  if (merged.width != strokes.width || merged.height != strokes.height) {
+    return UsageError("the strokes are not of the size of " + path.string());
+  }
+  PutOver(merged, strokes);
+  Picture painted = strokes;
+  const bool is_there = zip.Has(kStrokes);
+  if (is_there) {
+    SCUMBLE_ASSIGN(Picture before, ReadPng(zip, kStrokes, path.string()));
+    if (before.width == strokes.width && before.height == strokes.height) {
+      PutOver(before, strokes);
+      painted = std::move(before);
+    }
+  }
+  SCUMBLE_ASSIGN(const auto stack, zip.Read("stack.xml", kMostStackBytes));
+  std::string xml(reinterpret_cast<const char*>(stack.data()), stack.size());
+  if (!is_there) {
+    const std::size_t tag = xml.find("<stack"), end = tag == xml.npos ? tag : xml.find('>', tag);
+    if (end == xml.npos || xml[end - 1] == '/') {
+      return InputError("cannot add a layer to " + path.string() + ": its stack.xml has no layers");
+    }
+    xml.insert(end + 1, "\n    <layer name=\"" + Escaped(layer) + "\" src=\"" + kStrokes +
+                            "\" x=\"0\" y=\"0\" opacity=\"1.0\" visibility=\"visible\" "
+                            "composite-op=\"svg:src-over\"/>");
+  }
+  std::vector<ZipEntry> entries{{"mimetype", Bytes(kMimetype)}, {"stack.xml", Bytes(xml), true}};
+  for (const auto& [name, picture] : {std::pair{kStrokes, &painted}, {kMerged, &merged}}) {
+    SCUMBLE_ASSIGN(auto png, EncodePng(*picture));
+    entries.push_back({name, std::move(png)});
+  }
+  SCUMBLE_ASSIGN(auto thumbnail, EncodePng(Thumbnail(merged)));
+  entries.push_back({"Thumbnails/thumbnail.png", std::move(thumbnail)});
+  for (const std::string& name : zip.names()) {
+    const bool is_written =
+        std::any_of(entries.begin(), entries.end(), [&](auto& entry) { return entry.name == name; });
+    if (is_written || name.ends_with('/')) continue;
+    SCUMBLE_ASSIGN(auto bytes, zip.Read(name, kMaxPngBytes));
+    entries.push_back({name, std::move(bytes)});
+  }
+  return EncodeZip(entries, path.string());
+}
+
 bool SameLayers(const std::filesystem::path& path, std::span<const RasterLayer> layers, const Picture& merged) {
   const auto zip = ZipReader::Open(path);
   constexpr std::size_t kOthers = 4;  // mimetype, stack.xml, mergedimage.png, the thumbnail

@@ -39,6 +39,15 @@ struct MergedHeader {
 };
 Expected<MergedHeader> InspectMergedLayers(const std::filesystem::path& path);
 
+// Puts strokes over a picture of the same size: Porter and Duff's "over" (1984) of straight alpha, rounded to the
+// nearest.
+void PutOver(Picture& below, const Picture& above);
+
+// The bytes of the file with strokes, of the merged picture's size, on a layer of this name on top; onto the layer of
+// that name that an earlier call made, if it is there. Everything else of the file is kept. Thread-safe.
+Expected<std::vector<std::byte>> WithStrokes(const std::filesystem::path& path, const std::string& layer,
+                                             const Picture& strokes);
+
 // Whether a file holds the same pictures, layer by layer, under the same names and settings, as EncodeOpenRaster makes
 // of these, at any dpi. False for a file that cannot be read. Thread-safe.
 bool SameLayers(const std::filesystem::path& path, std::span<const RasterLayer> layers, const Picture& merged);

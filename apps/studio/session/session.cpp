@@ -1,0 +1,309 @@
+#include "apps/studio/session/session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <thread>
+
+#include "apps/studio/session/session_state.h"
+#include "core/io/picture_file.h"
+#include "core/style/style_file.h"
+#include "pipeline/scene/blender_scene.h"
+
+namespace scumble {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Tells the page what takes longer than half a second, five times a second at most.
+std::function<Progress(const std::string&)> BusyReports(EventHub& events) {
+  return [&events](const std::string& label) -> Progress {
+    return [&events, label, next = Clock::now() + std::chrono::milliseconds(500)](double share) mutable {
+      if (Clock::now() >= next) {
+        next = Clock::now() + std::chrono::milliseconds(200);
+        events.Publish("busy", nlohmann::json{{"label", label}, {"share", share}}.dump());
+      }
+      return true;
+    };
+  };
+}
+
+RunContext ContextOf(const RunContext& context, EventHub& events) {
+  RunContext ours = context;
+  ours.on_message = nullptr;  // notes repeat with every picture
+  ours.clock = nullptr;
+  ours.on_progress = BusyReports(events);
+  return ours;
+}
+
+std::string StampOfFile(const std::filesystem::path& file) {
+  std::error_code failed;
+  const auto time = std::filesystem::last_write_time(file, failed);
+  const auto size = std::filesystem::file_size(file, failed);
+  return failed ? "gone" : fmt::format("{} {}", time.time_since_epoch().count(), size);
+}
+
+Expected<std::shared_ptr<const StyleFacts>> ReadFacts(const StyleEntry& style) {
+  StyleFacts facts;
+  SCUMBLE_ASSIGN(facts.values, StyleValues(style.path));
+  SCUMBLE_ASSIGN(const Style read, LoadStyle(style.path));
+  for (const Exemplar& one : read.exemplars) {
+    SCUMBLE_ASSIGN(const PictureHeader header, InspectPicture(one.name));
+    facts.exemplars.push_back({one.name, header.width, header.height, one.luminance});
+  }
+  return std::make_shared<const StyleFacts>(std::move(facts));
+}
+
+}  // namespace
+
+Session::State::State(const StudioOptions& given, const RunContext& run, EventHub& hub)
+    : options(given),
+      context(ContextOf(run, hub)),
+      events(hub),
+      finals(context),
+      drafts(context),
+      others(context),
+      watch(std::make_unique<FileWatch>([this](const std::vector<std::string>&) { FilesHaveChanged(); })) {}
+
+Moment Session::State::Now() {
+  const std::lock_guard lock(mutex);
+  return {state, revision, generation};
+}
+
+Catalogue Session::State::KnownCatalogue() {
+  const std::lock_guard lock(mutex);
+  return catalogue;
+}
+
+PictureJob Session::State::JobAt(const Moment& moment, std::optional<Explanation> show) {
+  PictureJob job = JobOf(moment.state, KnownCatalogue(), options.scene);
+  job.key += fmt::format(" generation {}", moment.generation);
+  if (show) job.key += fmt::format(" show {}", int(*show));
+  job.picture.show = show;
+  return job;
+}
+
+Lane& Session::State::LaneOf(Lane& wanted, const PictureJob& job) {
+  return IsBlenderScene(job.scene.scene) ? finals : wanted;
+}
+
+Expected<SceneDescription> Session::State::Describe(const Moment& moment) {
+  const PictureJob job = JobAt(moment, std::nullopt);
+  const std::string key = fmt::format("{} {} {} {} {} {}", job.scene.scene, job.scene.camera, moment.generation,
+                                      job.picture.frame.value_or(-1), SizeToText(job.scene.size),
+                                      job.scene.view ? ToJson(*job.scene.view).dump() : "");
+  {
+    const std::lock_guard lock(mutex);
+    const auto known = descriptions.find(key);
+    if (known != descriptions.end()) return known->second;
+  }
+  const Expected<SceneDescription> described = LaneOf(drafts, job).Describe(job.scene, job.picture.frame);
+  if (!described && described.error().kind == ErrorKind::kCancelled) return described;
+  const std::lock_guard lock(mutex);
+  constexpr std::size_t kMostDescriptions = 64;
+  if (descriptions.size() >= kMostDescriptions) descriptions.clear();
+  descriptions.emplace(key, described);
+  return described;
+}
+
+Expected<std::shared_ptr<const StyleFacts>> Session::State::FactsOf(const StyleEntry& style) {
+  const std::string stamp = StampOfFile(style.toml().empty() ? style.path : style.toml());
+  {
+    const std::lock_guard lock(mutex);
+    const auto known = facts.find(style.id);
+    if (known != facts.end() && known->second->stamp == stamp) return known->second;
+  }
+  SCUMBLE_ASSIGN(const std::shared_ptr<const StyleFacts> read, ReadFacts(style));
+  StyleFacts stamped = *read;
+  stamped.stamp = stamp;
+  auto kept = std::make_shared<const StyleFacts>(std::move(stamped));
+  const std::lock_guard lock(mutex);
+  facts[style.id] = kept;
+  return kept;
+}
+
+std::vector<StyleEntry> Session::State::StylesOf(const StudioState& of) {
+  const Catalogue known = KnownCatalogue();
+  std::vector<StyleEntry> styles;
+  const auto add = [&](const std::string& id) {
+    const StyleEntry* const entry = known.FindStyle(id);
+    const bool is_there = std::any_of(styles.begin(), styles.end(), [&](auto& style) { return style.id == id; });
+    if (entry && !is_there) styles.push_back(*entry);
+  };
+  add(of.style);
+  for (const StudioAssignment& one : of.assignments) add(one.style);
+  return styles;
+}
+
+nlohmann::json Session::State::StateJson() {
+  const Moment moment = Now();
+  nlohmann::json json = ToJson(moment.state);
+  json["revision"] = moment.revision;
+  const Catalogue known = KnownCatalogue();
+  json["scenes"] = json["styles"] = json["exemplars"] = nlohmann::json::array();
+  for (const SceneEntry& scene : known.scenes) {
+    json["scenes"].push_back({{"id", scene.id}, {"name", scene.id}, {"bundled", scene.bundled}});
+  }
+  for (const StyleEntry& style : known.styles) {
+    json["styles"].push_back({{"id", style.id},
+                              {"name", style.id},
+                              {"bundled", style.bundled},
+                              {"writable", style.IsWritable()},
+                              {"save_as", true}});
+  }
+  std::optional<Error> found;
+  int index = 0;
+  json["file_keys"] = nlohmann::json::object();
+  for (const StyleEntry& style : StylesOf(moment.state)) {
+    const auto of = FactsOf(style);
+    if (!of) found = of.error();
+    for (std::size_t i = 0; of && i < (*of)->exemplars.size(); ++i) {
+      const ExemplarFile& one = (*of)->exemplars[i];
+      json["exemplars"].push_back({{"index", i},
+                                   {"style", index},
+                                   {"style_id", style.id},
+                                   {"file", std::filesystem::path(one.file).filename().string()},
+                                   {"width", one.width},
+                                   {"height", one.height},
+                                   {"luminance", one.luminance ? nlohmann::json(*one.luminance) : nullptr}});
+    }
+    for (const StyleKey& key : StyleKeys()) {
+      if (index > 0 || !of) break;
+      const auto value = (*of)->values.find(key.name);
+      if (value != (*of)->values.end()) {
+        json["file_keys"][key.name] = std::visit([](const auto& held) { return nlohmann::json(held); }, value->second);
+      }
+    }
+    ++index;
+  }
+  SceneDescription scene;
+  if (!moment.state.scene.empty()) {
+    if (const auto described = Describe(moment)) {
+      scene = *described;
+    } else if (described.error().kind != ErrorKind::kCancelled) {
+      found = described.error();
+    }
+  }
+  json["cameras"] = scene.cameras, json["objects"] = scene.objects, json["materials"] = scene.materials;
+  json["lights"] = scene.lights, json["eye"] = ToJson(scene.eye);
+  json["animation"] = nullptr;
+  if (scene.animation) {
+    json["animation"] = {
+        {"first", scene.animation->first}, {"last", scene.animation->last}, {"fps", scene.animation->fps}};
+  }
+  const std::lock_guard lock(mutex);
+  if (problem) found = problem;
+  json["problem"] = found ? ToJson(*found) : nlohmann::json();
+  return json;
+}
+
+HttpResponse Session::State::PatchState(const HttpRequest& request) {
+  const Expected<nlohmann::json> body = BodyOf(request);
+  if (!body) return ErrorAnswer(body.error());
+  {
+    const std::lock_guard lock(mutex);
+    Expected<StudioState> next = Patched(state, *body, catalogue);
+    if (!next) return ErrorAnswer(next.error(), next.error().kind == ErrorKind::kInput ? 404 : 400);
+    state = std::move(*next);
+    ++revision;
+  }
+  Tell("patch");
+  return JsonAnswer(StateJson());
+}
+
+void Session::State::Change(const std::function<void()>& change, const std::string& why) {
+  {
+    const std::lock_guard lock(mutex);
+    change();
+    ++revision;
+  }
+  Tell(why);
+}
+
+void Session::State::Tell(const std::string& why) {
+  events.Publish("state", nlohmann::json{{"revision", Now().revision}, {"why", why}}.dump());
+}
+
+// After a picture: what it was made of.
+void Session::State::WatchFilesOf(const Moment& moment) {
+  const PictureJob job = JobAt(moment, std::nullopt);
+  const Expected<SceneDescription> described = LaneOf(finals, job).Describe(job.scene, job.picture.frame);
+  if (!described) return;
+  std::vector<std::string> files = described->files;
+  files.insert(files.end(), described->style_files.begin(), described->style_files.end());
+  watch->Watch(files);
+}
+
+void Session::State::SetProblem(std::optional<Error> now) {
+  nlohmann::json text;
+  {
+    const std::lock_guard lock(mutex);
+    if (!problem && !now) return;
+    problem = now;
+    if (now) text = ToJson(*now);
+  }
+  events.Publish("problem", text.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
+// The picture is painted before the page is told: it finds it ready. A file that cannot be read may be half written: it
+// is tried for two seconds before the page is told of that.
+void Session::State::FilesHaveChanged() {
+  const auto deadline = Clock::now() + std::chrono::seconds(2);
+  while (!stopped) {
+    Moment moment;
+    {
+      const std::lock_guard lock(mutex);
+      ++generation;
+      moment = {state, revision, generation};
+    }
+    if (moment.state.scene.empty() || moment.state.style.empty()) return;
+    const PictureJob job = JobAt(moment, std::nullopt);
+    const Expected<Lane::Painted> painted = LaneOf(finals, job).Paint(job);
+    if (painted || painted.error().kind == ErrorKind::kCancelled) {
+      SetProblem(std::nullopt);
+      Change([] {}, "files");
+      if (painted) WatchFilesOf(moment);
+      return;
+    }
+    if (watch->SeesChanges()) return;  // it is called again
+    if (Clock::now() > deadline) return SetProblem(painted.error());
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+}
+
+Session::Session(std::unique_ptr<State> state) : state_(std::move(state)) {}
+
+Session::~Session() {
+  Stop();
+  state_->watch.reset();
+}
+
+void Session::Stop() {
+  state_->stopped = true;
+  state_->finals.Stop(), state_->drafts.Stop(), state_->others.Stop();
+}
+
+Expected<std::unique_ptr<Session>> Session::Open(const StudioOptions& options, const RunContext& context,
+                                                 EventHub& events) {
+  SCUMBLE_ASSIGN(Catalogue catalogue, MakeCatalogue(options.scene.scene, options.styles, context));
+  auto state = std::make_unique<State>(options, context, events);
+  StudioState& first = state->state;
+  // Something to look at from the start: Suzanne in oil, where nothing is named.
+  const auto choose = [](const auto& entries, const char* wanted, bool is_named) -> std::string {
+    if (entries.empty()) return "";
+    for (const auto& entry : entries) {
+      if (!is_named && entry.id == wanted) return entry.id;
+    }
+    return entries.front().id;
+  };
+  first.scene = choose(catalogue.scenes, "suzanne", !options.scene.scene.empty());
+  first.style = choose(catalogue.styles, "oil", !options.styles.empty());
+  first.camera = options.scene.camera, first.view = options.scene.view, first.light = options.scene.light;
+  first.size = options.scene.size, first.seed = options.seed, first.frame = options.scene.blender.frame;
+  state->catalogue = std::move(catalogue);
+  return std::unique_ptr<Session>(new Session(std::move(state)));
+}
+
+}  // namespace scumble

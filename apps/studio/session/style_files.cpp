@@ -1,0 +1,105 @@
+#include "apps/studio/session/style_files.h"
+
+#include <fmt/format.h>
+
+#include <system_error>
+
+#include "core/io/file/atomic_file.h"
+#include "core/style/style_edit.h"
+#include "core/style/style_file.h"
+
+namespace scumble {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> SettingsOf(const std::map<std::string, KeyValue>& keys) {
+  std::vector<std::string> settings;
+  for (const auto& [key, value] : keys) settings.push_back(key + "=" + TomlText(value));
+  return settings;
+}
+
+Status CheckName(const std::string& name) {
+  constexpr std::size_t kMostLetters = 64;
+  const bool is_plain =
+      name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789 _-") == std::string::npos;
+  if (!name.empty() && name.size() <= kMostLetters && is_plain && name.front() != ' ' && name.front() != '-' &&
+      name.back() != ' ') {
+    return Ok();
+  }
+  return UsageError(
+      "a style's name has 1 to 64 letters A to Z, digits, spaces, _ and -, and begins with a letter, a "
+      "digit or _: give another name");
+}
+
+// The files of a style are those of its folder, hidden ones and folders inside left out.
+Status CopyStyle(const StyleEntry& style, const fs::path& to) {
+  std::error_code failed;
+  const bool is_bare = style.toml().empty();
+  const fs::path from = is_bare ? style.path : style.toml().parent_path();
+  if (is_bare) {
+    fs::copy_file(from, to / from.filename(), failed);
+  } else {
+    for (const fs::directory_entry& entry : fs::directory_iterator(from.empty() ? "." : from, failed)) {
+      if (!entry.is_regular_file() || entry.path().filename().string().front() == '.') continue;
+      fs::copy_file(entry.path(), to / entry.path().filename(), failed);
+      if (failed) break;
+      fs::permissions(to / entry.path().filename(), fs::perms::owner_write, fs::perm_options::add, failed);
+    }
+  }
+  if (failed) {
+    return OutputError("cannot copy the files of " + from.string() + " to " + to.string() + ": " + failed.message());
+  }
+  return Ok();
+}
+
+}  // namespace
+
+Expected<std::string> StyleText(const StyleEntry& style, const std::map<std::string, KeyValue>& keys) {
+  const fs::path file = style.toml();
+  std::string text;
+  if (file.empty()) {
+    text = fmt::format("[[exemplar]]\nimage = {}\n", TomlText(KeyValue(style.path.filename().string())));
+  } else {
+    SCUMBLE_ASSIGN(const std::vector<std::byte> bytes, ReadWholeFile(file, kMaxStyleBytes));
+    text.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  }
+  return WithSettings(std::move(text), SettingsOf(keys), file.empty() ? style.path.string() : file.string());
+}
+
+Status SaveStyle(const StyleEntry& style, const std::map<std::string, KeyValue>& keys) {
+  if (!style.IsWritable()) {
+    return UsageError(style.id + (style.bundled ? " is a bundled style" : " cannot be written") +
+                      ": save it as a new style");
+  }
+  SCUMBLE_ASSIGN(const std::string text, StyleText(style, keys));
+  return WriteFileAtomically(style.toml(), text);
+}
+
+Expected<fs::path> SaveStyleAs(const StyleEntry& style, const std::map<std::string, KeyValue>& keys,
+                               const fs::path& folder, const std::string& name) {
+  SCUMBLE_RETURN_IF_ERROR(CheckName(name));
+  std::error_code failed;
+  const fs::path wanted = folder / name;
+  if (fs::exists(fs::symlink_status(wanted, failed))) {
+    return UsageError(wanted.string() + " is there already: give another name");
+  }
+  std::map<std::string, KeyValue> named = keys;
+  named["name"] = name;
+  SCUMBLE_ASSIGN(const std::string text, StyleText(style, named));
+  const fs::path unfinished = folder / ("." + name + ".unfinished");
+  fs::remove_all(unfinished, failed);
+  fs::create_directories(unfinished, failed);
+  if (failed) return OutputError("cannot make the folder " + unfinished.string() + ": " + failed.message());
+  Status done = CopyStyle(style, unfinished);
+  if (done) done = WriteFileAtomically(unfinished / "style.toml", text);
+  if (done) {
+    fs::rename(unfinished, wanted, failed);
+    if (failed) done = OutputError("cannot make the folder " + wanted.string() + ": " + failed.message());
+  }
+  if (done) return wanted;
+  fs::remove_all(unfinished, failed);
+  return done.error();
+}
+
+}  // namespace scumble
