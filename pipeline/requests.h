@@ -104,6 +104,7 @@ struct PictureRequest {
   int repeat = 1;                   // times to run the transfer, for the spread of its times
   int upsample = 1;                 // the picture is so many times as wide and high as the guides
   bool upscale = false;             // with upsample: it is painted at their size and scaled up; without `over`
+  bool leave_small = false;         // with upscale: it is not scaled up, for who shows it larger himself
   std::optional<Explanation> show;  // this explanation instead of the picture
   bool measure_chunks = false;      // report coherence and chunks, for which the source field is kept
   bool keep_field = false;          // the source field is given away with the picture
@@ -112,7 +113,7 @@ struct PictureRequest {
   bool KeepsField() const { return measure_chunks || keep_field || show.has_value(); }
   // How many times the guides are upsampled, and the painted picture is scaled up.
   int GuideFactor() const { return upscale ? 1 : upsample; }
-  int PictureFactor() const { return upscale ? upsample : 1; }
+  int PictureFactor() const { return upscale && !leave_small ? upsample : 1; }
 };
 
 // That the options of a request fit together.

@@ -96,7 +96,8 @@ HttpResponse Session::State::Frame(const Moment& moment, const HttpRequest& requ
   if (draft) {
     finals.CancelUnless(job.key);
     job.budget.quality = Quality::kDraft, job.budget.budget_ms = 0;
-    job.key += " draft";
+    job.picture.leave_small = *format == FrameFormat::kJpeg;  // browsers scale it as they draw it
+    job.key += job.picture.leave_small ? " small draft" : " draft";
   }
   const std::string etag = EtagOf(job.key + format_name);
   const std::vector<std::pair<std::string, std::string>> known = {
