@@ -1,12 +1,11 @@
-# Writes a .cpp with the bytes of the page's files: cmake -D FOLDER=… -D NAMES="a.html;b.js" -D OUTPUT=… -P embed.cmake
+# Writes a .cpp with the bytes of the page's files:
+# cmake -D FOLDER=… -D NAMES="a.html;b.js" -D OUTPUT=… -P embed.cmake
 set(arrays "")
 set(table "")
 set(number 0)
 foreach(name ${NAMES})
   file(READ ${FOLDER}/${name} bytes HEX)
   string(REGEX REPLACE "(..)" "'\\\\x\\1'," bytes "${bytes}")
-  string(REGEX REPLACE "(...........................................................................................[^,]*,)"
-         "\\1\n    " bytes "${bytes}")
   string(APPEND arrays "constexpr char kFile${number}[] = {\n    ${bytes}0};\n")
   string(APPEND table "    {\"${name}\", std::string_view(kFile${number}, sizeof(kFile${number}) - 1)},\n")
   math(EXPR number "${number} + 1")

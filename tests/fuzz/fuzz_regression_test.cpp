@@ -87,7 +87,7 @@ Input Mutated(const std::vector<NamedInput>& seeds, std::uint64_t number) {
 std::uint64_t RunsOf(const std::string& target) {
   static const std::map<std::string, std::uint64_t> kRuns = {
       {"baseline", 20000}, {"exr", 2000},    {"gltf", 2500},    {"guides", 3500},  {"header", 50000},
-      {"http", 5000},      {"obj", 1400},    {"options", 4000}, {"picture", 3000}, {"ply", 2000},
+      {"http", 40000},     {"obj", 1400},    {"options", 4000}, {"picture", 3000}, {"ply", 2000},
       {"png", 50000},      {"raster", 4000}, {"style", 3200}};
   if (const char* const asked = std::getenv("SCUMBLE_FUZZ_RUNS")) return std::strtoull(asked, nullptr, 10);
   const auto found = kRuns.find(target);

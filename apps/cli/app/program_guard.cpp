@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <iterator>
 #include <memory>
+#include <mutex>
 #include <string>
 
 #include "pipeline/process_guard.h"
@@ -58,7 +59,8 @@ void EndRunningGroup(int signal) {
   for (std::size_t i = 0; i < std::size(kEndingSignals); ++i) {
     if (kEndingSignals[i] == signal) ::sigaction(signal, &actions_before[i], nullptr);
   }
-  ::raise(signal);  // is delivered when this returns
+  caught_signal = 0;  // whoever had it before has it now
+  ::raise(signal);    // is delivered when this returns
 }
 
 // A signal that is ignored, as under nohup, stays ignored.
@@ -82,7 +84,10 @@ void ReleaseSignals() {
 
 class SignalGuard : public ProcessGuard {
  public:
-  void Begin() override { CatchSignals(); }
+  void Begin() override {
+    const std::lock_guard lock(mutex_);
+    if (users_++ == 0) CatchSignals();
+  }
   void FolderMade(const std::filesystem::path& folder) override {
     const std::string name = folder.string();
     if (name.size() >= sizeof(scratch_folder)) return;
@@ -90,6 +95,8 @@ class SignalGuard : public ProcessGuard {
     has_scratch_folder = true;
   }
   void End() override {
+    const std::lock_guard lock(mutex_);
+    if (--users_ > 0) return;
     has_scratch_folder = false;
     ReleaseSignals();
   }
@@ -99,6 +106,10 @@ class SignalGuard : public ProcessGuard {
   }
   void ProgramEnded() override { running_group = 0; }
   void Waits(bool waits) override { ends_at_once = !waits; }
+
+ private:
+  std::mutex mutex_;
+  int users_ = 0;  // folders in use: the first catches the signals, the last releases them
 };
 
 }  // namespace

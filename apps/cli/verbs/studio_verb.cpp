@@ -27,12 +27,12 @@ Expected<ExitCode> RunStudioVerb(const StudioVerb& verb, const Globals& globals)
     std::fflush(stdout);  // who started this waits for it
   };
   StopOnSignals();
-  options.is_stopped = StopIsRequested;
+  // While Blender is at work, its guard has the signal first.
+  options.is_stopped = [cancelled = globals.is_cancelled] { return cancelled() || StopIsRequested(); };
   RunContext context = globals;
-  context.is_cancelled = [cancelled = globals.is_cancelled] { return cancelled() || StopIsRequested(); };
+  context.is_cancelled = options.is_stopped;
   const Status run = RunStudio(options, context);
-  const bool was_stopped = StopIsRequested() && !run && run.error().kind == ErrorKind::kCancelled;
-  if (!run && !was_stopped) return run.error();
+  if (!run && run.error().kind != ErrorKind::kCancelled) return run.error();
   return ExitCode::kOk;
 }
 
