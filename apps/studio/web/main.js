@@ -1,0 +1,216 @@
+// The studio's page: what stands where is in index.html; here the parts are made and tied together.
+//
+// For browser tests, ids and attributes that stay:
+//   html          data-revision, data-drawn (draft | final), data-shown: the picture that is on the screen;
+//                 data-gone while the server does not answer; data-compare (off | wipe | side | difference | flip);
+//                 data-command: the command line that was copied last
+//   #picture      the canvas with the picture, in its own pixels; #overlay: masks over it; #stage: takes the pointer
+//   #pick #status #problem #problem-text #gone #timing #busy: what the page says
+//   [data-key="transfer.threshold"]: a key's row, .changed where it differs; in it #key-transfer.threshold, the slider
+//                 [data-slider], and button.icon, its reset; #keys-reset resets all, #keys-find finds
+//   [data-style="oil"] input, [data-scene="snail"] input: choices; #camera #show #compare #beside: selects
+//   #size-width #size-height #quality #budget #seed #light-sphere #light-azimuth #light-elevation #light-reset
+//   #popover [data-assign="ink"]: a style for what was clicked; #assign-name #assign-style #assign-form #assignments
+//   [data-seen="3"] with .restore and [data-side="a"], [data-side="b"]: pictures that were seen; #wipe: the slider
+//   #timeline #play #loop #frame-slider #frame-number; #undo #redo #save #save-as #copy-command #download and dialogs
+//   #exemplar #exemplar-base #exemplar-layer #exemplar-marks #warnings; #paint #brush-… #paint-save #conflict-dialog
+import {getJson, listen} from './api.js';
+import {Assigner} from './assign.js';
+import {BrushPanel} from './brush.js';
+import {Compare} from './compare.js';
+import {byId, fillSelect} from './dom.js';
+import {ExemplarPanel} from './exemplar.js';
+import {draw, Frames} from './frame.js';
+import {keepInHash, lostSettings, readHash, touchHash} from './hash.js';
+import {History} from './history.js';
+import {Keeper} from './keep.js';
+import {KeysPanel} from './keys.js';
+import {showLibrary} from './library.js';
+import {LightPanel} from './light.js';
+import {announce, announceSoon, showBusy, showError, showGone, showProblem} from './messages.js';
+import {OrbitControl} from './orbit.js';
+import {OutputPanel} from './output.js';
+import {Picker} from './pick.js';
+import {shortcutTable} from './shortcut_table.js';
+import {listenToKeys} from './shortcuts.js';
+import {settingsOf, Store} from './store.js';
+import {followTheme} from './theme.js';
+import {Timeline} from './timeline.js';
+import {showTimes} from './timing.js';
+import {View} from './view.js';
+
+/** @typedef {import('./api.js').State} State */
+
+const kShows = ['picture', 'sources', 'chunks', 'borders', 'levels', 'error', 'exemplar', 'styles'];
+
+const root = document.documentElement;
+const store = new Store();
+const view = new View();
+const frames = new Frames(store);
+const seen = new History(store);
+const kept = readHash();
+let hasStarted = false;
+
+/**
+ * A picture has come: it is drawn, and told once it is on the screen.
+ * @param {import('./frame.js').Picture} picture
+ */
+function show(picture) {
+  draw(view.picture, picture.source);
+  const [width, height] = picture.quality === 'final' ? [picture.width, picture.height] : store.state.size;
+  view.setSize(width, height);
+  showTimes(picture.stages, picture.ms);
+  showBusy(null);
+  if (!store.state.problem) showProblem(null);
+  const tell = () => {
+    root.dataset.revision = String(picture.revision);
+    root.dataset.drawn = picture.quality;
+    root.dataset.shown = picture.show;
+  };
+  // A hidden page gets no animation frames.
+  if (document.hidden) tell();
+  else requestAnimationFrame(tell);
+  if (picture.quality !== 'final') return;
+  announceSoon(`drawn in ${Math.round(picture.ms)} ms`);
+  if (picture.show === 'picture') seen.see(view.picture);
+  compare.now(picture.show);
+}
+
+frames.onPicture = show;
+frames.onError = (error) => {
+  showBusy(null);
+  showError(error);
+};
+frames.onBegin = (quality) => {
+  if (quality === 'draft') {
+    seen.leave();
+    picker.clear();
+  }
+};
+store.onError = showError;
+
+const exemplar = new ExemplarPanel(store, showError);
+const picker = new Picker(view, exemplar, () => !frames.isMoving && !frames.running && frames.drawn?.quality === 'final');
+const compare = new Compare(store, view, seen, showError);
+const assigner = new Assigner(store, announce);
+const orbit = new OrbitControl(store, view, (pixel, at) => void assigner.offer(pixel, at).catch(showError));
+const timeline = new Timeline(store);
+const keeper = new Keeper(store, {announce, error: showError});
+const brush = new BrushPanel(exemplar, {
+  announce, error: showError, saveAs: () => keeper.askName(), layout: () => view.layout(),
+});
+new OutputPanel(store);
+new LightPanel(store);
+showLibrary(store);
+followTheme();
+
+/** @param {string} what */
+function setShow(what) {
+  byId('show', HTMLSelectElement).value = what;
+  frames.setShow(what);
+  touchHash();
+}
+
+/** @param {boolean} isUndo */
+function step(isUndo) {
+  if (brush.isOn && (isUndo ? brush.undo() : brush.redo())) return;
+  const done = isUndo ? store.undo() : store.redo();
+  announce(done ? (isUndo ? 'undone' : 'done again') : (isUndo ? 'nothing to undo' : 'nothing to do again'));
+}
+
+/**
+ * What is neither a panel's nor the picture's.
+ * @param {State} state
+ */
+function update(state) {
+  const scene = state.scenes.find(({id}) => id === state.scene)?.name ?? state.scene;
+  const style = state.styles.find(({id}) => id === state.style)?.name ?? state.style;
+  byId('title', HTMLElement).textContent = `${scene} in ${style}`;
+  document.title = `${scene} in ${style} · Scumble studio`;
+  view.stage.setAttribute('aria-label', `Picture: ${scene} in ${style}`);
+  const cameras = [...state.cameras.map((name, index) => ({value: `camera:${index ? name : ''}`, text: name})),
+                   ...(state.cameras.length ? [] : [{value: 'camera:', text: 'Framed'}]),
+                   ...(state.view ? [{value: 'orbit', text: 'Free view'}] : [])];
+  const named = state.camera === state.cameras[0] ? '' : state.camera;
+  fillSelect(byId('camera', HTMLSelectElement), cameras, state.view ? 'orbit' : `camera:${named}`);
+  byId('undo', HTMLButtonElement).disabled = store.undoSteps.length === 0;
+  byId('redo', HTMLButtonElement).disabled = store.redoSteps.length === 0;
+  touchHash(state);
+}
+
+/** @param {string} name @param {any} data */
+async function onEvent(name, data) {
+  if (name === 'busy') showBusy(data);
+  if (name === 'problem') {
+    showProblem(data);
+    if (!data) frames.renew();
+  }
+  if (name !== 'state') return;
+  const isFiles = data.why === 'files';
+  if (isFiles) seen.filesChanged = true;
+  if (store.sending || data.revision > store.state.revision || isFiles) await store.refresh();
+  if (isFiles) {
+    frames.renew();
+    await exemplar.renew();
+    return;
+  }
+  if (data.why === 'saved') await exemplar.check(0);
+  frames.wake();
+}
+
+/** The server is there: at the beginning, again, or the page is looked at again. */
+async function onFound() {
+  const before = store.known, wasGone = root.hasAttribute('data-gone');
+  const known = before ? {revision: before.revision, settings: settingsOf(before)} : kept;
+  const state = await store.refresh();
+  showGone(null);
+  showProblem(state.problem);
+  if (!hasStarted) await start();
+  const lost = known && lostSettings(state, known);
+  if (lost) await store.patch(lost, {undoable: false});
+  if (wasGone || lost) frames.renew();
+  else frames.wake();
+  if (before) await exemplar.renew();
+}
+
+/** What needs the state, once. */
+async function start() {
+  const answer = await getJson('/api/keys');
+  hasStarted = true;
+  new KeysPanel(store, answer.keys ?? answer);
+  fillSelect(byId('show', HTMLSelectElement), kShows.map((what) => ({value: what, text: what[0].toUpperCase() + what.slice(1)})),
+             'picture');
+  byId('show', HTMLSelectElement).addEventListener('change', () => setShow(byId('show', HTMLSelectElement).value));
+  byId('camera', HTMLSelectElement).addEventListener('change', () => {
+    const value = byId('camera', HTMLSelectElement).value;
+    if (value !== 'orbit') void store.patch({camera: value.slice('camera:'.length), view: null});
+  });
+  byId('undo', HTMLElement).addEventListener('click', () => step(true));
+  byId('redo', HTMLElement).addEventListener('click', () => step(false));
+  byId('problem-close', HTMLElement).addEventListener('click', () => showProblem(null));
+  listenToKeys(shortcutTable({view, orbit, compare, timeline, keeper, brush, assigner, picker, shows: kShows, setShow, step}));
+  restorePage();
+  store.listen(update);
+}
+
+/** The page's own state: zoom, what is shown, the comparison. */
+function restorePage() {
+  const page = kept?.page ?? {};
+  if (typeof page.zoom === 'number') {
+    view.zoom = page.zoom;
+    if (Array.isArray(page.centre)) view.centre = page.centre.map(Number);
+  }
+  if (kShows.includes(page.show)) {
+    frames.show = page.show;
+    byId('show', HTMLSelectElement).value = page.show;
+  }
+  compare.restore(page.compare);
+  keepInHash('zoom', () => view.zoom ?? undefined);
+  keepInHash('centre', () => view.zoom === null ? undefined : view.centre.map((at) => Number(at.toFixed(4))));
+  keepInHash('show', () => frames.show === 'picture' ? undefined : frames.show);
+  keepInHash('compare', () => compare.kept());
+  view.listeners.push(() => touchHash());
+  compare.onChange = () => touchHash();
+}
+
+void listen({event: (name, data) => void onEvent(name, data).catch(showError), lost: showGone, found: onFound});

@@ -1,0 +1,63 @@
+// Size, quality, and the random seed of the picture.
+import {byId, clamp, fillSelect} from './dom.js';
+
+/** @typedef {import('./api.js').State} State */
+
+const kSizes = ['640×360', '960×540', '1280×720', '1920×1080', '2560×1440', '3840×2160', '720×720', '1080×1080', '1080×1920'];
+const kBudgetMs = 50;
+
+export class OutputPanel {
+  /** @param {import('./store.js').Store} store */
+  constructor(store) {
+    this.store = store;
+    this.width = byId('size-width', HTMLInputElement);
+    this.height = byId('size-height', HTMLInputElement);
+    this.preset = byId('size-preset', HTMLSelectElement);
+    this.quality = byId('quality', HTMLSelectElement);
+    this.budget = byId('budget', HTMLInputElement);
+    this.seed = byId('seed', HTMLInputElement);
+    for (const input of [this.width, this.height]) input.addEventListener('change', () => this.resize());
+    this.preset.addEventListener('change', () => {
+      const [width, height] = this.preset.value.split('×').map(Number);
+      if (height) void store.patch({size: [width, height]});
+    });
+    this.quality.addEventListener('change', () => {
+      if (this.quality.value === 'budget') void store.patch({budget_ms: Number(this.budget.value) || kBudgetMs});
+      else void store.patch({quality: this.quality.value});
+    });
+    this.budget.addEventListener('change', () => {
+      if (this.budget.value && this.budget.validity.valid) void store.patch({budget_ms: Number(this.budget.value)});
+    });
+    this.seed.addEventListener('change', () => {
+      if (this.seed.value && this.seed.validity.valid) void store.patch({seed: Number(this.seed.value)});
+    });
+    byId('seed-next', HTMLElement).addEventListener('click', () => void store.patch({seed: store.state.seed + 1}));
+    fillSelect(this.quality, [{value: 'final', text: 'Final: the style as it is'}, {value: 'preview', text: 'Preview'},
+                              {value: 'draft', text: 'Draft'}, {value: 'budget', text: 'Within a budget'}], 'final');
+    store.listen((state) => this.update(state));
+  }
+
+  resize() {
+    const width = clamp(Math.round(Number(this.width.value)), 1, 16384);
+    const height = clamp(Math.round(Number(this.height.value)), 1, 16384);
+    if (width && height) void this.store.patch({size: [width, height]});
+  }
+
+  /** @param {State} state */
+  update(state) {
+    const [width, height] = state.size, own = `${width}×${height}`;
+    setUnlessTyped(this.width, width);
+    setUnlessTyped(this.height, height);
+    setUnlessTyped(this.seed, state.seed);
+    if (state.budget_ms) setUnlessTyped(this.budget, state.budget_ms);
+    const sizes = kSizes.includes(own) ? kSizes : [...kSizes, own];
+    fillSelect(this.preset, sizes.map((size) => ({value: size, text: size})), own);
+    this.quality.value = state.budget_ms ? 'budget' : state.quality;
+    byId('budget-field', HTMLElement).hidden = !state.budget_ms;
+  }
+}
+
+/** @param {HTMLInputElement} input @param {number} value */
+function setUnlessTyped(input, value) {
+  if (document.activeElement !== input) input.value = String(value);
+}

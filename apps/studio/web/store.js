@@ -1,0 +1,208 @@
+// The state of the server as this page knows it, changes on their way to it, and undo.
+import {call, getJson} from './api.js';
+
+/** @typedef {import('./api.js').State} State */
+/** @typedef {import('./api.js').Changes} Changes */
+/** @typedef {{before: Changes, after: Changes, gesture: string, time: number}} Step */
+
+// Changes of one gesture, such as a slider's drag, are undone together.
+const kGestureMs = 900;
+const kMostSteps = 200;
+// What a change of the scene or of the style resets, and undo brings back.
+const kOfScene = /** @type {const} */ (['camera', 'view', 'light', 'frame', 'assignments']);
+
+/**
+ * The state after changes, as far as the page can tell before the server answers.
+ * @param {State} state @param {Changes} changes @returns {State}
+ */
+export function applied(state, changes) {
+  const {keys, ...rest} = changes;
+  const next = /** @type {State} */ ({...state, ...rest});
+  if (changes.scene !== undefined && changes.scene !== state.scene) {
+    Object.assign(next, {camera: '', view: null, light: null, assignments: [], ...rest});
+  }
+  if (changes.style !== undefined && changes.style !== state.style) next.keys = {};
+  if (keys) {
+    next.keys = {...next.keys};
+    for (const [name, value] of Object.entries(keys)) {
+      if (value === null) delete next.keys[name];
+      else next.keys[name] = value;
+    }
+  }
+  if (changes.view) next.eye = {...state.eye, ...changes.view, distance: changes.view.distance || state.eye.distance};
+  if (changes.budget_ms) next.quality = 'final';
+  if (changes.quality !== undefined && changes.budget_ms === undefined) next.budget_ms = 0;
+  return next;
+}
+
+/**
+ * What undoes changes.
+ * @param {State} state
+ * @param {Changes} changes
+ * @returns {Changes}
+ */
+export function inverse(state, changes) {
+  const fields = new Set(/** @type {(keyof Changes)[]} */ (Object.keys(changes)));
+  if (fields.has('scene')) kOfScene.forEach((field) => fields.add(field));
+  if (fields.has('quality') || fields.has('budget_ms')) {
+    fields.delete('quality');
+    fields.add(state.budget_ms ? 'budget_ms' : 'quality');
+  }
+  /** @type {Changes} */
+  const before = {};
+  for (const field of fields) if (field !== 'keys') Object.assign(before, {[field]: state[field]});
+  if (!state.budget_ms) delete before.budget_ms;
+  if (state.frame === null) delete before.frame;
+  if (changes.style !== undefined) {
+    before.keys = {...state.keys};
+  } else if (changes.keys) {
+    before.keys = Object.fromEntries(Object.keys(changes.keys).map((name) => [name, state.keys[name] ?? null]));
+  }
+  return before;
+}
+
+/**
+ * All that a patch can set, to come back to it.
+ * @param {State} state
+ * @returns {Changes}
+ */
+export function settingsOf(state) {
+  const {scene, style, keys, assignments, camera, view, light, frame, size, seed, quality, budget_ms} = state;
+  /** @type {Changes} */
+  const settings = {scene, style, keys: {...keys}, assignments, camera, view, light, size, seed};
+  if (frame !== null) settings.frame = frame;
+  if (budget_ms) settings.budget_ms = budget_ms;
+  else settings.quality = quality;
+  return settings;
+}
+
+export class Store {
+  constructor() {
+    /** @type {State | null} */
+    this.known = null;
+    /** @type {((state: State) => void)[]} */
+    this.listeners = [];
+    /** @type {(error: unknown) => void} */
+    this.onError = () => {};
+    /** @type {(moving: boolean) => void} */
+    this.onSent = () => {};
+    /** @type {{changes: Changes, moving: boolean, step: Step | null}[]} */
+    this.queue = [];
+    this.sending = false;
+    /** @type {Step[]} */
+    this.undoSteps = [];
+    /** @type {Step[]} */
+    this.redoSteps = [];
+  }
+
+  /** @returns {State} */
+  get state() {
+    if (!this.known) throw new Error('the state has not been read yet');
+    return this.known;
+  }
+
+  /** @param {(state: State) => void} listener called now, if there is a state, and after each change */
+  listen(listener) {
+    this.listeners.push(listener);
+    if (this.known) listener(this.known);
+  }
+
+  /** @param {State} state */
+  set(state) {
+    this.known = state;
+    for (const listener of this.listeners) listener(state);
+  }
+
+  /**
+   * Changes the state, here at once and on the server as soon as it has taken the change before.
+   * @param {Changes} changes
+   * @param {{moving?: boolean, gesture?: string, undoable?: boolean}} [how] moving: more will follow soon, drafts will
+   *   do; gesture: changes with this name are one step of undo
+   */
+  patch(changes, how = {}) {
+    const {moving = false, gesture = '', undoable = true} = how;
+    const step = undoable ? this.remember(changes, gesture) : null;
+    this.set(applied(this.state, changes));
+    const last = this.queue[this.queue.length - 1];
+    if (last && !('scene' in changes) && !('style' in changes)) {
+      // Quality and budget clear each other: the later one alone is sent.
+      if ('quality' in changes) delete last.changes.budget_ms;
+      if ('budget_ms' in changes) delete last.changes.quality;
+      const keys = {...last.changes.keys, ...changes.keys};
+      Object.assign(last.changes, changes);
+      if (Object.keys(keys).length) last.changes.keys = keys;
+      last.moving = moving;
+      last.step = step ?? last.step;
+    } else {
+      this.queue.push({changes: {...changes}, moving, step});
+    }
+    return this.send();
+  }
+
+  /** @param {Changes} changes @param {string} gesture */
+  remember(changes, gesture) {
+    const time = performance.now();
+    const last = this.undoSteps[this.undoSteps.length - 1];
+    const before = inverse(this.state, changes);
+    if (gesture && last?.gesture === gesture && time - last.time < kGestureMs) {
+      const keys = {...last.after.keys, ...changes.keys};
+      last.after = {...last.after, ...changes, ...(changes.keys && {keys})};
+      const keysBefore = {...before.keys, ...last.before.keys};
+      last.before = {...before, ...last.before, ...(before.keys && {keys: keysBefore})};
+      last.time = time;
+    } else {
+      this.undoSteps.push({before, after: changes, gesture, time});
+      if (this.undoSteps.length > kMostSteps) this.undoSteps.shift();
+    }
+    this.redoSteps = [];
+    return this.undoSteps[this.undoSteps.length - 1];
+  }
+
+  undo() {
+    const step = this.undoSteps.pop();
+    if (!step) return false;
+    this.redoSteps.push({...step, gesture: ''});
+    this.patch(step.before, {undoable: false});
+    return true;
+  }
+
+  redo() {
+    const step = this.redoSteps.pop();
+    if (!step) return false;
+    this.undoSteps.push(step);
+    this.patch(step.after, {undoable: false});
+    return true;
+  }
+
+  async send() {
+    if (this.sending) return;
+    this.sending = true;
+    let next = this.queue.shift();
+    try {
+      for (; next; next = this.queue.shift()) {
+        /** @type {State} */
+        const answer = await (await call('PATCH', '/api/state', {json: next.changes})).json();
+        this.set(this.queue.reduce((state, waiting) => applied(state, waiting.changes), answer));
+        this.onSent(next.moving);
+      }
+    } catch (error) {
+      // All or nothing: what was shown before the answer is taken back.
+      const failed = [next, ...this.queue].map((sent) => sent?.step);
+      this.undoSteps = this.undoSteps.filter((step) => !failed.includes(step));
+      this.queue = [];
+      this.onError(error);
+      await this.refresh().catch(this.onError);
+    } finally {
+      this.sending = false;
+    }
+  }
+
+  /** Reads the state anew. What is on its way is kept on top of it. */
+  async refresh() {
+    /** @type {State} */
+    const answer = await getJson('/api/state');
+    if (this.sending && this.known && answer.revision < this.known.revision) return answer;
+    this.set(this.queue.reduce((state, waiting) => applied(state, waiting.changes), answer));
+    return answer;
+  }
+}

@@ -1,0 +1,94 @@
+// Frames of an animation: scrub, play, loop.
+import {byId, clamp, fillTrack} from './dom.js';
+
+/** @typedef {import('./api.js').State} State */
+
+export class Timeline {
+  /** @param {import('./store.js').Store} store */
+  constructor(store) {
+    this.store = store;
+    this.slider = byId('frame-slider', HTMLInputElement);
+    this.number = byId('frame-number', HTMLInputElement);
+    this.loop = byId('loop', HTMLInputElement);
+    this.playing = false;
+    this.from = {frame: 0, time: 0};
+    this.slider.addEventListener('input', () => this.go(Number(this.slider.value)));
+    this.number.addEventListener('change', () => this.go(Math.round(Number(this.number.value)), false));
+    byId('play', HTMLElement).addEventListener('click', () => this.toggle());
+    store.listen((state) => this.update(state));
+  }
+
+  /** @param {number} frame @param {boolean} [moving] */
+  go(frame, moving = true) {
+    const span = this.store.state.animation;
+    if (!span || !Number.isFinite(frame)) return;
+    if (this.playing) this.from = {frame, time: performance.now()};
+    void this.store.patch({frame: clamp(frame, span.first, span.last)}, {moving, gesture: 'frame'});
+  }
+
+  toggle() {
+    const {animation, frame} = this.store.state;
+    if (!animation) return;
+    this.playing = !this.playing;
+    this.show();
+    if (!this.playing) return;
+    const isAtEnd = frame === animation.last;
+    this.from = {frame: isAtEnd ? animation.first : frame ?? animation.first, time: performance.now()};
+    requestAnimationFrame(() => this.tick());
+  }
+
+  /** Time leads: pictures that come late are left out. */
+  tick() {
+    const {animation, frame: shown} = this.store.state;
+    if (!this.playing) return;
+    if (!animation) {
+      this.playing = false;
+      this.show();
+      return;
+    }
+    const count = animation.last - animation.first + 1;
+    const passed = Math.floor((performance.now() - this.from.time) / 1000 * animation.fps);
+    let frame = this.from.frame + passed;
+    if (frame > animation.last) {
+      if (!this.loop.checked) {
+        this.playing = false;
+        this.show();
+        frame = animation.last;
+      } else {
+        frame = animation.first + (frame - animation.first) % count;
+      }
+    }
+    // One change at a time: the next is sent when the server has taken the last.
+    if (frame !== shown && !this.store.sending) {
+      void this.store.patch({frame}, {moving: true, gesture: 'play', undoable: false});
+    }
+    if (this.playing) requestAnimationFrame(() => this.tick());
+  }
+
+  show() {
+    const button = byId('play', HTMLElement);
+    button.setAttribute('aria-pressed', String(this.playing));
+    button.setAttribute('aria-label', this.playing ? 'Pause' : 'Play');
+    document.getElementById('play-icon')?.setAttribute('href', this.playing ? '#i-pause' : '#i-play');
+  }
+
+  /** @param {State} state */
+  update(state) {
+    const {animation, frame} = state;
+    byId('timeline', HTMLElement).hidden = !animation;
+    if (!animation) {
+      this.playing = false;
+      this.show();
+      return;
+    }
+    for (const input of [this.slider, this.number]) {
+      input.min = String(animation.first);
+      input.max = String(animation.last);
+    }
+    const now = String(frame ?? animation.first);
+    this.slider.value = now;
+    fillTrack(this.slider);
+    if (document.activeElement !== this.number) this.number.value = now;
+    byId('frame-last', HTMLElement).textContent = `of ${animation.last} · ${animation.fps} fps`;
+  }
+}
