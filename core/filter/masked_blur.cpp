@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -12,6 +13,7 @@ namespace scumble::internal {
 namespace {
 
 constexpr int kPasses = 4;
+constexpr int kLanes = 8;  // rows that are filtered side by side: each depends on its own last sum alone
 
 // Weights 1 on 2·reach + 1 samples and `ends` on one more at either side. Unscaled, because the blur is a quotient.
 struct ExtendedBox {
@@ -25,15 +27,21 @@ struct ExtendedBox {
     ends = (2.0 * l + 1.0) * (3.0 * variance - l * (l + 1.0)) / (6.0 * ((l + 1.0) * (l + 1.0) - variance));
   }
 
-  // Filters `in` into `out`, both of one length. Samples beyond the ends count as 0.
-  void Filter(const std::vector<double>& in, std::vector<double>& out) const {
-    const int count = static_cast<int>(in.size());
-    const auto at = [&](int i) { return i >= 0 && i < count ? in[std::size_t(i)] : 0.0; };
-    double sum = 0.0;
-    for (int i = 0; i < std::min(reach, count); ++i) sum += in[std::size_t(i)];
-    for (int i = 0; i < count; ++i) {
-      sum += at(i + reach) - at(i - reach - 1);
-      out[std::size_t(i)] = sum + ends * (at(i - reach - 1) + at(i + reach + 1));
+  // Filters `in` into `out`, both kLanes rows of `count` samples side by side, with `reach + 1` zeros before and after.
+  // Each row is summed in the same order as alone.
+  void Filter(const std::vector<double>& in, int count, std::vector<double>& out) const {
+    const std::ptrdiff_t edge = std::ptrdiff_t(reach + 1) * kLanes, far = std::ptrdiff_t(reach) * kLanes;
+    std::array<double, kLanes> sum{};
+    for (int i = 0; i < std::min(reach, count); ++i) {
+      for (int lane = 0; lane < kLanes; ++lane) sum[lane] += in[std::size_t(edge + i * kLanes + lane)];
+    }
+    const double* from = in.data() + edge;
+    double* to = out.data() + edge;
+    for (int i = 0; i < count; ++i, from += kLanes, to += kLanes) {
+      for (int lane = 0; lane < kLanes; ++lane) {
+        sum[lane] += from[far + lane] - from[lane - edge];
+        to[lane] = sum[lane] + ends * (from[lane - edge] + from[lane + edge]);
+      }
     }
   }
 };
@@ -48,15 +56,22 @@ struct Plane {
 Plane BlurRows(const Plane& plane, const ExtendedBox& box) {
   Plane turned{plane.height, plane.width, std::vector<double>(plane.values.size())};
   const int margin = kPasses * (box.reach + 1);  // what a pass carries beyond the end another may bring back
-  tbb::parallel_for(0, plane.height, [&](int y) {
-    std::vector<double> row(std::size_t(plane.width) + 2 * std::size_t(margin), 0.0), other(row.size());
-    std::copy_n(plane.values.begin() + std::ptrdiff_t(y) * plane.width, plane.width, row.begin() + margin);
+  const int count = plane.width + 2 * margin, groups = (plane.height + kLanes - 1) / kLanes;
+  tbb::parallel_for(0, groups, [&](int group) {
+    const int first = group * kLanes, rows = std::min(kLanes, plane.height - first);
+    std::vector<double> line((std::size_t(count) + 2 * std::size_t(box.reach + 1)) * kLanes, 0.0), other(line.size());
+    const std::size_t begin = (std::size_t(box.reach + 1) + std::size_t(margin)) * kLanes;
+    for (int lane = 0; lane < rows; ++lane) {
+      const double* row = plane.values.data() + std::size_t(first + lane) * plane.width;
+      for (int x = 0; x < plane.width; ++x) line[begin + std::size_t(x) * kLanes + lane] = row[x];
+    }
     for (int pass = 0; pass < kPasses; ++pass) {
-      box.Filter(row, other);
-      row.swap(other);
+      box.Filter(line, count, other);
+      line.swap(other);
     }
     for (int x = 0; x < plane.width; ++x) {
-      turned.values[std::size_t(x) * plane.height + y] = row[std::size_t(margin) + x];
+      std::copy_n(line.begin() + std::ptrdiff_t(begin) + std::ptrdiff_t(x) * kLanes, rows,
+                  turned.values.begin() + std::ptrdiff_t(x) * plane.height + first);
     }
   });
   return turned;
