@@ -38,7 +38,7 @@ export class Compare {
     this.beside = byId('beside', HTMLSelectElement);
     /** @type {() => void} */
     this.onChange = () => {};
-    for (const [value, text] of [['off', 'Compare: off'], ['wipe', 'Wipe'], ['side', 'Side by side'], ['difference', 'Difference']]) {
+    for (const [value, text] of [['off', 'No comparison'], ['wipe', 'Wipe'], ['side', 'Side by side'], ['difference', 'Difference']]) {
       this.select.append(make('option', {value, textContent: text}));
     }
     this.select.addEventListener('change', () => this.setMode(/** @type {Mode} */ (this.select.value)));

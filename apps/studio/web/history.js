@@ -49,10 +49,11 @@ export class History {
   /**
    * A final is on the screen. It is kept once it has stayed there for a moment.
    * @param {HTMLCanvasElement} canvas
+   * @param {State} state what it shows
    */
-  see(canvas) {
+  see(canvas, state) {
     clearTimeout(this.timer);
-    this.timer = setTimeout(() => this.keep(canvas, this.store.state), kRestMs);
+    this.timer = setTimeout(() => this.keep(canvas, state), kRestMs);
   }
 
   /** Something moves: what is on the screen is a draft. */

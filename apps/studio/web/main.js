@@ -72,16 +72,19 @@ function show(picture) {
   else requestAnimationFrame(tell);
   if (picture.quality !== 'final') return;
   announceSoon(`drawn in ${Math.round(picture.ms)} ms`);
-  if (picture.show === 'picture') seen.see(view.picture);
+  // While a change is on its way, the state is already another one than the picture's.
+  const isNow = picture.revision === store.state.revision && !store.sending;
+  if (picture.show === 'picture' && isNow) seen.see(view.picture, store.state);
+  else seen.leave();
   compare.now(picture.show);
 }
 
 frames.onPicture = show;
-frames.onError = (error) => {
+frames.onError = (/** @type {unknown} */ error) => {
   showBusy(null);
   showError(error);
 };
-frames.onBegin = (quality) => {
+frames.onBegin = (/** @type {string} */ quality) => {
   if (quality === 'draft') {
     seen.leave();
     picker.clear();
@@ -148,14 +151,14 @@ async function onEvent(name, data) {
   if (name !== 'state') return;
   const isFiles = data.why === 'files';
   if (isFiles) seen.filesChanged = true;
-  if (store.sending || data.revision > store.state.revision || isFiles) await store.refresh();
   if (isFiles) {
+    await store.refresh();
     frames.renew();
     await exemplar.renew();
     return;
   }
+  await store.hear(data.revision);
   if (data.why === 'saved') await exemplar.check(0);
-  frames.wake();
 }
 
 /** The server is there: at the beginning, again, or the page is looked at again. */

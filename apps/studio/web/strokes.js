@@ -162,14 +162,4 @@ export class Strokes {
     this.isSaved = false;
     return true;
   }
-
-  /**
-   * The layer as PNG.
-   * @returns {Promise<Blob>}
-   */
-  png() {
-    return new Promise((resolve, reject) => {
-      this.canvas.toBlob((blob) => blob ? resolve(blob) : reject(new Error('the layer is too large')), 'image/png');
-    });
-  }
 }

@@ -1,5 +1,5 @@
 // The picture on the screen: zoom, pan, and the layers that lie over one another in one or two panes.
-import {byId, clamp} from './dom.js';
+import {byId, clamp, scratch} from './dom.js';
 
 const kSteps = [0.05, 0.1, 0.17, 0.25, 0.33, 0.5, 0.67, 1, 1.5, 2, 3, 4, 6, 8, 12, 16, 24, 32];
 
@@ -142,8 +142,7 @@ export class View {
     to.globalCompositeOperation = 'source-in';
     to.fillStyle = '#ffb13d';
     to.fillRect(0, 0, canvas.width, canvas.height);
-    const inside = new OffscreenCanvas(mask.width, mask.height);
-    const fill = /** @type {OffscreenCanvasRenderingContext2D} */ (inside.getContext('2d'));
+    const {canvas: inside, to: fill} = scratch(mask.width, mask.height);
     fill.drawImage(mask, 0, 0);
     fill.globalCompositeOperation = 'source-in';
     fill.fillStyle = 'rgb(255 177 61 / 38%)';
