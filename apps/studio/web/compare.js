@@ -38,7 +38,8 @@ export class Compare {
     this.beside = byId('beside', HTMLSelectElement);
     /** @type {() => void} */
     this.onChange = () => {};
-    for (const [value, text] of [['off', 'No comparison'], ['wipe', 'Wipe'], ['side', 'Side by side'], ['difference', 'Difference']]) {
+    for (const [value, text] of [
+             ['off', 'No comparison'], ['wipe', 'Wipe'], ['side', 'Side by side'], ['difference', 'Difference']]) {
       this.select.append(make('option', {value, textContent: text}));
     }
     this.select.addEventListener('change', () => this.setMode(/** @type {Mode} */ (this.select.value)));
@@ -52,7 +53,8 @@ export class Compare {
       this.wipe.setPointerCapture(event.pointerId);
     });
     this.wipe.addEventListener('pointermove', (event) => {
-      if (this.wipe.hasPointerCapture(event.pointerId)) this.setWipe(view.placeAt(event.clientX, event.clientY).x / view.width * 100);
+      if (this.wipe.hasPointerCapture(event.pointerId))
+        this.setWipe(view.placeAt(event.clientX, event.clientY).x / view.width * 100);
     });
     this.wipe.addEventListener('keydown', (event) => this.key(event));
     store.listen(() => this.offer());
@@ -200,7 +202,8 @@ export class Compare {
     view.panes[1].hidden = !isSide;
     document.documentElement.dataset.compare = this.flipped ? 'flip' : mode;
     this.tags(hasB, b, isSide);
-    this.history.showMarks(mode === 'off' ? null : this.a, mode !== 'off' && b.startsWith('seen:') ? Number(b.slice(5)) : null);
+    this.history.showMarks(
+        mode === 'off' ? null : this.a, mode !== 'off' && b.startsWith('seen:') ? Number(b.slice(5)) : null);
     if (changesPanes) view.layout();
     this.placeWipe();
   }
@@ -243,7 +246,9 @@ export class Compare {
 
   /** For the address. */
   kept() {
-    return this.mode === 'off' ? undefined : {mode: this.mode, b: this.b.startsWith('seen:') ? '' : this.b, at: Math.round(this.at)};
+    return this.mode === 'off' ?
+        undefined :
+        {mode: this.mode, b: this.b.startsWith('seen:') ? '' : this.b, at: Math.round(this.at)};
   }
 
   /** @param {{mode?: Mode, b?: string, at?: number} | undefined} kept */

@@ -49,7 +49,8 @@ export class ExemplarPanel {
     const isMixed = state.exemplars.some((exemplar) => exemplar.style !== 0);
     const options = state.exemplars.map((exemplar) => ({
       value: `${exemplar.style}/${exemplar.index}`,
-      text: (isMixed ? `${exemplar.style_id} · ` : '') + exemplar.file + (exemplar.luminance === null ? '' : ` · ${exemplar.luminance}`),
+      text: (isMixed ? `${exemplar.style_id} · ` : '') + exemplar.file +
+          (exemplar.luminance === null ? '' : ` · ${exemplar.luminance}`),
     }));
     if (!options.some((option) => option.value === this.chosen)) this.chosen = options[0]?.value ?? '0/0';
     fillSelect(this.select, options, this.chosen);

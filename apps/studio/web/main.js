@@ -93,7 +93,8 @@ frames.onBegin = (/** @type {string} */ quality) => {
 store.onError = showError;
 
 const exemplar = new ExemplarPanel(store, showError);
-const picker = new Picker(view, exemplar, () => !frames.isMoving && !frames.running && frames.drawn?.quality === 'final');
+const picker =
+    new Picker(view, exemplar, () => !frames.isMoving && !frames.running && frames.drawn?.quality === 'final');
 const compare = new Compare(store, view, seen, showError);
 const assigner = new Assigner(store, announce);
 const orbit = new OrbitControl(store, view, (pixel, at) => void assigner.offer(pixel, at).catch(showError));
@@ -181,8 +182,9 @@ async function start() {
   const answer = await getJson('/api/keys');
   hasStarted = true;
   new KeysPanel(store, answer.keys ?? answer);
-  fillSelect(byId('show', HTMLSelectElement), kShows.map((what) => ({value: what, text: what[0].toUpperCase() + what.slice(1)})),
-             'picture');
+  fillSelect(
+      byId('show', HTMLSelectElement),
+      kShows.map((what) => ({value: what, text: what[0].toUpperCase() + what.slice(1)})), 'picture');
   byId('show', HTMLSelectElement).addEventListener('change', () => setShow(byId('show', HTMLSelectElement).value));
   byId('camera', HTMLSelectElement).addEventListener('change', () => {
     const value = byId('camera', HTMLSelectElement).value;
@@ -191,7 +193,8 @@ async function start() {
   byId('undo', HTMLElement).addEventListener('click', () => step(true));
   byId('redo', HTMLElement).addEventListener('click', () => step(false));
   byId('problem-close', HTMLElement).addEventListener('click', () => showProblem(null));
-  listenToKeys(shortcutTable({view, orbit, compare, timeline, keeper, brush, assigner, picker, shows: kShows, setShow, step}));
+  listenToKeys(
+      shortcutTable({view, orbit, compare, timeline, keeper, brush, assigner, picker, shows: kShows, setShow, step}));
   restorePage();
   store.listen(update);
 }

@@ -15,7 +15,8 @@ const kMostUndo = 60;
 function dabOf({size, hardness}) {
   const side = Math.ceil(size) + 2;
   const {canvas, to} = scratch(side, side);
-  const fade = to.createRadialGradient(side / 2, side / 2, size / 2 * Math.min(hardness, 0.97), side / 2, side / 2, size / 2);
+  const fade =
+      to.createRadialGradient(side / 2, side / 2, size / 2 * Math.min(hardness, 0.97), side / 2, side / 2, size / 2);
   for (const [at, alpha] of [[0, 1], [0.25, 0.84], [0.5, 0.5], [0.75, 0.16], [1, 0]]) {
     fade.addColorStop(at, `rgb(255 255 255 / ${alpha})`);
   }
