@@ -5,7 +5,7 @@ import {CallError, isAbort} from './api.js';
 /** @typedef {import('./api.js').Problem} Problem */
 
 const kStranger = 'The studio was started anew. Open the address that it printed in the terminal.';
-const kGone = 'The studio does not answer. The last picture stays, and the page goes on by itself once the studio runs.';
+const kGone = 'The studio does not answer. The last picture stays; the page goes on by itself once the studio runs.';
 
 let timer = 0;
 
