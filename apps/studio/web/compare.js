@@ -24,7 +24,7 @@ export class Compare {
     this.mode = 'off';
     /** @type {number | null} the id of a seen picture; null: now */
     this.a = null;
-    this.b = '';  // "seen:3", "style:ink", "quality:draft", "budget:50"; '': the one that was seen before
+    this.b = '';  // "seen:3", "style:ink", "quality:draft", "budget:50"; '': chosenB says
     this.drawnA = 0;
     this.drawnB = '';
     this.at = 50;
@@ -107,12 +107,12 @@ export class Compare {
     this.onChange();
   }
 
-  /** The B that is meant: the choice, or what was seen before the picture of now. */
+  /** The B that is meant: the choice, or what was seen before the picture of now, or its draft. */
   get chosenB() {
     if (this.b) return this.b;
     const others = this.history.entries.filter((entry) => !entry.item.classList.contains('now') && entry.id !== this.a);
     const last = others[others.length - 1];
-    return last ? `seen:${last.id}` : '';
+    return last ? `seen:${last.id}` : 'quality:draft';
   }
 
   /** Fills the list of what B may be. */

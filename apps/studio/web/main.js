@@ -14,7 +14,7 @@
 //   [data-seen="3"] with .restore and [data-side="a"], [data-side="b"]: pictures that were seen; #wipe: the slider
 //   #timeline #play #loop #frame-slider #frame-number; #undo #redo #save #save-as #copy-command #download and dialogs
 //   #exemplar #exemplar-base #exemplar-layer #exemplar-marks #warnings; #paint #brush-… #paint-save #conflict-dialog
-import {getJson, listen} from './api.js';
+import {CallError, getJson, listen} from './api.js';
 import {Assigner} from './assign.js';
 import {BrushPanel} from './brush.js';
 import {Compare} from './compare.js';
@@ -51,6 +51,13 @@ const seen = new History(store);
 const kept = readHash();
 let hasStarted = false;
 
+/** @param {unknown} error */
+function fail(error) {
+  showBusy(null);
+  showError(error);
+  if (error instanceof CallError && error.isGone) lookAnew();
+}
+
 /**
  * A picture has come: it is drawn, and told once it is on the screen.
  * @param {import('./frame.js').Picture} picture
@@ -80,17 +87,14 @@ function show(picture) {
 }
 
 frames.onPicture = show;
-frames.onError = (/** @type {unknown} */ error) => {
-  showBusy(null);
-  showError(error);
-};
+frames.onError = fail;
 frames.onBegin = (/** @type {string} */ quality) => {
   if (quality === 'draft') {
     seen.leave();
     picker.clear();
   }
 };
-store.onError = showError;
+store.onError = fail;
 
 const exemplar = new ExemplarPanel(store, showError);
 const picker =
@@ -219,4 +223,6 @@ function restorePage() {
   compare.onChange = () => touchHash();
 }
 
-void listen({event: (name, data) => void onEvent(name, data).catch(showError), lost: showGone, found: onFound});
+const lookAnew = listen({
+  event: (name, data) => void onEvent(name, data).catch(showError), lost: showGone, found: onFound,
+});
