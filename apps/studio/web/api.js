@@ -104,6 +104,7 @@ export function withQuery(path, query) {
  * Events of the server while the page can be seen: an open stream counts against the connections of a browser to one
  * host. `lost` is called when the server is gone; `found` when it is there (again), for a fresh look at the state.
  * @param {{event: (name: string, data: any) => void, lost: (error: unknown) => void, found: () => Promise<void>}} to
+ * @returns {() => void} looks anew, a second later: for who finds that a call has no answer
  */
 export function listen(to) {
   /** @type {EventSource | null} */
@@ -147,5 +148,9 @@ export function listen(to) {
 
   document.addEventListener('visibilitychange', open);
   addEventListener('pagehide', () => source?.close());
-  return open();
+  void open();
+  return () => {
+    clearTimeout(timer);
+    timer = setTimeout(open, 1000);
+  };
 }

@@ -46,7 +46,8 @@ export class Assigner {
     const names = [...new Set([...state.objects, ...state.materials])];
     const name = byId('assign-name', HTMLSelectElement), style = byId('assign-style', HTMLSelectElement);
     fillSelect(name, names.map((value) => ({value, text: value})), name.value || names[0] || '');
-    fillSelect(style, state.styles.map(({id, name: text}) => ({value: id, text})), style.value || state.styles[0]?.id || '');
+    fillSelect(
+        style, state.styles.map(({id, name: text}) => ({value: id, text})), style.value || state.styles[0]?.id || '');
     const signature = JSON.stringify(state.assignments);
     if (signature === this.listed) return;
     this.listed = signature;
@@ -101,8 +102,9 @@ export class Assigner {
     none.addEventListener('click', () => this.choose(select.value, null));
     select.addEventListener('change', showNone);
     showNone();
-    this.popover.replaceChildren(make('div', {className: 'tools'}, title, make('span', {className: 'grow'}, select), close),
-                                 make('div', {className: 'thumbs'}, ...styles), none);
+    this.popover.replaceChildren(
+        make('div', {className: 'tools'}, title, make('span', {className: 'grow'}, select), close),
+        make('div', {className: 'thumbs'}, ...styles), none);
     this.cameFrom = document.activeElement instanceof HTMLElement ? document.activeElement : null;
     this.popover.hidden = false;
     const box = this.popover.getBoundingClientRect();

@@ -56,7 +56,13 @@ export class BrushPanel {
   /** @returns {import('./strokes.js').Brush} */
   get brush() {
     const [size, hardness, opacity] = this.sliders.map((slider) => Number(slider.value));
-    return {size, hardness: hardness / 100, opacity: opacity / 100, colour: this.colour.value, eraser: this.eraser.checked};
+    return {
+      size,
+      hardness: hardness / 100,
+      opacity: opacity / 100,
+      colour: this.colour.value,
+      eraser: this.eraser.checked
+    };
   }
 
   /** @param {number} factor */
@@ -79,8 +85,9 @@ export class BrushPanel {
         this.strokes.clear(exemplar.width, exemplar.height);
         this.exemplar.keepsBase = false;
       }
-      this.paintable = exemplar.style === 0 ? await getJson('/api/paintable', {exemplar: exemplar.index})
-                                            : {ok: false, why: 'Only the first style can be painted on: choose it among the styles.'};
+      this.paintable = exemplar.style === 0 ?
+          await getJson('/api/paintable', {exemplar: exemplar.index}) :
+          {ok: false, why: 'Only the first style can be painted on: choose it among the styles.'};
     } catch (error) {
       this.page.error(error);
       return;
@@ -202,7 +209,8 @@ export class BrushPanel {
   takeColour(event) {
     const {x, y} = this.exemplar.placeAt(event);
     const {to} = scratch(1, 1);
-    for (const canvas of [this.exemplar.base, this.strokes.canvas]) to.drawImage(canvas, -Math.floor(x), -Math.floor(y));
+    for (const canvas of [this.exemplar.base, this.strokes.canvas])
+      to.drawImage(canvas, -Math.floor(x), -Math.floor(y));
     const bytes = [...to.getImageData(0, 0, 1, 1).data].slice(0, 3);
     this.colour.value = `#${bytes.map((byte) => byte.toString(16).padStart(2, '0')).join('')}`;
     this.eraser.checked = false;

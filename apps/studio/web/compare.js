@@ -24,7 +24,7 @@ export class Compare {
     this.mode = 'off';
     /** @type {number | null} the id of a seen picture; null: now */
     this.a = null;
-    this.b = '';  // "seen:3", "style:ink", "quality:draft", "budget:50"; '': the one that was seen before
+    this.b = '';  // "seen:3", "style:ink", "quality:draft", "budget:50"; '': chosenB says
     this.drawnA = 0;
     this.drawnB = '';
     this.at = 50;
@@ -38,7 +38,8 @@ export class Compare {
     this.beside = byId('beside', HTMLSelectElement);
     /** @type {() => void} */
     this.onChange = () => {};
-    for (const [value, text] of [['off', 'Compare: off'], ['wipe', 'Wipe'], ['side', 'Side by side'], ['difference', 'Difference']]) {
+    for (const [value, text] of [
+             ['off', 'No comparison'], ['wipe', 'Wipe'], ['side', 'Side by side'], ['difference', 'Difference']]) {
       this.select.append(make('option', {value, textContent: text}));
     }
     this.select.addEventListener('change', () => this.setMode(/** @type {Mode} */ (this.select.value)));
@@ -52,7 +53,8 @@ export class Compare {
       this.wipe.setPointerCapture(event.pointerId);
     });
     this.wipe.addEventListener('pointermove', (event) => {
-      if (this.wipe.hasPointerCapture(event.pointerId)) this.setWipe(view.placeAt(event.clientX, event.clientY).x / view.width * 100);
+      if (this.wipe.hasPointerCapture(event.pointerId))
+        this.setWipe(view.placeAt(event.clientX, event.clientY).x / view.width * 100);
     });
     this.wipe.addEventListener('keydown', (event) => this.key(event));
     store.listen(() => this.offer());
@@ -105,12 +107,12 @@ export class Compare {
     this.onChange();
   }
 
-  /** The B that is meant: the choice, or what was seen before the picture of now. */
+  /** The B that is meant: the choice, or what was seen before the picture of now, or its draft. */
   get chosenB() {
     if (this.b) return this.b;
     const others = this.history.entries.filter((entry) => !entry.item.classList.contains('now') && entry.id !== this.a);
     const last = others[others.length - 1];
-    return last ? `seen:${last.id}` : '';
+    return last ? `seen:${last.id}` : 'quality:draft';
   }
 
   /** Fills the list of what B may be. */
@@ -200,7 +202,8 @@ export class Compare {
     view.panes[1].hidden = !isSide;
     document.documentElement.dataset.compare = this.flipped ? 'flip' : mode;
     this.tags(hasB, b, isSide);
-    this.history.showMarks(mode === 'off' ? null : this.a, mode !== 'off' && b.startsWith('seen:') ? Number(b.slice(5)) : null);
+    this.history.showMarks(
+        mode === 'off' ? null : this.a, mode !== 'off' && b.startsWith('seen:') ? Number(b.slice(5)) : null);
     if (changesPanes) view.layout();
     this.placeWipe();
   }
@@ -243,7 +246,9 @@ export class Compare {
 
   /** For the address. */
   kept() {
-    return this.mode === 'off' ? undefined : {mode: this.mode, b: this.b.startsWith('seen:') ? '' : this.b, at: Math.round(this.at)};
+    return this.mode === 'off' ?
+        undefined :
+        {mode: this.mode, b: this.b.startsWith('seen:') ? '' : this.b, at: Math.round(this.at)};
   }
 
   /** @param {{mode?: Mode, b?: string, at?: number} | undefined} kept */

@@ -76,7 +76,7 @@ export function pngOf(canvas) {
 }
 
 /**
- * Fills the options of a select, and keeps what is chosen. Writes only where something differs: an open list stays open.
+ * Fills the options of a select, and chooses one. Writes only where something differs: an open list stays open.
  * @param {HTMLSelectElement} select
  * @param {{value: string, text: string}[]} options
  * @param {string} value

@@ -46,9 +46,11 @@ export class ExemplarPanel {
 
   /** @param {State} state */
   update(state) {
+    const isMixed = state.exemplars.some((exemplar) => exemplar.style !== 0);
     const options = state.exemplars.map((exemplar) => ({
       value: `${exemplar.style}/${exemplar.index}`,
-      text: `${exemplar.style_id} · ${exemplar.file}` + (exemplar.luminance === null ? '' : ` · ${exemplar.luminance}`),
+      text: (isMixed ? `${exemplar.style_id} · ` : '') + exemplar.file +
+          (exemplar.luminance === null ? '' : ` · ${exemplar.luminance}`),
     }));
     if (!options.some((option) => option.value === this.chosen)) this.chosen = options[0]?.value ?? '0/0';
     fillSelect(this.select, options, this.chosen);

@@ -63,7 +63,8 @@ export function lostSettings(now, kept) {
   if (now.revision >= kept.revision) return null;
   const settings = {...kept.settings};
   if (!now.scenes.some((scene) => scene.id === settings.scene)) {
-    for (const field of /** @type {const} */ (['scene', 'camera', 'view', 'frame', 'assignments'])) delete settings[field];
+    for (const field of /** @type {const} */ (['scene', 'camera', 'view', 'frame', 'assignments']))
+      delete settings[field];
   }
   if (!now.styles.some((style) => style.id === settings.style)) {
     delete settings.style;

@@ -49,10 +49,11 @@ export class History {
   /**
    * A final is on the screen. It is kept once it has stayed there for a moment.
    * @param {HTMLCanvasElement} canvas
+   * @param {State} state what it shows
    */
-  see(canvas) {
+  see(canvas, state) {
     clearTimeout(this.timer);
-    this.timer = setTimeout(() => this.keep(canvas, this.store.state), kRestMs);
+    this.timer = setTimeout(() => this.keep(canvas, state), kRestMs);
   }
 
   /** Something moves: what is on the screen is a draft. */
@@ -72,7 +73,8 @@ export class History {
     const label = describe(state), id = this.next++;
     const item = make('li', {className: 'seen'});
     item.dataset.seen = String(id);
-    const thumb = make('canvas', {height: kThumbHeight, width: Math.max(1, Math.round(kThumbHeight * canvas.width / canvas.height))});
+    const thumb = make(
+        'canvas', {height: kThumbHeight, width: Math.max(1, Math.round(kThumbHeight * canvas.width / canvas.height))});
     const to = thumb.getContext('2d');
     if (to) {
       to.imageSmoothingQuality = 'high';
@@ -81,7 +83,8 @@ export class History {
       to.drawImage(canvas, 0, 0, thumb.width, thumb.height);
     }
     /** @type {Entry} */
-    const entry = {id, signature, settings, label, item, picture: pngOf(copy.canvas), width: canvas.width, height: canvas.height};
+    const entry =
+        {id, signature, settings, label, item, picture: pngOf(copy.canvas), width: canvas.width, height: canvas.height};
     const restore = make('button', {type: 'button', className: 'restore', title: `${label}: click to come back to it`,
                                     'aria-label': `Come back to ${id}: ${label}`}, thumb);
     restore.addEventListener('click', () => void this.store.patch(structuredClone(entry.settings)));

@@ -32,7 +32,6 @@ export class Keeper {
     store.listen((state) => this.update(state));
   }
 
-  /** @param {State} state */
   get style() { return this.store.state.styles.find((style) => style.id === this.store.state.style); }
 
   /** @param {State} state */

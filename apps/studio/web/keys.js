@@ -152,7 +152,8 @@ export class KeysPanel {
 
   /** @param {StyleKey} key @param {string} _id */
   choice(key, _id) {
-    const input = make('select', {}, ...(key.choices ?? []).map((choice) => make('option', {value: choice, textContent: choice})));
+    const input = make(
+        'select', {}, ...(key.choices ?? []).map((choice) => make('option', {value: choice, textContent: choice})));
     input.addEventListener('change', () => this.change(key, input.value, false));
     return {elements: [input], show: (/** @type {KeyValue} */ value) => { input.value = String(value); }};
   }
@@ -171,7 +172,8 @@ export class KeysPanel {
   /** @param {StyleKey} key @param {KeyValue | null} value null: the file's @param {boolean} moving */
   change(key, value, moving) {
     const isFile = value === fileValue(key, this.store.state);
-    void this.store.patch({keys: {[key.name]: isFile ? null : value}}, {moving, gesture: moving ? `key ${key.name}` : ''});
+    void this.store.patch(
+        {keys: {[key.name]: isFile ? null : value}}, {moving, gesture: moving ? `key ${key.name}` : ''});
   }
 
   resetAll() {

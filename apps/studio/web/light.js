@@ -24,7 +24,10 @@ export function directionOf({azimuth, elevation}) {
 export function lightAt(x, y) {
   const length = Math.max(1, Math.hypot(x, y) / 0.999);
   const nx = x / length, ny = y / length, nz = Math.sqrt(Math.max(0, 1 - nx * nx - ny * ny));
-  return {azimuth: rounded(Math.atan2(nx, nz) * 180 / Math.PI, 1), elevation: rounded(Math.asin(ny) * 180 / Math.PI, 1)};
+  return {
+    azimuth: rounded(Math.atan2(nx, nz) * 180 / Math.PI, 1),
+    elevation: rounded(Math.asin(ny) * 180 / Math.PI, 1)
+  };
 }
 
 export class LightPanel {
@@ -37,7 +40,8 @@ export class LightPanel {
     this.drawn = '';
     const drag = (/** @type {PointerEvent} */ event) => {
       const box = this.canvas.getBoundingClientRect();
-      this.change(lightAt((event.clientX - box.left) / box.width * 2 - 1, 1 - (event.clientY - box.top) / box.height * 2));
+      this.change(
+          lightAt((event.clientX - box.left) / box.width * 2 - 1, 1 - (event.clientY - box.top) / box.height * 2));
     };
     this.canvas.addEventListener('pointerdown', (event) => {
       this.canvas.setPointerCapture(event.pointerId);
@@ -91,7 +95,8 @@ export class LightPanel {
         if (rest <= 0) continue;
         const lit = Math.max(0, x * lx + y * ly + Math.sqrt(rest) * lz);
         const grey = light ? 38 + 205 * lit ** 0.8 : 88 + 62 * lit;
-        image.data.set([grey, grey * 0.985, grey * 0.96, 255 * Math.min(1, rest * half * 0.5)], (row * size + column) * 4);
+        image.data.set(
+            [grey, grey * 0.985, grey * 0.96, 255 * Math.min(1, rest * half * 0.5)], (row * size + column) * 4);
       }
     }
     to.putImageData(image, 0, 0);

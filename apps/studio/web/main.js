@@ -14,7 +14,7 @@
 //   [data-seen="3"] with .restore and [data-side="a"], [data-side="b"]: pictures that were seen; #wipe: the slider
 //   #timeline #play #loop #frame-slider #frame-number; #undo #redo #save #save-as #copy-command #download and dialogs
 //   #exemplar #exemplar-base #exemplar-layer #exemplar-marks #warnings; #paint #brush-… #paint-save #conflict-dialog
-import {getJson, listen} from './api.js';
+import {CallError, getJson, listen} from './api.js';
 import {Assigner} from './assign.js';
 import {BrushPanel} from './brush.js';
 import {Compare} from './compare.js';
@@ -51,6 +51,13 @@ const seen = new History(store);
 const kept = readHash();
 let hasStarted = false;
 
+/** @param {unknown} error */
+function fail(error) {
+  showBusy(null);
+  showError(error);
+  if (error instanceof CallError && error.isGone) lookAnew();
+}
+
 /**
  * A picture has come: it is drawn, and told once it is on the screen.
  * @param {import('./frame.js').Picture} picture
@@ -72,25 +79,26 @@ function show(picture) {
   else requestAnimationFrame(tell);
   if (picture.quality !== 'final') return;
   announceSoon(`drawn in ${Math.round(picture.ms)} ms`);
-  if (picture.show === 'picture') seen.see(view.picture);
+  // While a change is on its way, the state is already another one than the picture's.
+  const isNow = picture.revision === store.state.revision && !store.sending;
+  if (picture.show === 'picture' && isNow) seen.see(view.picture, store.state);
+  else seen.leave();
   compare.now(picture.show);
 }
 
 frames.onPicture = show;
-frames.onError = (error) => {
-  showBusy(null);
-  showError(error);
-};
-frames.onBegin = (quality) => {
+frames.onError = fail;
+frames.onBegin = (/** @type {string} */ quality) => {
   if (quality === 'draft') {
     seen.leave();
     picker.clear();
   }
 };
-store.onError = showError;
+store.onError = fail;
 
 const exemplar = new ExemplarPanel(store, showError);
-const picker = new Picker(view, exemplar, () => !frames.isMoving && !frames.running && frames.drawn?.quality === 'final');
+const picker =
+    new Picker(view, exemplar, () => !frames.isMoving && !frames.running && frames.drawn?.quality === 'final');
 const compare = new Compare(store, view, seen, showError);
 const assigner = new Assigner(store, announce);
 const orbit = new OrbitControl(store, view, (pixel, at) => void assigner.offer(pixel, at).catch(showError));
@@ -148,14 +156,14 @@ async function onEvent(name, data) {
   if (name !== 'state') return;
   const isFiles = data.why === 'files';
   if (isFiles) seen.filesChanged = true;
-  if (store.sending || data.revision > store.state.revision || isFiles) await store.refresh();
   if (isFiles) {
+    await store.refresh();
     frames.renew();
     await exemplar.renew();
     return;
   }
+  await store.hear(data.revision);
   if (data.why === 'saved') await exemplar.check(0);
-  frames.wake();
 }
 
 /** The server is there: at the beginning, again, or the page is looked at again. */
@@ -178,8 +186,9 @@ async function start() {
   const answer = await getJson('/api/keys');
   hasStarted = true;
   new KeysPanel(store, answer.keys ?? answer);
-  fillSelect(byId('show', HTMLSelectElement), kShows.map((what) => ({value: what, text: what[0].toUpperCase() + what.slice(1)})),
-             'picture');
+  fillSelect(
+      byId('show', HTMLSelectElement),
+      kShows.map((what) => ({value: what, text: what[0].toUpperCase() + what.slice(1)})), 'picture');
   byId('show', HTMLSelectElement).addEventListener('change', () => setShow(byId('show', HTMLSelectElement).value));
   byId('camera', HTMLSelectElement).addEventListener('change', () => {
     const value = byId('camera', HTMLSelectElement).value;
@@ -188,7 +197,8 @@ async function start() {
   byId('undo', HTMLElement).addEventListener('click', () => step(true));
   byId('redo', HTMLElement).addEventListener('click', () => step(false));
   byId('problem-close', HTMLElement).addEventListener('click', () => showProblem(null));
-  listenToKeys(shortcutTable({view, orbit, compare, timeline, keeper, brush, assigner, picker, shows: kShows, setShow, step}));
+  listenToKeys(
+      shortcutTable({view, orbit, compare, timeline, keeper, brush, assigner, picker, shows: kShows, setShow, step}));
   restorePage();
   store.listen(update);
 }
@@ -213,4 +223,6 @@ function restorePage() {
   compare.onChange = () => touchHash();
 }
 
-void listen({event: (name, data) => void onEvent(name, data).catch(showError), lost: showGone, found: onFound});
+const lookAnew = listen({
+  event: (name, data) => void onEvent(name, data).catch(showError), lost: showGone, found: onFound,
+});

@@ -4,6 +4,9 @@ import {CallError, isAbort} from './api.js';
 
 /** @typedef {import('./api.js').Problem} Problem */
 
+const kStranger = 'The studio was started anew. Open the address that it printed in the terminal.';
+const kGone = 'The studio does not answer. The last picture stays; the page goes on by itself once the studio runs.';
+
 let timer = 0;
 
 /** @param {string} text */
@@ -41,9 +44,7 @@ export function showError(error) {
 export function showGone(error) {
   const banner = byId('gone', HTMLElement);
   const isStranger = error instanceof CallError && error.status === 401;
-  const text = !error ? '' : isStranger
-      ? 'The studio was started anew. Open the address that it printed in the terminal.'
-      : 'The studio does not answer. The last picture stays; the page goes on by itself as soon as the studio runs again.';
+  const text = !error ? '' : isStranger ? kStranger : kGone;
   if (byId('gone-text', HTMLElement).textContent !== text) byId('gone-text', HTMLElement).textContent = text;
   banner.hidden = !error;
   document.documentElement.toggleAttribute('data-gone', !!error);

@@ -94,7 +94,8 @@ export class OrbitControl {
       const step = this.metresPerPixel();
       this.look({right: eye.right - dx * step, up: eye.up + dy * step}, 'pan');
     } else {
-      this.look({azimuth: eye.azimuth - dx * kDegreesPerPixel, elevation: eye.elevation + dy * kDegreesPerPixel}, 'orbit');
+      this.look(
+          {azimuth: eye.azimuth - dx * kDegreesPerPixel, elevation: eye.elevation + dy * kDegreesPerPixel}, 'orbit');
     }
   }
 

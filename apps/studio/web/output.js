@@ -3,7 +3,8 @@ import {byId, clamp, fillSelect} from './dom.js';
 
 /** @typedef {import('./api.js').State} State */
 
-const kSizes = ['640×360', '960×540', '1280×720', '1920×1080', '2560×1440', '3840×2160', '720×720', '1080×1080', '1080×1920'];
+const kSizes =
+    ['640×360', '960×540', '1280×720', '1920×1080', '2560×1440', '3840×2160', '720×720', '1080×1080', '1080×1920'];
 const kBudgetMs = 50;
 
 export class OutputPanel {

@@ -2,8 +2,8 @@
 import {byId, isField, make} from './dom.js';
 
 /**
- * @typedef {{group: string, keys: string, does: string, key?: string[], code?: string[], ctrl?: boolean, shift?: boolean,
- *   single?: boolean, run?: (event: KeyboardEvent) => boolean | void, release?: () => void}} Shortcut
+ * @typedef {{group: string, keys: string, does: string, key?: string[], code?: string[], ctrl?: boolean,
+ *   shift?: boolean, single?: boolean, run?: (event: KeyboardEvent) => boolean | void, release?: () => void}} Shortcut
  * `single`: a key that types a character, which can be switched off. `run` answers false where the key is not its.
  * Without `run` the row is for the help alone.
  */
@@ -40,7 +40,8 @@ function fits(row, event, letters) {
   if (!row.ctrl && isField(event.target)) return false;
   if (row.shift !== undefined && row.shift !== event.shiftKey) return false;
   if (row.code) return row.code.includes(event.code);
-  return !event.code.startsWith('Numpad') && !!row.key?.includes(event.key.length === 1 ? event.key.toLowerCase() : event.key);
+  return !event.code.startsWith('Numpad') &&
+      !!row.key?.includes(event.key.length === 1 ? event.key.toLowerCase() : event.key);
 }
 
 /** @param {Shortcut[]} table */

@@ -89,6 +89,7 @@ export class Store {
     /** @type {{changes: Changes, moving: boolean, step: Step | null}[]} */
     this.queue = [];
     this.sending = false;
+    this.told = 0;  // the newest revision that an event has named
     /** @type {Step[]} */
     this.undoSteps = [];
     /** @type {Step[]} */
@@ -191,18 +192,32 @@ export class Store {
       this.undoSteps = this.undoSteps.filter((step) => !failed.includes(step));
       this.queue = [];
       this.onError(error);
+      this.sending = false;
       await this.refresh().catch(this.onError);
     } finally {
       this.sending = false;
     }
+    await this.hear(this.told).catch(this.onError);
   }
 
-  /** Reads the state anew. What is on its way is kept on top of it. */
+  /**
+   * The server has this revision. Our own changes bring theirs with their answers, so that is waited for.
+   * @param {number} revision
+   */
+  async hear(revision) {
+    this.told = Math.max(this.told, revision);
+    if (this.sending || this.told <= this.state.revision) return;
+    await this.refresh();
+    this.told = 0;
+    this.onSent(false);
+  }
+
+  /** Reads the state anew. */
   async refresh() {
     /** @type {State} */
     const answer = await getJson('/api/state');
-    if (this.sending && this.known && answer.revision < this.known.revision) return answer;
-    this.set(this.queue.reduce((state, waiting) => applied(state, waiting.changes), answer));
+    // A change that is on its way is not in this answer, but will be in its own.
+    if (!this.sending) this.set(answer);
     return answer;
   }
 }

@@ -15,7 +15,8 @@ const kMostUndo = 60;
 function dabOf({size, hardness}) {
   const side = Math.ceil(size) + 2;
   const {canvas, to} = scratch(side, side);
-  const fade = to.createRadialGradient(side / 2, side / 2, size / 2 * Math.min(hardness, 0.97), side / 2, side / 2, size / 2);
+  const fade =
+      to.createRadialGradient(side / 2, side / 2, size / 2 * Math.min(hardness, 0.97), side / 2, side / 2, size / 2);
   for (const [at, alpha] of [[0, 1], [0.25, 0.84], [0.5, 0.5], [0.75, 0.16], [1, 0]]) {
     fade.addColorStop(at, `rgb(255 255 255 / ${alpha})`);
   }
@@ -161,15 +162,5 @@ export class Strokes {
     this.done.push(step);
     this.isSaved = false;
     return true;
-  }
-
-  /**
-   * The layer as PNG.
-   * @returns {Promise<Blob>}
-   */
-  png() {
-    return new Promise((resolve, reject) => {
-      this.canvas.toBlob((blob) => blob ? resolve(blob) : reject(new Error('the layer is too large')), 'image/png');
-    });
   }
 }

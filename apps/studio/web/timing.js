@@ -5,7 +5,8 @@ const kNames = ['guides', 'match', 'vote', 'compose', 'encode'];
 
 /** @param {{name: string, ms: number}[]} stages @param {number} total milliseconds from the request to the picture */
 export function showTimes(stages, total) {
-  const box = byId('timing', HTMLElement), bar = byId('timing-bar', HTMLElement), list = byId('timing-list', HTMLElement);
+  const box = byId('timing', HTMLElement), bar = byId('timing-bar', HTMLElement),
+        list = byId('timing-list', HTMLElement);
   const shown = stages.filter((stage) => stage.ms >= 0.05 && stage.name !== 'total');
   box.hidden = shown.length === 0;
   const sum = shown.reduce((ms, stage) => ms + stage.ms, 0);
@@ -15,7 +16,8 @@ export function showTimes(stages, total) {
     const part = make('i');
     part.style.flex = `${stage.ms / sum} 0 0`;
     part.style.background = colour;
-    const row = make('div', {}, make('dt', {textContent: stage.name}), make('dd', {textContent: milliseconds(stage.ms)}));
+    const row =
+        make('div', {}, make('dt', {textContent: stage.name}), make('dd', {textContent: milliseconds(stage.ms)}));
     row.style.setProperty('--colour', colour);
     return {part, row};
   });

@@ -1,5 +1,5 @@
 // The picture on the screen: zoom, pan, and the layers that lie over one another in one or two panes.
-import {byId, clamp} from './dom.js';
+import {byId, clamp, scratch} from './dom.js';
 
 const kSteps = [0.05, 0.1, 0.17, 0.25, 0.33, 0.5, 0.67, 1, 1.5, 2, 3, 4, 6, 8, 12, 16, 24, 32];
 
@@ -79,6 +79,7 @@ export class View {
 
   layout() {
     if (!this.width) return;
+    this.stack();
     const ratio = devicePixelRatio, scale = this.scale;
     const width = this.width * scale / ratio, height = this.height * scale / ratio;
     this.panes.forEach((pane, index) => {
@@ -98,13 +99,20 @@ export class View {
     for (const listener of this.listeners) listener();
   }
 
+  /** Two panes stand beside each other or one above the other: where the pictures are larger. */
+  stack() {
+    const box = this.stage.getBoundingClientRect(), across = this.width / this.height;
+    const beside = Math.min(box.width / 2, box.height * across), above = Math.min(box.width, box.height / 2 * across);
+    this.stage.toggleAttribute('data-stacked', !this.panes[1].hidden && above > beside);
+  }
+
   /**
    * The place of the picture under a place of the screen; outside of it too.
    * @param {number} x @param {number} y clientX and clientY
    */
   placeAt(x, y) {
-    const second = this.panes[1];
-    const pane = !second.hidden && x >= second.getBoundingClientRect().left ? 1 : 0;
+    const second = this.panes[1].getBoundingClientRect();
+    const pane = !this.panes[1].hidden && x >= second.left && y >= second.top ? 1 : 0;
     const box = this.sheets[pane].getBoundingClientRect();
     return {pane, x: (x - box.left) / box.width * this.width, y: (y - box.top) / box.height * this.height};
   }
@@ -142,8 +150,7 @@ export class View {
     to.globalCompositeOperation = 'source-in';
     to.fillStyle = '#ffb13d';
     to.fillRect(0, 0, canvas.width, canvas.height);
-    const inside = new OffscreenCanvas(mask.width, mask.height);
-    const fill = /** @type {OffscreenCanvasRenderingContext2D} */ (inside.getContext('2d'));
+    const {canvas: inside, to: fill} = scratch(mask.width, mask.height);
     fill.drawImage(mask, 0, 0);
     fill.globalCompositeOperation = 'source-in';
     fill.fillStyle = 'rgb(255 177 61 / 38%)';
