@@ -86,7 +86,7 @@ HttpResponse Session::State::Frame(const Moment& moment, const HttpRequest& requ
   const std::optional<FrameFormat> format = FindFrameFormat(format_name);
   if (!format) return ErrorAnswer(UsageError("format: expected jpeg, rgba or png"));
   std::optional<Explanation> show;
-  if (!show_name.empty()) {
+  if (!show_name.empty() && show_name != "picture") {
     show = FindExplanation(show_name);
     if (!show) return ErrorAnswer(UsageError(fmt::format("show: expected {}", fmt::join(ExplanationNames(), ", "))));
   }

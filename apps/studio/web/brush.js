@@ -81,10 +81,8 @@ export class BrushPanel {
     if (!exemplar) return;
     try {
       // Strokes belong to the exemplar that they were painted on.
-      if (!this.strokes.isEmpty && this.belongsTo !== this.exemplar.shown) {
+      if (!this.strokes.isEmpty && this.belongsTo !== this.exemplar.shown)
         this.strokes.clear(exemplar.width, exemplar.height);
-        this.exemplar.keepsBase = false;
-      }
       this.paintable = exemplar.style === 0 ?
           await getJson('/api/paintable', {exemplar: exemplar.index}) :
           {ok: false, why: 'Only the first style can be painted on: choose it among the styles.'};
@@ -226,9 +224,7 @@ export class BrushPanel {
       const response = await call('POST', withQuery('/api/paint', query), {blob: await pngOf(this.strokes.canvas)});
       this.paintable = await response.json();
       this.strokes.isSaved = true;
-      // The next save replaces a layered file's layer: the strokes stay in ours, over the file as it was without them.
-      this.exemplar.keepsBase = !!this.paintable?.layer;
-      if (!this.paintable?.layer) this.strokes.clear(exemplar.width, exemplar.height);
+      this.strokes.clear(exemplar.width, exemplar.height);  // they are in the file now
       this.page.announce(`paint saved in ${this.paintable?.file ?? exemplar.file}`);
       await this.exemplar.renew();
     } catch (error) {
@@ -253,7 +249,6 @@ export class BrushPanel {
     if (!exemplar) return;
     try {
       this.paintable = await getJson('/api/paintable', {exemplar: exemplar.index});
-      this.exemplar.keepsBase = false;
       await this.exemplar.renew();
       this.page.announce('the file was read anew; your strokes lie over it');
     } catch (error) {

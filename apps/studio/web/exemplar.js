@@ -18,7 +18,6 @@ export class ExemplarPanel {
     this.shown = '';
     this.checked = '';
     this.locked = false;  // while it is painted on, hovering the picture shows no other
-    this.keepsBase = false;  // what is shown stays, whatever the file has: strokes that were saved lie over it
     /** @type {(place: {style: number, exemplar: number, x: number, y: number} | null) => void} */
     this.onPlace = () => {};
     /** @type {() => void} */
@@ -72,11 +71,9 @@ export class ExemplarPanel {
       const response = await call('GET', withQuery('/api/exemplar', query));
       const bitmap = await createImageBitmap(await response.blob());
       if (this.current?.file !== exemplar.file || this.current.style_id !== exemplar.style_id) return;
-      if (!this.keepsBase) {
-        this.base.width = this.marks.width = bitmap.width;
-        this.base.height = this.marks.height = bitmap.height;
-        context(this.base).drawImage(bitmap, 0, 0);
-      }
+      this.base.width = this.marks.width = bitmap.width;
+      this.base.height = this.marks.height = bitmap.height;
+      context(this.base).drawImage(bitmap, 0, 0);
       this.box.style.aspectRatio = `${bitmap.width} / ${bitmap.height}`;
       this.onShown();
     } catch (error) {
