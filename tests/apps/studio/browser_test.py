@@ -1,0 +1,338 @@
+#!/usr/bin/python3
+"""The studio in a real browser: Debian's chromium, headless, through chromium-driver and selenium.
+
+Usage: browser_test.py SCUMBLE SOURCE_FOLDER WORK_FOLDER [unittest's arguments]
+
+WORK_FOLDER takes axe-core, which npm installs there.
+"""
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+from selenium import webdriver
+from selenium.webdriver import ActionChains
+from selenium.webdriver.chrome.service import Service
+from selenium.webdriver.common.by import By
+from selenium.webdriver.common.keys import Keys
+
+SCUMBLE, SOURCE, WORK = (pathlib.Path(word).resolve() for word in sys.argv[1:4])
+AXE = "axe-core@4.10.2"
+SIZE = "320x180"
+PATIENCE = 60  # seconds that a loaded machine is waited for
+
+
+def axe_source():
+    """The text of axe-core, which npm fetches once."""
+    file = WORK / "node_modules" / "axe-core" / "axe.min.js"
+    if not file.is_file():
+        WORK.mkdir(parents=True, exist_ok=True)
+        subprocess.run(["npm", "install", "--no-save", "--no-audit", "--no-fund", "--prefix", str(WORK), AXE],
+                       check=True, stdout=subprocess.DEVNULL, timeout=300)
+    return file.read_text()
+
+
+class Studio:
+    """The program, on a copy of a bundled style in a folder of its own."""
+
+    def __init__(self, folder, scene="suzanne", port=None):
+        self.folder = folder
+        words = [str(SCUMBLE), "studio", str(SOURCE / "scenes" / f"{scene}.glb"), "--style", str(folder / "my"), "--size",
+                 SIZE, "--no-browser", "--save-to", str(folder)]
+        self.process = subprocess.Popen(words + (["--port", str(port)] if port else []), stdout=subprocess.PIPE,
+                                        text=True)
+        self.address = self.process.stdout.readline().strip()
+        self.port = int(self.address.split(":")[2].split("/")[0])
+
+    def stop(self):
+        self.process.terminate()
+        self.process.stdout.close()
+        return self.process.wait(PATIENCE)
+
+
+class Page(unittest.TestCase):
+    scene = "suzanne"
+
+    def setUp(self):
+        self.temporary = tempfile.TemporaryDirectory()
+        self.folder = pathlib.Path(self.temporary.name)
+        shutil.copytree(SOURCE / "exemplars" / "oil", self.folder / "my")
+        self.studio = Studio(self.folder, self.scene)
+        options = webdriver.ChromeOptions()
+        for word in ("--headless=new", "--disable-dev-shm-usage", "--window-size=1500,950"):
+            options.add_argument(word)
+        if os.geteuid() == 0:
+            options.add_argument("--no-sandbox")
+        options.add_experimental_option("prefs", {"download.default_directory": str(self.folder)})
+        self.browser = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
+        self.browser.set_page_load_timeout(PATIENCE)
+        self.browser.set_script_timeout(PATIENCE)
+        self.browser.get(self.studio.address)
+        self.settled()
+
+    def tearDown(self):
+        self.browser.quit()
+        self.studio.stop()
+        self.temporary.cleanup()
+
+    def js(self, script, *arguments):
+        return self.browser.execute_script(script, *arguments)
+
+    def until(self, condition, what):
+        end = time.monotonic() + PATIENCE
+        while not condition():
+            if time.monotonic() > end:
+                self.browser.save_screenshot(str(WORK / "failed.png"))
+                self.fail(f"{what} did not happen; the page says {self.find('#status').text!r}, "
+                          f"{self.find('#problem-text').text!r}")
+            time.sleep(0.03)
+
+    def call(self, method, path, body=None):
+        """A call from the page's own origin: (status, JSON or text)."""
+        status, text = self.browser.execute_async_script(
+            "const [method, path, body, done] = arguments;"
+            "fetch(path, {method, body, headers: {'X-Scumble': '1', 'Content-Type': 'application/json'}})"
+            ".then(async (r) => done([r.status, await r.text()]))", method, path, body and json.dumps(body))
+        return status, json.loads(text) if text[:1] in "{[" else text
+
+    def state(self):
+        return self.call("GET", "/api/state")[1]
+
+    def settled(self):
+        """Waits for the final of the server's newest state on the screen."""
+        self.until(lambda: self.js("return document.documentElement.dataset.drawn") == "final" and
+                   int(self.js("return document.documentElement.dataset.revision")) >= self.state()["revision"],
+                   "the final")
+
+    def find(self, selector):
+        return self.browser.find_element(By.CSS_SELECTOR, selector)
+
+    def pixels(self):
+        """A number that changes with the picture on the screen."""
+        return self.js("const c = document.getElementById('picture');"
+                       "const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;"
+                       "let h = 0; for (let i = 0; i < d.length; i += 1) h = (h * 31 + d[i]) | 0; return h")
+
+    def choose(self, kind, name):
+        self.js("document.querySelector(`[data-${arguments[0]}='${arguments[1]}'] input`).click()", kind, name)
+        self.until(lambda: self.state()[kind] == name, f"the choice of {name}")
+        self.settled()
+
+    def drag(self, element, dx, dy):
+        chain = ActionChains(self.browser, duration=20).move_to_element(element).click_and_hold()
+        for _ in range(4):
+            chain.move_by_offset(dx // 4, dy // 4)
+        chain.release().perform()
+
+
+class Pictures(Page):
+    def test_the_first_picture_is_the_command_lines(self):
+        self.assertEqual(self.js("const c = document.getElementById('picture'); return [c.width, c.height]"), [320, 180])
+        command = self.call("POST", "/api/export", {"what": "command"})[1]["command"]
+        file = self.folder / "cli.png"
+        command = command.replace("scumble stylize", f"{SCUMBLE} stylize --quiet", 1).replace("picture.png", str(file))
+        subprocess.run(command, shell=True, check=True)
+        told = self.browser.execute_async_script(
+            "const done = arguments[0]; fetch('/api/export', {method: 'POST', headers: {'X-Scumble': '1', "
+            "'Content-Type': 'application/json'}, body: JSON.stringify({what: 'picture', format: 'png'})})"
+            ".then(async (r) => done([...new Uint8Array(await r.arrayBuffer())]))")
+        self.assertEqual(bytes(told), file.read_bytes())
+
+    def saved(self, write, what):
+        before, revision = self.pixels(), self.state()["revision"]
+        write()
+        self.until(lambda: self.state()["revision"] > revision and self.pixels() != before, what)
+
+    def test_saving_by_rename_and_in_place(self):
+        painting = self.folder / "my" / "lit.png"
+        other = SOURCE / "exemplars" / "gouache" / "lit.png"
+
+        def rename():
+            shutil.copy(other, self.folder / "my" / "new.png")
+            os.replace(self.folder / "my" / "new.png", painting)
+
+        self.saved(rename, "a picture after a save by rename")
+        oil = (SOURCE / "exemplars" / "oil" / "lit.png").read_bytes()
+        self.saved(lambda: painting.write_bytes(oil), "a picture after a save in place")
+
+    def test_half_a_file_waits_for_the_rest(self):
+        painting, whole = self.folder / "my" / "lit.png", (SOURCE / "exemplars" / "gouache" / "lit.png").read_bytes()
+
+        def write():
+            with painting.open("wb") as file:
+                file.write(whole[:len(whole) // 2])
+                file.flush()
+                time.sleep(0.7)
+                file.write(whole[len(whole) // 2:])
+
+        self.saved(write, "a picture after two halves")
+        self.assertFalse(self.find("#problem").is_displayed())
+
+    def test_a_broken_file_is_told_and_the_picture_stays(self):
+        painting, before = self.folder / "my" / "lit.png", self.pixels()
+        whole = painting.read_bytes()
+        painting.write_bytes(whole[:5000])
+        self.until(lambda: self.find("#problem").is_displayed(), "the problem")
+        self.assertIn("lit.png", self.find("#problem-text").text)
+        self.assertEqual(self.pixels(), before)
+        painting.write_bytes((SOURCE / "exemplars" / "gouache" / "lit.png").read_bytes())
+        self.until(lambda: not self.find("#problem").is_displayed() and self.pixels() != before, "its end")
+
+    def test_orbit_and_undo(self):
+        before, eye = self.pixels(), self.state()["eye"]
+        self.drag(self.find("#stage"), 80, 20)
+        self.until(lambda: self.state()["view"], "an orbit")
+        self.settled()
+        self.assertNotEqual(self.pixels(), before)
+        self.assertNotEqual(self.state()["view"]["azimuth"], eye["azimuth"])
+        self.find("#undo").click()
+        self.until(lambda: self.state()["view"] is None, "the undo")
+        self.settled()
+        self.assertEqual(self.pixels(), before)
+
+    def test_a_slider_and_its_reset(self):
+        before = self.pixels()
+        self.find("[data-key='transfer.threshold'] [data-slider]").send_keys(Keys.ARROW_RIGHT * 10)
+        self.until(lambda: "transfer.threshold" in self.state()["keys"], "a changed key")
+        self.settled()
+        self.assertNotEqual(self.pixels(), before)
+        self.assertIn("changed", self.find("[data-key='transfer.threshold']").get_attribute("class"))
+        text = (self.folder / "my" / "style.toml").read_text()
+        self.find("#save").click()
+        self.until(lambda: (self.folder / "my" / "style.toml").read_text() != text, "the save")
+        now = (self.folder / "my" / "style.toml").read_text()
+        changed = [line for line in now.splitlines() if line not in text.splitlines()]
+        self.assertEqual(len(changed), 1, changed)
+        self.assertTrue(changed[0].startswith("threshold"), changed)
+
+
+class Understanding(Page):
+    def test_picking_says_what_the_source_field_says(self):
+        stage = self.find("#stage")
+        ActionChains(self.browser).move_to_element(stage).perform()
+        self.until(lambda: "Suzanne" in self.find("#pick").text, "a pick")
+        x, y = 160, 90
+        status, pick = self.call("GET", f"/api/pick?x={x}&y={y}")
+        self.assertEqual(status, 200)
+        self.assertTrue(pick["covered"])
+        self.assertEqual(pick["object"], "Suzanne")
+        self.assertIn(f"level {pick['level']}", self.find("#pick").text.lower())
+
+    def test_show_pictures_by_key(self):
+        before = self.pixels()
+        self.find("#stage").send_keys("2")
+        self.until(lambda: self.js("return document.documentElement.dataset.shown") == "chunks", "chunks")
+        self.assertNotEqual(self.pixels(), before)
+        self.find("#stage").send_keys("0")
+        self.until(lambda: self.pixels() == before, "the picture")
+
+    def test_assigning_by_a_click(self):
+        ActionChains(self.browser).move_to_element(self.find("#stage")).click().perform()
+        self.until(lambda: self.find("#popover").is_displayed(), "the styles for an object")
+        self.js("document.querySelector(\"#popover [data-assign='ink']\").click()")
+        self.until(lambda: self.state()["assignments"] == [{"name": "Suzanne", "style": "ink"}], "the assignment")
+        self.settled()
+        self.assertIn("--assign Suzanne=ink", self.call("POST", "/api/export", {"what": "command"})[1]["command"])
+
+    def test_wipe_between_two_pictures(self):
+        self.choose("style", "ink")
+        self.find("#stage").send_keys("w")
+        self.until(lambda: self.js("return document.documentElement.dataset.compare") == "wipe", "the wipe")
+        wipe = self.find("#wipe")
+        before = wipe.get_attribute("aria-valuenow")
+        wipe.send_keys(Keys.ARROW_LEFT)
+        self.assertNotEqual(wipe.get_attribute("aria-valuenow"), before)
+        self.js("const b = document.getElementById('beside'); b.value = 'style:gouache';"
+                "b.dispatchEvent(new Event('change', {bubbles: true}))")
+        self.until(lambda: not self.find("#problem").is_displayed() and "gouache" in self.js(
+            "return document.getElementById('beside').value"), "another style beside it")
+
+    def test_letters_never_act_in_fields(self):
+        self.find("#keys-find").send_keys("wsd2")
+        self.assertEqual(self.js("return document.documentElement.dataset.compare"), "off")
+        self.assertEqual(self.find("#keys-find").get_attribute("value"), "wsd2")
+
+    def test_axe_finds_nothing(self):
+        self.js(axe_source())
+        for theme in ("light", "dark"):
+            self.js("document.documentElement.dataset.theme = arguments[0]", theme)
+            found = self.browser.execute_async_script(
+                "const done = arguments[0]; axe.run(document, {runOnly: ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa']})"
+                ".then((r) => done(r.violations.map((v) => v.id + ' ' + v.nodes[0].target)))")
+            self.assertEqual(found, [], theme)
+
+    def test_by_keyboard_alone(self):
+        self.js("document.activeElement.blur()")
+        reached = set()
+        for _ in range(160):
+            ActionChains(self.browser).send_keys(Keys.TAB).perform()
+            reached.add(self.js("return document.activeElement.id"))
+        for wanted in ("stage", "save-as", "copy-command", "download", "camera", "seed", "paint"):
+            self.assertIn(wanted, reached)
+        self.find("#stage").send_keys(Keys.ARROW_LEFT)
+        self.until(lambda: self.state()["view"], "an orbit by keys")
+
+
+class Lasting(Page):
+    scene = "toys"
+
+    def test_the_timeline(self):
+        before = self.pixels()
+        slider = self.find("#frame-slider")
+        slider.send_keys(Keys.ARROW_RIGHT * 6)
+        self.until(lambda: self.state()["frame"] is not None, "a frame")
+        self.settled()
+        self.assertNotEqual(self.pixels(), before)
+        frame = self.state()["frame"]
+        self.find("#play").click()
+        self.until(lambda: self.state()["frame"] != frame, "another frame")
+        self.find("#play").click()
+
+    def test_a_reload_loses_nothing_also_of_a_new_server(self):
+        self.choose("style", "gouache")
+        self.find("#stage").send_keys(Keys.ARROW_LEFT)
+        self.until(lambda: self.state()["view"], "an orbit")
+        self.settled()
+        view, before = self.state()["view"], self.pixels()
+        self.browser.refresh()
+        self.settled()
+        self.assertEqual((self.state()["style"], self.state()["view"]), ("gouache", view))
+        self.assertEqual(self.pixels(), before)
+        self.assertEqual(self.studio.stop(), 0)
+        self.until(lambda: self.find("#gone").is_displayed(), "the banner of a server that is gone")
+        self.studio = Studio(self.folder, self.scene, self.studio.port)
+        self.browser.get(self.studio.address)
+        self.settled()
+        self.assertEqual(self.state()["scene"], "toys")
+
+    def test_two_tabs(self):
+        one = self.browser.current_window_handle
+        self.js("window.open('/')")
+        two = next(handle for handle in self.browser.window_handles if handle != one)
+        self.browser.switch_to.window(two)
+        self.settled()
+        self.choose("style", "ink")
+        self.browser.switch_to.window(one)
+        self.settled()
+        self.assertTrue(self.js("return document.querySelector(\"[data-style='ink'] input\").checked"))
+
+    def test_painting_on_the_page(self):
+        file = self.folder / "my" / "lit.png"
+        before, bytes_before = self.pixels(), file.read_bytes()
+        self.find("#paint").click()
+        self.until(lambda: self.js("return document.body.hasAttribute('data-paint')"), "the brush")
+        self.drag(self.find("#exemplar"), 60, 40)
+        self.until(lambda: self.find("#paint-save").is_enabled(), "a stroke")
+        self.find("#paint-save").click()
+        self.until(lambda: file.read_bytes() != bytes_before, "the paint in the file")
+        self.until(lambda: self.pixels() != before, "the paint in the picture")
+
+
+if __name__ == "__main__":
+    WORK.mkdir(parents=True, exist_ok=True)
+    unittest.main(argv=[sys.argv[0]] + sys.argv[4:], verbosity=2)
