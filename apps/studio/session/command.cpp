@@ -51,7 +51,7 @@ void AddScene(const SceneRequest& scene, CommandLine& line) {
 
 }  // namespace
 
-std::string CommandOf(const PictureJob& job) {
+std::string CommandOf(const PictureJob& job, const std::vector<std::string>& chosen) {
   CommandLine line("scumble stylize");
   line.Word(job.scene.scene);
   line.Option("--style", job.style.style);
@@ -62,7 +62,7 @@ std::string CommandOf(const PictureJob& job) {
   if (job.picture.fps) line.Option("--fps", FrameRateToText(*job.picture.fps));
   line.Changed("--seed", job.picture.seed, PictureRequest().seed);
   if (job.budget.quality) line.Option("--quality", QualityNames()[std::size_t(*job.budget.quality)]);
-  if (job.budget.budget_ms > 0) line.Option("--budget-ms", fmt::format("{}", job.budget.budget_ms));
+  for (const std::string& word : chosen) line.Word(word);
   line.Option("-o", "picture.png");
   return line.text();
 }

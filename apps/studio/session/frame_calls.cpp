@@ -94,7 +94,7 @@ HttpResponse Session::State::Frame(const Moment& moment, const HttpRequest& requ
   if (moment.state.style.empty()) return ErrorAnswer(InputError("there is no style yet: choose one"), kCannotPaint);
   PictureJob job = JobAt(moment, show);
   if (draft) {
-    finals.CancelUnless(job.key);
+    if (&lane == &drafts) finals.CancelUnless(job.key);
     job.budget.quality = Quality::kDraft, job.budget.budget_ms = 0;
     job.picture.leave_small = *format == FrameFormat::kJpeg;  // browsers scale it as they draw it
     job.key += job.picture.leave_small ? " small draft" : " draft";
@@ -121,10 +121,11 @@ HttpResponse Session::State::GetFrame(const HttpRequest& request) {
     return found == request.query.end() ? std::string(otherwise) : found->second;
   };
   const std::string quality = text("quality", "final");
+  const auto begun = std::chrono::system_clock::now();
   const Moment moment = Now();
   HttpResponse answer =
       Frame(moment, request, quality, text("format", "jpeg"), text("show", ""), quality == "draft" ? drafts : finals);
-  if (answer.status == 200 && quality != "draft") WatchFilesOf(moment);
+  if (quality != "draft" && (answer.status == 200 || answer.status == kCannotPaint)) WatchFilesOf(moment, begun);
   return answer;
 }
 
@@ -200,6 +201,10 @@ HttpResponse Session::State::ExportPicture(const std::string& format) {
   const Expected<Lane::Painted> painted = LaneOf(finals, job).Paint(job);
   if (!painted) return ErrorAnswer(painted.error(), kCannotPaint);
   const TemporaryPlace place(context.temporary_folder);
+  if (place.folder.empty()) {
+    return ErrorAnswer(
+        OutputError("cannot make a folder in " + context.temporary_folder.string() + " for the picture"));
+  }
   const fs::path file = place.folder / ("picture." + format);
   const Status written = WritePicture(file, (*painted)->picture, (*painted)->write);
   if (!written) return ErrorAnswer(written.error());
@@ -217,7 +222,10 @@ HttpResponse Session::State::Thumbnail(const HttpRequest& request) {
   const SceneEntry* const scene = scene_id == request.query.end() ? nullptr : known.FindScene(scene_id->second);
   const StyleEntry* const style = style_id == request.query.end() ? nullptr : known.FindStyle(style_id->second);
   if (!scene && !style) return ErrorAnswer(InputError("there is no scene or style of this name"), 404);
-  const std::string key = scene ? "scene " + scene->id : "style " + style->id;
+  std::string key = scene ? "scene " + scene->id : "style " + style->id;
+  if (style) {
+    if (const auto of = FactsOf(*style)) key += (*of)->stamp;
+  }
   {
     const std::lock_guard lock(mutex);
     const auto found = thumbnails.find(key);
@@ -254,7 +262,17 @@ HttpResponse Session::State::Export(const HttpRequest& request) {
     return ExportPicture(format.is_string() ? format.get<std::string>() : "");
   }
   const Moment moment = Now();
-  if (what == "command") return JsonAnswer({{"command", CommandOf(JobAt(moment, std::nullopt))}});
+  if (what == "command") {
+    const PictureJob job = JobAt(moment, std::nullopt);
+    // A budget's choice depends on this machine's moment: the command repeats what was chosen.
+    std::vector<std::string> chosen;
+    if (job.budget.budget_ms > 0) {
+      const Expected<Lane::Painted> painted = LaneOf(finals, job).Paint(job);
+      if (!painted) return ErrorAnswer(painted.error(), kCannotPaint);
+      if ((*painted)->choice) chosen = (*painted)->choice->options;
+    }
+    return JsonAnswer({{"command", CommandOf(job, chosen)}});
+  }
   if (what != "style") return ErrorAnswer(UsageError("what: expected picture, style or command"));
   const Catalogue known = KnownCatalogue();
   const StyleEntry* const style = known.FindStyle(moment.state.style);

@@ -45,6 +45,22 @@ std::string StampOfFile(const std::filesystem::path& file) {
   return failed ? "gone" : fmt::format("{} {}", time.time_since_epoch().count(), size);
 }
 
+// The style's own file, and pictures beside it: those of a style that cannot be read are not known otherwise.
+void AddFilesAround(const StyleEntry& style, std::vector<std::string>& files) {
+  constexpr std::size_t kMostFiles = 64;
+  std::error_code failed;
+  const std::filesystem::path toml = style.toml();
+  files.push_back((toml.empty() ? style.path : toml).string());
+  if (toml.empty()) return;
+  std::size_t count = 0;
+  const std::filesystem::path folder = toml.has_parent_path() ? toml.parent_path() : std::filesystem::path(".");
+  for (const auto& entry : std::filesystem::directory_iterator(folder, failed)) {
+    const bool is_picture =
+        HasEnding(entry.path().string(), {".png", ".ora", ".kra", ".psd", ".exr", ".tif", ".tiff", ".jpg", ".jpeg"});
+    if (is_picture && ++count <= kMostFiles) files.push_back(entry.path().string());
+  }
+}
+
 Expected<std::shared_ptr<const StyleFacts>> ReadFacts(const StyleEntry& style) {
   StyleFacts facts;
   SCUMBLE_ASSIGN(facts.values, StyleValues(style.path));
@@ -109,15 +125,19 @@ Expected<SceneDescription> Session::State::Describe(const Moment& moment) {
 }
 
 Expected<std::shared_ptr<const StyleFacts>> Session::State::FactsOf(const StyleEntry& style) {
-  const std::string stamp = StampOfFile(style.toml().empty() ? style.path : style.toml());
+  const auto stamp_of = [&](const StyleFacts& of) {
+    std::string stamp = StampOfFile(style.toml().empty() ? style.path : style.toml());
+    for (const ExemplarFile& one : of.exemplars) stamp += " " + StampOfFile(one.file);
+    return stamp;
+  };
   {
     const std::lock_guard lock(mutex);
     const auto known = facts.find(style.id);
-    if (known != facts.end() && known->second->stamp == stamp) return known->second;
+    if (known != facts.end() && known->second->stamp == stamp_of(*known->second)) return known->second;
   }
   SCUMBLE_ASSIGN(const std::shared_ptr<const StyleFacts> read, ReadFacts(style));
   StyleFacts stamped = *read;
-  stamped.stamp = stamp;
+  stamped.stamp = stamp_of(stamped);
   auto kept = std::make_shared<const StyleFacts>(std::move(stamped));
   const std::lock_guard lock(mutex);
   facts[style.id] = kept;
@@ -206,6 +226,9 @@ HttpResponse Session::State::PatchState(const HttpRequest& request) {
     const std::lock_guard lock(mutex);
     Expected<StudioState> next = Patched(state, *body, catalogue);
     if (!next) return ErrorAnswer(next.error(), next.error().kind == ErrorKind::kInput ? 404 : 400);
+    // Files of what was not shown were not watched.
+    const auto styles_of = [](const StudioState& of) { return ToJson(of)["assignments"]; };
+    if (next->scene != state.scene || next->style != state.style || styles_of(*next) != styles_of(state)) ++generation;
     state = std::move(*next);
     ++revision;
   }
@@ -227,13 +250,23 @@ void Session::State::Tell(const std::string& why) {
 }
 
 // After a picture: what it was made of.
-void Session::State::WatchFilesOf(const Moment& moment) {
+void Session::State::WatchFilesOf(const Moment& moment, std::chrono::system_clock::time_point begun) {
   const PictureJob job = JobAt(moment, std::nullopt);
+  const std::string belongs = fmt::format("{}\n{}\n{}\n{}", job.scene.scene, job.style.style,
+                                          fmt::join(job.style.assigned, "\n"), moment.generation);
+  {
+    const std::lock_guard lock(mutex);
+    if (watched == belongs) return;
+    watched = belongs;
+  }
   const Expected<SceneDescription> described = LaneOf(finals, job).Describe(job.scene, job.picture.frame);
-  if (!described) return;
-  std::vector<std::string> files = described->files;
-  files.insert(files.end(), described->style_files.begin(), described->style_files.end());
-  watch->Watch(files);
+  std::vector<std::string> files = {job.scene.scene};
+  if (described) {
+    files = described->files;
+    files.insert(files.end(), described->style_files.begin(), described->style_files.end());
+  }
+  for (const StyleEntry& style : StylesOf(moment.state)) AddFilesAround(style, files);
+  watch->Watch(files, begun);
 }
 
 void Session::State::SetProblem(std::optional<Error> now) {
@@ -252,6 +285,7 @@ void Session::State::SetProblem(std::optional<Error> now) {
 void Session::State::FilesHaveChanged() {
   const auto deadline = Clock::now() + std::chrono::seconds(2);
   while (!stopped) {
+    const auto begun = std::chrono::system_clock::now();
     Moment moment;
     {
       const std::lock_guard lock(mutex);
@@ -262,9 +296,9 @@ void Session::State::FilesHaveChanged() {
     const PictureJob job = JobAt(moment, std::nullopt);
     const Expected<Lane::Painted> painted = LaneOf(finals, job).Paint(job);
     if (painted || painted.error().kind == ErrorKind::kCancelled) {
-      SetProblem(std::nullopt);
+      if (painted) SetProblem(std::nullopt);
       Change([] {}, "files");
-      if (painted) WatchFilesOf(moment);
+      if (painted) WatchFilesOf(moment, begun);
       return;
     }
     if (watch->SeesChanges()) return;  // it is called again

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -35,7 +36,7 @@ struct ExemplarFile {
 
 // What is read of a style without preparing it; kept while its style.toml stays.
 struct StyleFacts {
-  std::string stamp;  // of the style.toml
+  std::string stamp;  // of the style.toml and the exemplars
   std::map<std::string, KeyValue> values;
   std::vector<ExemplarFile> exemplars;
 };
@@ -54,6 +55,7 @@ struct Session::State {
   std::uint64_t revision = 1;
   std::uint64_t generation = 1;  // raised when a file has changed
   std::optional<Error> problem;
+  std::string watched;                                             // what the files that are watched belong to
   std::map<std::string, std::shared_ptr<const StyleFacts>> facts;  // by style id
   std::map<std::string, Expected<SceneDescription>> descriptions;  // by what they depend on
   std::map<std::string, std::string> thumbnails;                   // by kind and id
@@ -77,7 +79,8 @@ struct Session::State {
   // Replaces the state; `why` is for the page.
   void Change(const std::function<void()>& change, const std::string& why);
   void Tell(const std::string& why);
-  void WatchFilesOf(const Moment& moment);
+  // Of a picture whose painting began then, or could not be painted.
+  void WatchFilesOf(const Moment& moment, std::chrono::system_clock::time_point begun);
   void FilesHaveChanged();
   void SetProblem(std::optional<Error> now);
 

@@ -237,7 +237,7 @@ json ToJson(const StudioState& state) {
 
 PictureJob JobOf(const StudioState& state, const Catalogue& catalogue, const SceneRequest& scene) {
   PictureJob job;
-  job.key = ToJson(state).dump();
+  job.key = ToJson(state).dump(-1, ' ', false, json::error_handler_t::replace);  // a file's name may be no UTF-8
   job.scene = scene;
   if (const SceneEntry* entry = catalogue.FindScene(state.scene)) job.scene.scene = entry->file;
   job.scene.camera = state.camera, job.scene.view = state.view, job.scene.light = state.light;

@@ -47,6 +47,7 @@ nlohmann::json ToJson(const ViewAngles& view);
 PictureJob JobOf(const StudioState& state, const Catalogue& catalogue, const SceneRequest& scene);
 
 // "scumble stylize …" that makes the same bytes, as a shell takes it.
-std::string CommandOf(const PictureJob& job);
+// A budget stands there as the options that it `chose`.
+std::string CommandOf(const PictureJob& job, const std::vector<std::string>& chosen = {});
 
 }  // namespace scumble

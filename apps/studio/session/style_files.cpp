@@ -32,23 +32,37 @@ Status CheckName(const std::string& name) {
       "digit or _: give another name");
 }
 
-// The files of a style are those of its folder, hidden ones and folders inside left out.
+// The pictures and guides that the style reads, at the same places below the new folder.
+Expected<std::vector<fs::path>> FilesOf(const StyleEntry& style) {
+  SCUMBLE_ASSIGN(const Style read, LoadStyle(style.path));
+  SCUMBLE_ASSIGN(const auto values, StyleValues(style.path));
+  std::vector<fs::path> files;
+  for (const Exemplar& one : read.exemplars) {
+    files.push_back(one.name);
+    if (!one.guides_file.empty()) files.push_back(one.guides_file);
+  }
+  const auto paper = values.find("transfer.paper");
+  const auto* text = paper == values.end() ? nullptr : std::get_if<std::string>(&paper->second);
+  if (text && !text->empty() && text->front() != '#') files.push_back(style.toml().parent_path() / *text);
+  return files;
+}
+
 Status CopyStyle(const StyleEntry& style, const fs::path& to) {
   std::error_code failed;
-  const bool is_bare = style.toml().empty();
-  const fs::path from = is_bare ? style.path : style.toml().parent_path();
-  if (is_bare) {
-    fs::copy_file(from, to / from.filename(), failed);
-  } else {
-    for (const fs::directory_entry& entry : fs::directory_iterator(from.empty() ? "." : from, failed)) {
-      if (!entry.is_regular_file() || entry.path().filename().string().front() == '.') continue;
-      fs::copy_file(entry.path(), to / entry.path().filename(), failed);
-      if (failed) break;
-      fs::permissions(to / entry.path().filename(), fs::perms::owner_write, fs::perm_options::add, failed);
+  const fs::path toml = style.toml(), from = fs::absolute(toml.empty() ? style.path : toml).parent_path();
+  SCUMBLE_ASSIGN(const std::vector<fs::path> files, FilesOf(style));
+  for (const fs::path& file : files) {
+    const fs::path place = fs::absolute(file).lexically_normal().lexically_relative(from.lexically_normal());
+    if (place.empty() || *place.begin() == "..") {
+      return UsageError(file.string() + " lies outside of " + from.string() +
+                        ", the style's folder: move it there, and the style can be saved as a new one");
     }
-  }
-  if (failed) {
-    return OutputError("cannot copy the files of " + from.string() + " to " + to.string() + ": " + failed.message());
+    fs::create_directories((to / place).parent_path(), failed);
+    fs::copy_file(file, to / place, fs::copy_options::skip_existing, failed);
+    if (!failed) fs::permissions(to / place, fs::perms::owner_write, fs::perm_options::add, failed);
+    if (failed) {
+      return OutputError("cannot copy " + file.string() + " to " + to.string() + ": " + failed.message());
+    }
   }
   return Ok();
 }

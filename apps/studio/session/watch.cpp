@@ -35,6 +35,13 @@ std::uint64_t HashOfFile(const std::string& file) {
   return HashText({reinterpret_cast<const char*>(bytes->data()), bytes->size()}) | 1;
 }
 
+bool IsWrittenAfter(const std::string& file, std::chrono::system_clock::time_point moment) {
+  struct stat found {};
+  if (::stat(file.c_str(), &found) != 0) return false;
+  const auto written = std::chrono::seconds(found.st_mtim.tv_sec) + std::chrono::nanoseconds(found.st_mtim.tv_nsec);
+  return written > moment.time_since_epoch();
+}
+
 }  // namespace
 
 FileWatch::FileWatch(std::function<void(const std::vector<std::string>&)> changed) : changed_(std::move(changed)) {
@@ -55,7 +62,7 @@ FileWatch::~FileWatch() {
   if (wake_ >= 0) ::close(wake_);
 }
 
-void FileWatch::Watch(const std::vector<std::string>& files) {
+void FileWatch::Watch(const std::vector<std::string>& files, std::chrono::system_clock::time_point read) {
   std::map<std::string, Seen> next;
   {
     const std::lock_guard lock(mutex_);
@@ -65,7 +72,9 @@ void FileWatch::Watch(const std::vector<std::string>& files) {
     }
   }
   for (const std::string& file : files) {
-    if (!next.count(file)) next[file] = {StatOf(file), HashOfFile(file)};
+    if (next.count(file)) continue;
+    next[file] = {StatOf(file), HashOfFile(file)};
+    if (IsWrittenAfter(file, read)) next[file] = {};
   }
   const std::lock_guard lock(mutex_);
   seen_ = std::move(next);

@@ -2,6 +2,7 @@
 // rename, and by looking every half second, since network shares tell nothing.
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <functional>
@@ -23,8 +24,9 @@ class FileWatch {
   FileWatch(const FileWatch&) = delete;
   FileWatch& operator=(const FileWatch&) = delete;
 
-  // Watches these from now on, instead of those before; what is known of a file that stays is kept.
-  void Watch(const std::vector<std::string>& files);
+  // Watches these from now on, instead of those before; what is known of a file that stays is kept. One that is new
+  // here and was written after `read` has changed.
+  void Watch(const std::vector<std::string>& files, std::chrono::system_clock::time_point read);
 
   // Whether a file has changed that `changed` was not yet told of.
   bool SeesChanges() const;

@@ -3,7 +3,7 @@
 set -eu
 if ! command -v tsc >/dev/null; then
   echo "tsc is not here: install node-typescript" >&2
-  exit 77
+  exit 1
 fi
 cd "$1"
 exec tsc --allowJs --checkJs --noEmit --strict --noUnusedLocals \
