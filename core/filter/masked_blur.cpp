@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <vector>
 
 #include "core/image/check.h"
@@ -49,12 +50,15 @@ struct ExtendedBox {
 struct Plane {
   int width = 0;
   int height = 0;
-  std::vector<double> values;
+  std::unique_ptr<double[]> values;
+
+  Plane(int w, int h)
+      : width(w), height(h), values(std::make_unique_for_overwrite<double[]>(std::size_t(w) * std::size_t(h))) {}
 };
 
 // Blurs along x and transposes: two calls make the blur.
 Plane BlurRows(const Plane& plane, const ExtendedBox& box) {
-  Plane turned{plane.height, plane.width, std::vector<double>(plane.values.size())};
+  Plane turned(plane.height, plane.width);
   const int margin = kPasses * (box.reach + 1);  // what a pass carries beyond the end another may bring back
   const int count = plane.width + 2 * margin, groups = (plane.height + kLanes - 1) / kLanes;
   tbb::parallel_for(0, groups, [&](int group) {
@@ -62,7 +66,7 @@ Plane BlurRows(const Plane& plane, const ExtendedBox& box) {
     std::vector<double> line((std::size_t(count) + 2 * std::size_t(box.reach + 1)) * kLanes, 0.0), other(line.size());
     const std::size_t begin = (std::size_t(box.reach + 1) + std::size_t(margin)) * kLanes;
     for (int lane = 0; lane < rows; ++lane) {
-      const double* row = plane.values.data() + std::size_t(first + lane) * plane.width;
+      const double* row = plane.values.get() + std::size_t(first + lane) * plane.width;
       for (int x = 0; x < plane.width; ++x) line[begin + std::size_t(x) * kLanes + lane] = row[x];
     }
     for (int pass = 0; pass < kPasses; ++pass) {
@@ -71,7 +75,7 @@ Plane BlurRows(const Plane& plane, const ExtendedBox& box) {
     }
     for (int x = 0; x < plane.width; ++x) {
       std::copy_n(line.begin() + std::ptrdiff_t(begin) + std::ptrdiff_t(x) * kLanes, rows,
-                  turned.values.begin() + std::ptrdiff_t(x) * plane.height + first);
+                  turned.values.get() + std::ptrdiff_t(x) * plane.height + first);
     }
   });
   return turned;
@@ -100,13 +104,19 @@ Picture MaskedBlur(const Picture& picture, std::span<const std::uint8_t> mask, d
   if (sigma >= std::max(picture.width, picture.height)) return MaskedMean(picture, mask);
   const ExtendedBox box(sigma);
   const auto blurred = [&](const auto& value) {
-    Plane plane{picture.width, picture.height, std::vector<double>(mask.size())};
+    Plane plane(picture.width, picture.height);
     for (std::size_t i = 0; i < mask.size(); ++i) plane.values[i] = mask[i] ? value(i) : 0.0;
     return BlurRows(BlurRows(plane, box), box);
   };
   const Plane weight = blurred([](std::size_t) { return 1.0; });
   Picture result(picture.width, picture.height);
+  bool is_opaque = true;  // then so is the mean
+  for (std::size_t i = 0; i < mask.size(); ++i) is_opaque = is_opaque && (!mask[i] || picture.rgba[4 * i + 3] == 65535);
   for (int c = 0; c < 4; ++c) {
+    if (c == 3 && is_opaque) {
+      for (std::size_t i = 0; i < mask.size(); ++i) result.rgba[4 * i + 3] = mask[i] ? 65535 : 0;
+      break;
+    }
     const Plane sum = blurred([&](std::size_t i) { return double(Premultiplied(picture.rgba.data() + 4 * i, c)); });
     for (std::size_t i = 0; i < mask.size(); ++i) {
       if (!mask[i]) continue;
