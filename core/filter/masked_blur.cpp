@@ -56,9 +56,8 @@ struct Plane {
       : width(w), height(h), values(std::make_unique_for_overwrite<double[]>(std::size_t(w) * std::size_t(h))) {}
 };
 
-// Blurs along x and transposes: two calls make the blur.
-Plane BlurRows(const Plane& plane, const ExtendedBox& box) {
-  Plane turned(plane.height, plane.width);
+// Blurs along x and transposes into `turned`: two calls make the blur.
+void BlurRows(const Plane& plane, const ExtendedBox& box, const Plane& turned) {
   const int margin = kPasses * (box.reach + 1);  // what a pass carries beyond the end another may bring back
   const int count = plane.width + 2 * margin, groups = (plane.height + kLanes - 1) / kLanes;
   tbb::parallel_for(0, groups, [&](int group) {
@@ -78,7 +77,15 @@ Plane BlurRows(const Plane& plane, const ExtendedBox& box) {
                   turned.values.get() + std::ptrdiff_t(x) * plane.height + first);
     }
   });
-  return turned;
+}
+
+// Calls `visit` with the place of each pixel, rows in parallel.
+template <class Visit>
+void ForEachPixel(const Picture& picture, const Visit& visit) {
+  tbb::parallel_for(0, picture.height, [&](int y) {
+    const std::size_t begin = std::size_t(y) * picture.width, end = begin + picture.width;
+    for (std::size_t i = begin; i < end; ++i) visit(i);
+  });
 }
 
 Picture MaskedMean(const Picture& picture, std::span<const std::uint8_t> mask) {
@@ -103,26 +110,26 @@ Picture MaskedBlur(const Picture& picture, std::span<const std::uint8_t> mask, d
   SCUMBLE_CHECK(sigma > 0.0);
   if (sigma >= std::max(picture.width, picture.height)) return MaskedMean(picture, mask);
   const ExtendedBox box(sigma);
-  const auto blurred = [&](const auto& value) {
-    Plane plane(picture.width, picture.height);
-    for (std::size_t i = 0; i < mask.size(); ++i) plane.values[i] = mask[i] ? value(i) : 0.0;
-    return BlurRows(BlurRows(plane, box), box);
+  Plane plane(picture.width, picture.height), turned(picture.height, picture.width);
+  const Plane weight(picture.width, picture.height);
+  // Blurs the value of each masked pixel into `to`.
+  const auto blur = [&](const auto& value, const Plane& to) {
+    ForEachPixel(picture, [&](std::size_t i) { plane.values[i] = mask[i] ? value(i) : 0.0; });
+    BlurRows(plane, box, turned);
+    BlurRows(turned, box, to);
   };
-  const Plane weight = blurred([](std::size_t) { return 1.0; });
-  Picture result(picture.width, picture.height);
+  blur([](std::size_t) { return 1.0; }, weight);
   bool is_opaque = true;  // then so is the mean
   for (std::size_t i = 0; i < mask.size(); ++i) is_opaque = is_opaque && (!mask[i] || picture.rgba[4 * i + 3] == 65535);
+  Picture result(picture.width, picture.height);
   for (int c = 0; c < 4; ++c) {
-    if (c == 3 && is_opaque) {
-      for (std::size_t i = 0; i < mask.size(); ++i) result.rgba[4 * i + 3] = mask[i] ? 65535 : 0;
-      break;
-    }
-    const Plane sum = blurred([&](std::size_t i) { return double(Premultiplied(picture.rgba.data() + 4 * i, c)); });
-    for (std::size_t i = 0; i < mask.size(); ++i) {
-      if (!mask[i]) continue;
-      const double mean = std::floor(sum.values[i] / weight.values[i] + 0.5);
+    const bool is_known = c == 3 && is_opaque;
+    if (!is_known) blur([&](std::size_t i) { return double(Premultiplied(picture.rgba.data() + 4 * i, c)); }, plane);
+    ForEachPixel(picture, [&](std::size_t i) {
+      if (!mask[i]) return;
+      const double mean = is_known ? 65535.0 : std::floor(plane.values[i] / weight.values[i] + 0.5);
       result.rgba[4 * i + c] = static_cast<std::uint16_t>(std::clamp(mean, 0.0, 65535.0));
-    }
+    });
   }
   return result;
 }
