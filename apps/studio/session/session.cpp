@@ -45,6 +45,12 @@ std::string StampOfFile(const std::filesystem::path& file) {
   return failed ? "gone" : fmt::format("{} {}", time.time_since_epoch().count(), size);
 }
 
+// The description as it is from an orbit that says where it is.
+Expected<SceneDescription> Seen(Expected<SceneDescription> described, const StudioState& state) {
+  if (described && state.view && state.view->distance > 0.0) described->eye = *state.view;
+  return described;
+}
+
 // The style's own file, and pictures beside it: those of a style that cannot be read are not known otherwise.
 void AddFilesAround(const StyleEntry& style, std::vector<std::string>& files) {
   constexpr std::size_t kMostFiles = 64;
@@ -106,14 +112,17 @@ Lane& Session::State::LaneOf(Lane& wanted, const PictureJob& job) {
 }
 
 Expected<SceneDescription> Session::State::Describe(const Moment& moment) {
-  const PictureJob job = JobAt(moment, std::nullopt);
+  PictureJob job = JobAt(moment, std::nullopt);
+  // An orbit that says where it is needs no scene to tell; posing it here would only keep the next picture waiting.
+  const bool is_known = job.scene.view && job.scene.view->distance > 0.0;
+  if (is_known) job.scene.view.reset(), job.scene.camera.clear(), job.picture.frame.reset();
   const std::string key = fmt::format("{} {} {} {} {} {}", job.scene.scene, job.scene.camera, moment.generation,
                                       job.picture.frame.value_or(-1), SizeToText(job.scene.size),
                                       job.scene.view ? ToJson(*job.scene.view).dump() : "");
   {
     const std::lock_guard lock(mutex);
     const auto known = descriptions.find(key);
-    if (known != descriptions.end()) return known->second;
+    if (known != descriptions.end()) return Seen(known->second, moment.state);
   }
   const Expected<SceneDescription> described = LaneOf(drafts, job).Describe(job.scene, job.picture.frame);
   if (!described && described.error().kind == ErrorKind::kCancelled) return described;
@@ -121,7 +130,7 @@ Expected<SceneDescription> Session::State::Describe(const Moment& moment) {
   constexpr std::size_t kMostDescriptions = 64;
   if (descriptions.size() >= kMostDescriptions) descriptions.clear();
   descriptions.emplace(key, described);
-  return described;
+  return Seen(described, moment.state);
 }
 
 Expected<std::shared_ptr<const StyleFacts>> Session::State::FactsOf(const StyleEntry& style) {

@@ -8,6 +8,7 @@ import {call, getJson} from './api.js';
 // Changes of one gesture, such as a slider's drag, are undone together.
 const kGestureMs = 900;
 const kMostSteps = 200;
+const kFollowMs = 200;
 // What a change of the scene or of the style resets, and undo brings back.
 const kOfScene = /** @type {const} */ (['camera', 'view', 'light', 'frame', 'assignments']);
 
@@ -89,6 +90,7 @@ export class Store {
     /** @type {{changes: Changes, moving: boolean, step: Step | null}[]} */
     this.queue = [];
     this.sending = false;
+    this.following = 0;  // a timer
     this.told = 0;  // the newest revision that an event has named
     /** @type {Step[]} */
     this.undoSteps = [];
@@ -108,9 +110,18 @@ export class Store {
     if (this.known) listener(this.known);
   }
 
-  /** @param {State} state */
-  set(state) {
+  /**
+   * @param {State} state
+   * @param {boolean} [moving] panels follow a little later: while something is dragged, the picture comes first
+   */
+  set(state, moving = false) {
     this.known = state;
+    if (moving) {
+      this.following ||= setTimeout(() => this.set(this.state), kFollowMs);
+      return;
+    }
+    clearTimeout(this.following);
+    this.following = 0;
     for (const listener of this.listeners) listener(state);
   }
 
@@ -123,7 +134,7 @@ export class Store {
   patch(changes, how = {}) {
     const {moving = false, gesture = '', undoable = true} = how;
     const step = undoable ? this.remember(changes, gesture) : null;
-    this.set(applied(this.state, changes));
+    this.set(applied(this.state, changes), moving);
     const last = this.queue[this.queue.length - 1];
     if (last && !('scene' in changes) && !('style' in changes)) {
       // Quality and budget clear each other: the later one alone is sent.
@@ -183,7 +194,7 @@ export class Store {
       for (; next; next = this.queue.shift()) {
         /** @type {State} */
         const answer = await (await call('PATCH', '/api/state', {json: next.changes})).json();
-        this.set(this.queue.reduce((state, waiting) => applied(state, waiting.changes), answer));
+        this.set(this.queue.reduce((state, waiting) => applied(state, waiting.changes), answer), next.moving);
         this.onSent(next.moving);
       }
     } catch (error) {
