@@ -107,6 +107,11 @@ export class Frames {
     this.wake();
   }
 
+  /** Waits until nothing is fetched. */
+  async rested() {
+    while (this.running) await new Promise((resolve) => setTimeout(resolve, 30));
+  }
+
   /** @param {string} show */
   setShow(show) {
     this.show = show;

@@ -157,8 +157,10 @@ async function onEvent(name, data) {
   const isFiles = data.why === 'files';
   if (isFiles) seen.filesChanged = true;
   if (isFiles) {
-    await store.refresh();
+    // The picture is ready on the server; all else waits until it is on the screen.
     frames.renew();
+    await frames.rested();
+    await store.refresh();
     await exemplar.renew();
     return;
   }
