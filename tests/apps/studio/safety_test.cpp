@@ -35,17 +35,17 @@ RequestHead Head(const std::string& method = "GET") {
   return head;
 }
 
-int Status(const RequestHead& head, const std::string& target = "/api/state") {
+int StatusIn(const RequestHead& head, const std::string& target = "/api/state") {
   const auto refusal = CheckRequest(head, ParseTarget(target), kRules);
   EXPECT_TRUE(!refusal || !refusal->message.empty());
   return refusal ? refusal->status : 200;
 }
 
 TEST(StudioSafety, ThePageIsServed) {
-  EXPECT_EQ(Status(Head()), 200);
-  EXPECT_EQ(Status(Head("HEAD")), 400);  // with a body
-  EXPECT_EQ(Status(Head("PATCH")), 200);
-  EXPECT_EQ(Status(Head("POST"), "/api/save"), 200);
+  EXPECT_EQ(StatusIn(Head()), 200);
+  EXPECT_EQ(StatusIn(Head("HEAD")), 400);  // with a body
+  EXPECT_EQ(StatusIn(Head("PATCH")), 200);
+  EXPECT_EQ(StatusIn(Head("POST"), "/api/save"), 200);
 }
 
 TEST(StudioSafety, HostIsOurs) {
@@ -53,12 +53,12 @@ TEST(StudioSafety, HostIsOurs) {
                            "127.0.0.1.evil.example:4321", "[::1]:4321", "0.0.0.0:4321", "127.0.0.1:4321 x"}) {
     RequestHead head = Head();
     head.host = host;
-    EXPECT_EQ(Status(head), 403) << host;
-    EXPECT_EQ(Status(head, "/?token=" + std::string(kTestToken)), 403) << host;
+    EXPECT_EQ(StatusIn(head), 403) << host;
+    EXPECT_EQ(StatusIn(head, "/?token=" + std::string(kTestToken)), 403) << host;
   }
   RequestHead head = Head();
   head.host = "LocalHost:4321";
-  EXPECT_EQ(Status(head), 200);
+  EXPECT_EQ(StatusIn(head), 200);
 }
 
 TEST(StudioSafety, CookieHasTheToken) {
@@ -68,42 +68,42 @@ TEST(StudioSafety, CookieHasTheToken) {
         "scumble_4321=" + std::string(64, '0'), "xscumble_4321=" + std::string(kTestToken)}) {
     RequestHead head = Head();
     head.cookie = cookie;
-    EXPECT_EQ(Status(head), 401) << cookie;
-    EXPECT_EQ(Status(head, "/"), 401) << cookie;
-    EXPECT_EQ(Status(head, "/?token=" + std::string(64, '0')), 401) << cookie;
-    EXPECT_EQ(Status(head, "/api/state?token=" + std::string(kTestToken)), 401) << cookie;
-    EXPECT_EQ(Status(head, "/?token=" + std::string(kTestToken)), 200) << cookie;
+    EXPECT_EQ(StatusIn(head), 401) << cookie;
+    EXPECT_EQ(StatusIn(head, "/"), 401) << cookie;
+    EXPECT_EQ(StatusIn(head, "/?token=" + std::string(64, '0')), 401) << cookie;
+    EXPECT_EQ(StatusIn(head, "/api/state?token=" + std::string(kTestToken)), 401) << cookie;
+    EXPECT_EQ(StatusIn(head, "/?token=" + std::string(kTestToken)), 200) << cookie;
   }
   RequestHead twice = Head();  // an old one beside the right one
   twice.cookie = "scumble_4321=old;scumble_4321=" + std::string(kTestToken);
-  EXPECT_EQ(Status(twice), 200);
+  EXPECT_EQ(StatusIn(twice), 200);
 }
 
 TEST(StudioSafety, ChangesComeFromOurPage) {
   for (const std::string method : {"PATCH", "POST"}) {
     RequestHead head = Head(method);
     head.x_scumble = "";
-    EXPECT_EQ(Status(head), 403);
+    EXPECT_EQ(StatusIn(head), 403);
     head = Head(method);
     for (const char* origin : {"null", "", "http://evil.example", "https://127.0.0.1:4321", "http://localhost:4321"}) {
       head.origin = origin;
-      EXPECT_EQ(Status(head), 403) << origin;
+      EXPECT_EQ(StatusIn(head), 403) << origin;
     }
     head = Head(method);
     for (const char* site : {"cross-site", "same-site", "none", "other"}) {
       head.sec_fetch_site = site;
-      EXPECT_EQ(Status(head), 403) << site;
+      EXPECT_EQ(StatusIn(head), 403) << site;
     }
     head = Head(method);
     for (const char* type :
          {"", "text/plain", "application/x-www-form-urlencoded", "multipart/form-data", "image/png"}) {
       head.content_type = type;
-      EXPECT_EQ(Status(head), 415) << type;
+      EXPECT_EQ(StatusIn(head), 415) << type;
     }
-    EXPECT_EQ(Status(head, "/api/paint"), 200);  // PNG
+    EXPECT_EQ(StatusIn(head, "/api/paint"), 200);  // PNG
     head.has_body = false;
     head.content_type = "";
-    EXPECT_EQ(Status(head), 200);
+    EXPECT_EQ(StatusIn(head), 200);
   }
 }
 
@@ -111,29 +111,29 @@ TEST(StudioSafety, OtherPagesReadNothing) {
   for (const char* site : {"cross-site", "same-site"}) {
     RequestHead head = Head();
     head.sec_fetch_site = site;
-    EXPECT_EQ(Status(head), 403) << site;
-    EXPECT_EQ(Status(head, "/web/page.js"), 403) << site;
-    EXPECT_EQ(Status(head, "/"), 200) << site;  // a link, with the cookie
+    EXPECT_EQ(StatusIn(head), 403) << site;
+    EXPECT_EQ(StatusIn(head, "/web/page.js"), 403) << site;
+    EXPECT_EQ(StatusIn(head, "/"), 200) << site;  // a link, with the cookie
   }
   RequestHead head = Head();
   head.sec_fetch_site = "none";  // typed in
-  EXPECT_EQ(Status(head), 200);
+  EXPECT_EQ(StatusIn(head), 200);
   head.origin = "http://evil.example";
-  EXPECT_EQ(Status(head), 403);
+  EXPECT_EQ(StatusIn(head), 403);
 }
 
 TEST(StudioSafety, OtherMethodsAreRefused) {
   for (const char* method : {"PUT", "DELETE", "OPTIONS", "TRACE", "CONNECT", "get", "BREW"}) {
-    EXPECT_EQ(Status(Head(method)), 405) << method;
+    EXPECT_EQ(StatusIn(Head(method)), 405) << method;
   }
-  EXPECT_EQ(Status(Head("POST"), "/"), 405);
-  EXPECT_EQ(Status(Head("PATCH"), "/web/page.js"), 405);
+  EXPECT_EQ(StatusIn(Head("POST"), "/"), 405);
+  EXPECT_EQ(StatusIn(Head("PATCH"), "/web/page.js"), 405);
 }
 
 TEST(StudioSafety, FieldsStandOnce) {
   RequestHead head = Head();
   head.is_ambiguous = true;
-  EXPECT_EQ(Status(head), 400);
+  EXPECT_EQ(StatusIn(head), 400);
 }
 
 TEST(StudioTarget, IsDecoded) {
