@@ -138,7 +138,7 @@ HttpResponse Session::State::PostFrame(const HttpRequest& request) {
   Moment moment = Now();
   const nlohmann::json changes = body->contains("changes") ? (*body)["changes"] : nlohmann::json::object();
   const Expected<StudioState> changed = Patched(moment.state, changes, KnownCatalogue());
-  if (!changed) return ErrorAnswer(changed.error());
+  if (!changed) return ErrorAnswer(changed.error(), changed.error().kind == ErrorKind::kInput ? 404 : 400);
   moment.state = *changed;
   return Frame(moment, request, text("quality", "final"), text("format", "jpeg"), text("show", ""), others);
 }

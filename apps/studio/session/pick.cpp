@@ -121,7 +121,8 @@ nlohmann::json PickAt(const PaintedFrame& frame, int x, int y) {
 
 Picture ChunkMask(const PaintedFrame& frame, int x, int y) {
   const FieldView view(frame);
-  return MaskPicture(view, ChunkOf(view, x / view.factor, y / view.factor));
+  const auto place = [&](int at) { return at < 0 ? -1 : at / view.factor; };
+  return MaskPicture(view, ChunkOf(view, place(x), place(y)));
 }
 
 Picture FedMask(const PaintedFrame& frame, int style, int exemplar, double x, double y, double radius) {
