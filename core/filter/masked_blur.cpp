@@ -1,5 +1,6 @@
 #include "core/filter/masked_blur.h"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -14,7 +15,7 @@ namespace scumble::internal {
 namespace {
 
 constexpr int kPasses = 4;
-constexpr int kLanes = 8;  // rows that are filtered side by side: each depends on its own last sum alone
+constexpr int kLanes = 4;  // rows that are filtered side by side: each depends on its own last sum alone
 
 // Weights 1 on 2·reach + 1 samples and `ends` on one more at either side. Unscaled, because the blur is a quotient.
 struct ExtendedBox {
@@ -82,10 +83,13 @@ void BlurRows(const Plane& plane, const ExtendedBox& box, const Plane& turned) {
 // Calls `visit` with the place of each pixel, rows in parallel.
 template <class Visit>
 void ForEachPixel(const Picture& picture, const Visit& visit) {
-  tbb::parallel_for(0, picture.height, [&](int y) {
-    const std::size_t begin = std::size_t(y) * picture.width, end = begin + picture.width;
+  constexpr int kRows = 64;  // of one task
+  const tbb::blocked_range<int> rows(0, picture.height, kRows);
+  const auto visit_rows = [&](const tbb::blocked_range<int>& some) {
+    const std::size_t begin = std::size_t(some.begin()) * picture.width, end = std::size_t(some.end()) * picture.width;
     for (std::size_t i = begin; i < end; ++i) visit(i);
-  });
+  };
+  tbb::parallel_for(rows, visit_rows, tbb::simple_partitioner());
 }
 
 Picture MaskedMean(const Picture& picture, std::span<const std::uint8_t> mask) {
