@@ -11,6 +11,7 @@
 
 #include "core/image/layers.h"
 #include "core/image/status.h"
+#include "core/style/style_file.h"
 #include "guidegen/guidegen.h"
 #include "guidegen/scene/framing.h"
 #include "measure/mosaic/explain.h"
@@ -87,7 +88,7 @@ struct StyleRequest {
   std::vector<std::string> sets;      // "[NAME:]KEY=VALUE", the later wins
   std::vector<std::string> assigned;  // "NAME=STYLE", or "@FILE" of such lines
   bool scene_styles = true;           // follow the property scumble_style of objects and materials
-  std::function<Status(std::uint64_t bytes)> room = {};  // as LoadStyle takes it
+  StyleReading reading = {};          // as LoadStyle takes it
 };
 
 // What becomes of the paint: a picture file.

@@ -1,7 +1,6 @@
 #include "pipeline/workspace.h"
 
 #include <fmt/format.h>
-#include <sys/stat.h>
 
 #include <algorithm>
 #include <atomic>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "core/io/library.h"
+#include "pipeline/file_stamp.h"
 #include "pipeline/frame/paint_picture.h"
 #include "pipeline/frame/provenance.h"
 #include "pipeline/frame_range.h"
@@ -21,17 +21,11 @@
 #include "pipeline/scene/run_inputs.h"
 #include "pipeline/scene/scene_guides.h"
 #include "pipeline/scene/scene_sequence.h"
+#include "pipeline/style/kept_pictures.h"
 #include "pipeline/style/style_set.h"
 
 namespace scumble {
 namespace {
-
-// Size and time of a file's last change, as text; "gone" where it is not there.
-std::string StampOf(const std::string& path) {
-  struct stat file {};
-  if (::stat(path.c_str(), &file) != 0) return path + " gone";
-  return fmt::format("{} {} {} {}.{}", path, file.st_ino, file.st_size, file.st_mtim.tv_sec, file.st_mtim.tv_nsec);
-}
 
 std::string StampsOf(const std::vector<std::string>& paths) {
   std::string text;
@@ -101,14 +95,15 @@ Status CheckArguments(const SceneRequest& scene, std::optional<int> frame) {
 
 // Whether exemplars that were prepared for one style serve another: they have the same paint, and their settings differ
 // only where a transfer reads them from the style frame by frame.
-bool SharesExemplars(Style a, const Style& b) {
-  if (HashOfPaint(a) != HashOfPaint(b) || a.transfer.edge != b.transfer.edge) return false;
-  a.transfer.threshold = b.transfer.threshold, a.transfer.threshold_metric = b.transfer.threshold_metric;
-  a.transfer.jitter = b.transfer.jitter, a.transfer.jitter_fps = b.transfer.jitter_fps;
-  a.transfer.coherent = b.transfer.coherent, a.transfer.variety = b.transfer.variety;
-  a.transfer.crease = b.transfer.crease, a.transfer.depth_tolerance = b.transfer.depth_tolerance;
-  a.transfer.match_step = b.transfer.match_step;
-  return TextOf(a.transfer) == TextOf(b.transfer);
+bool SharesExemplars(const Style& a, const Style& b) {
+  TransferSettings of_a = a.transfer;
+  const TransferSettings& of_b = b.transfer;
+  of_a.threshold = of_b.threshold, of_a.threshold_metric = of_b.threshold_metric;
+  of_a.jitter = of_b.jitter, of_a.jitter_fps = of_b.jitter_fps;
+  of_a.coherent = of_b.coherent, of_a.variety = of_b.variety;
+  of_a.crease = of_b.crease, of_a.depth_tolerance = of_b.depth_tolerance;
+  of_a.match_step = of_b.match_step;
+  return TextOf(of_a) == TextOf(of_b) && HashOfPaint(a) == HashOfPaint(b);
 }
 
 }  // namespace
@@ -153,6 +148,7 @@ struct Workspace::State {
   MemoryNeed guides_memory;  // of them, without painting
 
   // The styles, and what was prepared of them.
+  KeptPictures pictures;
   std::string style_text;
   std::map<std::string, std::string> style_stamps;
   std::optional<StyleSet> styles, replaced;  // `replaced`: those that picture.prepared is of, where it is not `styles`
@@ -187,8 +183,9 @@ struct Workspace::State {
 Status Workspace::State::LoadStyles(StyleRequest request, const std::string& choice_text, const Choose& choose) {
   const std::string text = TextOf(request) + "\n" + choice_text;
   if (styles && text == style_text && style_stamps == StyleStamps(*styles)) return Ok();
-  request.room = RoomForStyles(context);
+  request.reading = {RoomForStyles(context), [this](const std::filesystem::path& file) { return pictures.Read(file); }};
   SCUMBLE_ASSIGN(StyleSet loaded, OpenStyles(request, context));
+  pictures.ForgetUnread();
   ++counters.styles_loaded;
   SCUMBLE_ASSIGN(choice, choose(loaded));
   if (!replaced) replaced = std::move(styles);
@@ -257,7 +254,7 @@ Status Workspace::State::LoadScene(const SceneRequest& request, std::optional<in
 void Workspace::State::CloseStylesOfScene() {
   if (!styles || styles->wanted.empty()) return;
   CloseSceneStyles(*styles);
-  styles->options.room = RoomForStyles(context);
+  styles->options.reading.room = RoomForStyles(context);
   const std::map<std::string, std::string> left = StyleStamps(*styles);
   std::erase_if(style_stamps, [&](const auto& one) { return !left.count(one.first); });
   if (!replaced) picture.prepared.resize(std::min(picture.prepared.size(), styles->styles.size()));
@@ -459,6 +456,10 @@ void Workspace::Cancel() {
   state_->call.compare_exchange_strong(runs, State::Call::kCancelled);
 }
 
-WorkspaceCounters Workspace::counters() const { return state_->counters; }
+WorkspaceCounters Workspace::counters() const {
+  WorkspaceCounters counters = state_->counters;
+  counters.pictures_decoded = state_->pictures.decoded();
+  return counters;
+}
 
 }  // namespace scumble

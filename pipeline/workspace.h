@@ -3,7 +3,7 @@
 //
 //   changed                          made again
 //   a key of the style, the painting style; exemplars where the key concerns them; the picture. No ray is cast, unless
-//                                    the style now reads a layer that the guides lack.
+//                                    the style now reads a layer that the guides lack. Pictures stay decoded.
 //   size, layers, samples, seed …    guides and picture. The acceleration structure stays.
 //   camera, view                     guides, picture and the acceleration structure, which is relative to the camera.
 //                                    No file is loaded.
@@ -38,6 +38,7 @@ struct WorkspaceCounters {
   std::size_t structures_built = 0;  // acceleration structures
   std::size_t guides_cast = 0;       // rays were cast
   std::size_t styles_loaded = 0;     // from files
+  std::size_t pictures_decoded = 0;  // of styles, from files
   std::size_t styles_prepared = 0;   // exemplars resized, tables and trees built
   std::size_t frames_painted = 0;
 };

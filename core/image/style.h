@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <glm/glm.hpp>
 #include <optional>
 #include <string>
@@ -13,6 +14,7 @@
 
 #include "core/image/guides.h"
 #include "core/image/layers.h"
+#include "core/image/status.h"
 #include "scumble/picture.h"
 
 namespace scumble {
@@ -175,6 +177,9 @@ struct StyleTrack {
   Value current;                 // the value in the style now
 };
 
+// Reads the picture of a file.
+using PictureReader = std::function<Expected<Picture>(const std::filesystem::path& file)>;
+
 struct Style {
   std::string name;
   std::string licence;
@@ -182,6 +187,7 @@ struct Style {
   std::vector<Exemplar> exemplars;  // one, or up to kMaxExemplars lighting conditions of the same style
   Paper paper;                      // neither set: transparent
   std::vector<StyleTrack> tracks;
+  PictureReader read_picture;  // of files that keys name; null: ReadPicture
 };
 
 // The layers that a transfer with this style reads: `guidegen` makes these and no more.

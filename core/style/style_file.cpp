@@ -157,12 +157,12 @@ Status FitToSphere(int size, int margin, const fs::path& guides, Exemplar& exemp
 }
 
 // A picture that cannot be counted cannot be read either; reading it gives the reason.
-Expected<Picture> ReadWithin(const StyleRoom& room, const fs::path& path) {
+Expected<Picture> ReadWithin(const StyleReading& reading, const fs::path& path) {
   constexpr std::uint64_t kPixelBytes = 4 * sizeof(std::uint16_t);
-  if (room) {
-    if (const auto pixels = CountPixels(path)) SCUMBLE_RETURN_IF_ERROR(room(kPixelBytes * *pixels));
+  if (reading.room) {
+    if (const auto pixels = CountPixels(path)) SCUMBLE_RETURN_IF_ERROR(reading.room(kPixelBytes * *pixels));
   }
-  return ReadPicture(path);
+  return reading.read_picture ? reading.read_picture(path) : ReadPicture(path);
 }
 
 // `info` is the file's own.
@@ -230,10 +230,10 @@ Status CheckPaintingIsThere(const fs::path& image, const fs::path& drawn, bool s
                     " and save it under that name" + (several ? ", or take its [[exemplar]] out of " + file : ""));
 }
 
-// The style.toml that is read, and the callback that is asked before its pictures are.
+// The style.toml that is read, and how its pictures are.
 struct StyleSource {
   fs::path path;
-  const StyleRoom& room;
+  const StyleReading& reading;
 };
 
 std::optional<double> LuminanceOf(const toml::node& node) {
@@ -272,9 +272,10 @@ Expected<Exemplar> ReadExemplar(const toml::table& table, const StyleSource& sou
   const fs::path image_path = folder / image;
   SCUMBLE_RETURN_IF_ERROR(CheckPaintingIsThere(image_path, TemplateBeside(folder, guides), several, file));
   exemplar.name = image_path.string();
-  SCUMBLE_ASSIGN(exemplar.picture, ReadWithin(source.room, image_path));
+  SCUMBLE_ASSIGN(exemplar.picture, ReadWithin(source.reading, image_path));
   if (!guides.empty()) {
-    SCUMBLE_RETURN_IF_ERROR(ReadExemplarGuides(folder / guides, several && !exemplar.luminance, source.room, exemplar));
+    SCUMBLE_RETURN_IF_ERROR(
+        ReadExemplarGuides(folder / guides, several && !exemplar.luminance, source.reading.room, exemplar));
   }
   return exemplar;
 }
@@ -324,16 +325,17 @@ Status ReadExemplars(const toml::node& node, const StyleSource& source, Style& s
   return Ok();
 }
 
-Expected<Style> ReadStyleFile(const fs::path& path, const StyleRoom& room) {
+Expected<Style> ReadStyleFile(const fs::path& path, const StyleReading& reading) {
   SCUMBLE_ASSIGN(const auto bytes, ReadWholeFile(path, kMaxStyleBytes));
   const std::string file = path.string();
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   SCUMBLE_ASSIGN(const toml::table root, ParseToml(text, file));
   Style style;
+  style.read_picture = reading.read_picture;
   for (const auto& [key, node] : root) {
     const std::string name(key.str());
     if (name == "exemplar") {
-      SCUMBLE_RETURN_IF_ERROR(ReadExemplars(node, {path, room}, style));
+      SCUMBLE_RETURN_IF_ERROR(ReadExemplars(node, {path, reading}, style));
     } else if (const auto* table = node.as_table(); table && name == "transfer") {
       SCUMBLE_RETURN_IF_ERROR(SetKeysInFile(style, name, *table, path));
     } else {
@@ -401,21 +403,22 @@ Status ApplyOverride(Style& style, const std::string& text) {
 
 // A picture named as a style. If the picture belongs to a style, that style is used: a painted template by itself would
 // show its margin.
-Expected<Style> ReadPictureStyle(const fs::path& path, const StyleRoom& room) {
+Expected<Style> ReadPictureStyle(const fs::path& path, const StyleReading& reading) {
   const fs::path beside = path.parent_path() / "style.toml";
   if (Exists(beside)) {
-    auto style = ReadStyleFile(beside, room);
+    auto style = ReadStyleFile(beside, reading);
     if (style && fs::path(style->exemplars.front().name).filename() == path.filename()) return style;
     if (!style && style.error().kind != ErrorKind::kInput)
       return style.error();  // too large, whichever style it belongs to
   }
-  SCUMBLE_ASSIGN(Picture picture, ReadWithin(room, path));
+  SCUMBLE_ASSIGN(Picture picture, ReadWithin(reading, path));
   if (LooksLikeTemplate(picture)) {
     return InputError(path.string() +
                       " is a whole template, margin and marks included: name the folder that "
                       "`scumble sphere` wrote as the style, or crop the picture to the sphere");
   }
   Style style;
+  style.read_picture = reading.read_picture;
   Exemplar exemplar;
   exemplar.name = path.string(), exemplar.picture = std::move(picture);
   style.exemplars.push_back(std::move(exemplar));
@@ -477,22 +480,23 @@ Expected<std::map<std::string, KeyValue>> StyleValues(const fs::path& path) {
   return values;
 }
 
-Expected<Style> LoadStyle(const fs::path& path, const std::vector<std::string>& overrides, const StyleRoom& room) {
+Expected<Style> LoadStyle(const fs::path& path, const std::vector<std::string>& overrides,
+                          const StyleReading& reading) {
   std::error_code failed;
   const fs::file_status kind = fs::status(path, failed);
   if (!fs::exists(kind)) return InputError("cannot read style " + path.string() + ": there is no such file or folder");
   Style style;
   if (fs::is_directory(kind)) {
     if (!Exists(path / "style.toml")) return InputError("style folder " + path.string() + " holds no style.toml");
-    SCUMBLE_ASSIGN(style, ReadStyleFile(path / "style.toml", room));
+    SCUMBLE_ASSIGN(style, ReadStyleFile(path / "style.toml", reading));
   } else if (path.extension() == ".toml") {
-    SCUMBLE_ASSIGN(style, ReadStyleFile(path, room));
+    SCUMBLE_ASSIGN(style, ReadStyleFile(path, reading));
   } else {
-    SCUMBLE_ASSIGN(style, ReadPictureStyle(path, room));
+    SCUMBLE_ASSIGN(style, ReadPictureStyle(path, reading));
   }
   if (style.name.empty()) style.name = NameFor(path, fs::is_directory(kind));
   for (const std::string& text : overrides) SCUMBLE_RETURN_IF_ERROR(ApplyOverride(style, text));
-  SCUMBLE_RETURN_IF_ERROR(ReadWeighedGuides(style, room));
+  SCUMBLE_RETURN_IF_ERROR(ReadWeighedGuides(style, reading.room));
   for (Exemplar& exemplar : style.exemplars) {
     SCUMBLE_RETURN_IF_ERROR(PlaceSphere(exemplar));
     const Picture& picture = exemplar.picture;

@@ -21,6 +21,12 @@ inline constexpr std::size_t kMaxStyleBytes = 1 << 20;
 // is not read. Null: there is no limit.
 using StyleRoom = std::function<Status(std::uint64_t bytes)>;
 
+// How files of styles are read.
+struct StyleReading {
+  StyleRoom room;
+  PictureReader read_picture;  // null: ReadPicture
+};
+
 // Reads a style and its pictures. `overrides` are "key=value" texts with the keys of style.toml and values as TOML
 // writes them (quotes may be left off: transfer.method=litsphere); they win over the file. Of [[exemplar]] the
 // luminance and fills can be overridden, by number from 1: exemplar.2.luminance=0.1. Every key is applied, or refused
@@ -35,7 +41,7 @@ using StyleRoom = std::function<Status(std::uint64_t bytes)>;
 // wrote, the picture may also be the whole painted template: its margin is cut off. Any other guides with A and normal,
 // of the picture's size, make it an exemplar of that scene, of any shape.
 Expected<Style> LoadStyle(const std::filesystem::path& path, const std::vector<std::string>& overrides = {},
-                          const StyleRoom& room = {});
+                          const StyleReading& reading = {});
 
 // The value of every key of StyleKeys() in the style's file, or the default; of key frames that of frame 0. Only its
 // TOML is read. Numbers of kNumber are doubles. Errors are those of LoadStyle, but values are not checked.

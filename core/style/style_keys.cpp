@@ -144,7 +144,8 @@ Status SetPaper(Style& style, const KeyValue& value, const std::filesystem::path
   if (!text->ends_with('/') && !std::filesystem::exists(folder / *text, failed) && !failed) {
     return InputError("cannot read " + (folder / *text).string() + ": there is no such file; " + kColor);
   }
-  SCUMBLE_ASSIGN(style.paper.picture, ReadPicture(folder / *text));
+  const std::filesystem::path file = folder / *text;
+  SCUMBLE_ASSIGN(style.paper.picture, style.read_picture ? style.read_picture(file) : ReadPicture(file));
   return Ok();
 }
 

@@ -112,7 +112,7 @@ Expected<RunReport> RunGuidegen(GuidegenRequest request, const SequenceListener&
     if (!frame) SCUMBLE_RETURN_IF_ERROR(CheckAtRest(request.scene, motion));
   }
   if (request.style) {
-    if (!request.output.empty()) request.style->room = RoomForStyles(context);  // a plan refuses nothing
+    if (!request.output.empty()) request.style->reading.room = RoomForStyles(context);  // a plan refuses nothing
     SCUMBLE_ASSIGN(styles, OpenStyles(*request.style, context));
     context.EndStage("style");
   }

@@ -146,7 +146,7 @@ Expected<RunReport> RunStylize(StylizeRequest request, const SequenceListener& l
   SCUMBLE_RETURN_IF_ERROR(CheckSceneRequest(request.scene));
   if (!sequence && !request.picture.frame) SCUMBLE_RETURN_IF_ERROR(CheckAtRest(request.scene, false));
   Stopwatch watch;
-  request.style.room = RoomForStyles(context);
+  request.style.reading.room = RoomForStyles(context);
   SCUMBLE_ASSIGN(StyleSet styles, OpenStyles(request.style, context));
   const double style_ms = watch.Lap();
   context.EndStage("style");

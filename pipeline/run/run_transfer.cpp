@@ -153,7 +153,7 @@ Expected<RunReport> RunTransfer(TransferRequest request, const SequenceListener&
     SCUMBLE_ASSIGN(request.guides, NameOfOne(request.guides, request.picture.frame));
     SCUMBLE_ASSIGN(request.camera, NameOfOne(request.camera, request.picture.frame));
   }
-  request.style.room = RoomForStyles(context);
+  request.style.reading.room = RoomForStyles(context);
   SCUMBLE_ASSIGN(StyleSet styles, OpenStyles(request.style, context));
   context.EndStage("style");
   RunInputs files;

@@ -38,7 +38,7 @@ Expected<std::uint16_t> PlaceOf(StyleSet& set, const std::string& name, const st
   for (const StyleSet::Override& one : set.overrides) {
     if (one.style.empty() || one.path == path) overrides.push_back(one.text);
   }
-  SCUMBLE_ASSIGN(Style style, LoadStyle(found, overrides, set.options.room));
+  SCUMBLE_ASSIGN(Style style, LoadStyle(found, overrides, set.options.reading));
   set.styles.push_back(std::move(style));
   set.given.push_back(name);
   return set.opened[path] = static_cast<std::uint16_t>(set.styles.size() - 1);

@@ -96,6 +96,8 @@ TEST(Workspace, AChangedKeyCastsNoRay) {
   EXPECT_EQ(workspace.counters().guides_cast, 1u);
   EXPECT_EQ(workspace.counters().scenes_loaded, 1u);
   EXPECT_EQ(Painted(workspace, SceneOf("suzanne"), StyleOf("oil")).rgba, before.rgba);
+  EXPECT_EQ(workspace.counters().styles_loaded, 4u);
+  EXPECT_EQ(workspace.counters().pictures_decoded, 2u) << "the painting and the paper";
 }
 
 TEST(Workspace, AStyleThatReadsAnotherLayerCastsIt) {
@@ -162,12 +164,14 @@ TEST(Workspace, ASavedPaintingIsReadAgain) {
   const Picture before = Painted(workspace, SceneOf("suzanne"), style);
   EXPECT_EQ(Painted(workspace, SceneOf("suzanne"), style).rgba, before.rgba);
   EXPECT_EQ(workspace.counters().styles_loaded, 1u);
+  EXPECT_EQ(workspace.counters().pictures_decoded, 2u);
   fs::copy_file(kSource + "/exemplars/charcoal/lit.png", folder.path() / "mine" / "lit.png",
                 fs::copy_options::overwrite_existing);
   EXPECT_NE(Painted(workspace, SceneOf("suzanne"), style).rgba, before.rgba);
   EXPECT_EQ(workspace.counters().styles_loaded, 2u);
   EXPECT_EQ(workspace.counters().styles_prepared, 2u);
   EXPECT_EQ(workspace.counters().guides_cast, 1u);
+  EXPECT_EQ(workspace.counters().pictures_decoded, 3u) << "the paper is the one of before";
 }
 
 TEST(Workspace, CanBeCancelledAgainAndAgain) {

@@ -320,7 +320,7 @@ Session::Session(std::unique_ptr<State> state) : state_(std::move(state)) {}
 
 Session::~Session() {
   Stop();
-  state_->watch.reset();
+  state_->watch->Stop();  // its thread uses the watch, too
 }
 
 void Session::Stop() {

@@ -19,7 +19,9 @@
 namespace scumble {
 namespace {
 
-constexpr int kLookEveryMs = 500, kRestMs = 30;
+constexpr int kLookEveryMs = 500;
+constexpr int kRestMs =
+    5;  // a file is whole when it is closed or moved here; several that are saved together are taken together
 constexpr int kLongestUnrestMs = 1000;  // a file that is written all the time is looked at this often
 
 std::string StatOf(const std::string& file) {
@@ -51,6 +53,13 @@ FileWatch::FileWatch(std::function<void(const std::vector<std::string>&)> change
 }
 
 FileWatch::~FileWatch() {
+  Stop();
+  if (inotify_ >= 0) ::close(inotify_);
+  if (wake_ >= 0) ::close(wake_);
+}
+
+void FileWatch::Stop() {
+  if (!thread_.joinable()) return;
   {
     const std::lock_guard lock(mutex_);
     stopped_ = true;
@@ -58,8 +67,6 @@ FileWatch::~FileWatch() {
   const std::uint64_t one = 1;
   [[maybe_unused]] const auto written = ::write(wake_, &one, sizeof one);
   thread_.join();
-  if (inotify_ >= 0) ::close(inotify_);
-  if (wake_ >= 0) ::close(wake_);
 }
 
 void FileWatch::Watch(const std::vector<std::string>& files, std::chrono::system_clock::time_point read) {

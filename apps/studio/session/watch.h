@@ -17,12 +17,15 @@ namespace scumble {
 
 class FileWatch {
  public:
-  // `changed` is called on a thread of the watch, once files have been at rest for 30 ms and the bytes of at least one
+  // `changed` is called on a thread of the watch, once files have been at rest for 5 ms and the bytes of at least one
   // of them differ from those that were seen before, or it is gone, or there again.
   explicit FileWatch(std::function<void(const std::vector<std::string>& files)> changed);
   ~FileWatch();
   FileWatch(const FileWatch&) = delete;
   FileWatch& operator=(const FileWatch&) = delete;
+
+  // Ends the thread; `changed` is not called any more. Other calls stay possible, and do nothing that is seen.
+  void Stop();
 
   // Watches these from now on, instead of those before; what is known of a file that stays is kept. One that is new
   // here and was written after `read` has changed.

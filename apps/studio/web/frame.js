@@ -17,18 +17,21 @@ export function parseTimes(text) {
   });
 }
 
+/** @param {Response} response */
+const revisionOf = (response) => Number(response.headers.get('X-Scumble-Revision'));
+
 /**
- * @param {Response} response @param {string} quality @param {string} show @param {number} begun
+ * @param {Response} response @param {Blob} body @param {string} quality @param {string} show @param {number} begun
  * @returns {Promise<Picture>}
  */
-export async function decode(response, quality, show, begun) {
+async function decode(response, body, quality, show, begun) {
   const size = (response.headers.get('X-Scumble-Size') ?? '').split('x').map(Number);
   const isRaw = !(response.headers.get('Content-Type') ?? '').startsWith('image/');
-  const source = isRaw ? new ImageData(new Uint8ClampedArray(await response.arrayBuffer()), size[0], size[1])
-                       : await createImageBitmap(await response.blob());
+  const source = isRaw ? new ImageData(new Uint8ClampedArray(await body.arrayBuffer()), size[0], size[1])
+                       : await createImageBitmap(body);
   return {
     source, width: source.width, height: source.height, quality, show,
-    revision: Number(response.headers.get('X-Scumble-Revision')),
+    revision: revisionOf(response),
     stages: parseTimes(response.headers.get('Server-Timing')), ms: performance.now() - begun,
   };
 }
@@ -58,7 +61,7 @@ export async function frameBeside(changes, show, signal) {
   const begun = performance.now();
   const response = await call('POST', '/api/frame',
                               {json: {changes, quality: 'final', format: 'rgba', show}, signal});
-  return decode(response, 'final', show, begun);
+  return decode(response, await response.blob(), 'final', show, begun);
 }
 
 export class Frames {
@@ -77,8 +80,9 @@ export class Frames {
     this.running = false;
     /** @type {{quality: string, abort: AbortController} | null} */
     this.current = null;
-    /** @type {{revision: number, quality: string, show: string} | null} */
+    /** On the screen, or a draft that will be in a moment. @type {{revision: number, quality: string, show: string} | null} */
     this.drawn = null;
+    this.drawing = Promise.resolve();
     this.failed = '';
     this.tries = 0;
     store.onSent = (moving) => this.wake(moving);
@@ -138,6 +142,19 @@ export class Frames {
     }
   }
 
+  /** @param {Promise<Picture>} decoded @param {AbortSignal} signal */
+  async draw(decoded, signal) {
+    try {
+      const picture = await decoded;
+      if (signal.aborted) return;
+      const {revision, quality, show} = picture;
+      this.drawn = {revision, quality, show};
+      this.onPicture(picture);
+    } catch (error) {
+      this.onError(error);
+    }
+  }
+
   /** @param {string} quality */
   async fetchOne(quality) {
     const abort = new AbortController();
@@ -147,11 +164,14 @@ export class Frames {
     try {
       const format = quality === 'draft' ? 'jpeg' : 'rgba';
       const response = await call('GET', withQuery('/api/frame', {quality, format, show}), {signal: abort.signal});
-      const picture = await decode(response, quality, show, begun);
+      const body = await response.blob();
       if (abort.signal.aborted) return;
-      this.drawn = {revision: picture.revision, quality, show};
+      await this.drawing;
+      this.drawing = this.draw(decode(response, body, quality, show, begun), abort.signal);
       this.tries = 0;
-      this.onPicture(picture);
+      // A draft is decoded while the server makes the next one.
+      if (quality === 'final') await this.drawing;
+      else this.drawn = {revision: revisionOf(response), quality, show};
     } catch (error) {
       if (isAbort(error)) return;
       if (error instanceof CallError && error.status === 409) {

@@ -247,6 +247,7 @@ class Understanding(Page):
         self.find("#stage").send_keys("w")
         self.until(lambda: self.js("return document.documentElement.dataset.compare") == "wipe", "the wipe")
         wipe = self.find("#wipe")
+        self.until(wipe.is_displayed, "the wipe's handle, which waits for the other picture")
         before = wipe.get_attribute("aria-valuenow")
         wipe.send_keys(Keys.ARROW_LEFT)
         self.assertNotEqual(wipe.get_attribute("aria-valuenow"), before)
