@@ -310,6 +310,25 @@ def make_requests():
     write("http", "old", f"GET /web/..%2f%00 HTTP/1.0{end}Connection: keep-alive{end}{end}")
 
 
+def make_changes():
+    """What a page changes, with the scenes and styles of tests/fuzz/state_fuzz.cpp."""
+    view = {"azimuth": 33.25, "elevation": -10, "distance": 4.5, "right": 0.1, "up": -0.05, "fov": 40}
+    for name, change in {
+            "view": {"view": view, "light": {"azimuth": 20, "elevation": 30.5}},
+            "keys": {"style": "oil", "keys": {"transfer.threshold": 0.3, "transfer.levels": 5, "transfer.coherent": True,
+                                              "transfer.method": "litsphere", "transfer.paper": "#f4efe6", "name": "a'b",
+                                              "transfer.jitter": None, "transfer.hybrid": "inf"}},
+            "scene": {"scene": "toys", "camera": "Camera.001", "frame": 13, "size": [320, 180], "seed": 7},
+            "assign": {"assignments": [{"name": "Suzanne*", "style": "ink"}, {"name": "Ball", "style": "oil"}]},
+            "dash": {"camera": "--help", "assignments": [{"name": "-o x", "style": "ink"}], "keys": {"name": "--a=b\nc"}},
+            "nul": {"camera": "a\0b"}, "nul_name": {"assignments": [{"name": "a\0", "style": "ink"}]},
+            "nul_key": {"keys": {"name": "a\0"}}, "far": {"view": {"azimuth": 1e6, "elevation": 90, "distance": 1e12}},
+            "numbers": {"seed": 18446744073709551615, "frame": -1000000, "size": [16384, 1], "budget_ms": 1e-300},
+            "draft": {"quality": "draft", "view": None}, "budget": {"budget_ms": 33.5, "frame": None},
+            "wrong": {"style": "../x", "size": [0, 1e9], "path": "/etc"}}.items():
+        write("state", name, json.dumps(change))
+
+
 def make_pictures():
     for kind, bits in ((0, 1), (0, 16), (2, 8), (3, 8), (4, 8), (6, 8), (6, 16)):
         write("png", f"kind{kind}_{bits}.png", png(3, 3, kind, bits))
@@ -399,5 +418,6 @@ if __name__ == "__main__":
     make_gltf()
     make_text()
     make_requests()
+    make_changes()
     make_pictures()
     make_other_pictures()

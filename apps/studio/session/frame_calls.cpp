@@ -12,6 +12,7 @@
 #include "core/image/stopwatch.h"
 #include "core/io/file/atomic_file.h"
 #include "core/io/picture_file.h"
+#include "pipeline/file_stamp.h"
 #include "pipeline/scene/blender_scene.h"
 #include "pipeline/scene/scene_guides.h"
 
@@ -223,9 +224,14 @@ HttpResponse Session::State::Thumbnail(const HttpRequest& request) {
   const StyleEntry* const style = style_id == request.query.end() ? nullptr : known.FindStyle(style_id->second);
   if (!scene && !style) return ErrorAnswer(InputError("there is no scene or style of this name"), 404);
   std::string key = scene ? "scene " + scene->id : "style " + style->id;
-  if (style) {
-    if (const auto of = FactsOf(*style)) key += (*of)->stamp;
+  // A style's own thumbnail, or its first painting, for which the style is read.
+  std::error_code failed;
+  fs::path file = style && !style->toml().empty() ? style->toml().parent_path() / "thumbnail.png" : fs::path();
+  if (style && !fs::exists(file, failed)) {
+    const Expected<std::shared_ptr<const StyleFacts>> read = FactsOf(*style);
+    file = read && !(*read)->exemplars.empty() ? fs::path((*read)->exemplars.front().file) : fs::path();
   }
+  if (style) key += StampOf(file.string());
   {
     const std::lock_guard lock(mutex);
     const auto found = thumbnails.find(key);
@@ -233,14 +239,7 @@ HttpResponse Session::State::Thumbnail(const HttpRequest& request) {
   }
   Expected<Picture> picture = InputError("there is no thumbnail");
   if (style) {
-    const Expected<std::shared_ptr<const StyleFacts>> read = FactsOf(*style);
-    const fs::path made = style->toml().parent_path() / "thumbnail.png";
-    std::error_code failed;
-    if (!style->toml().empty() && fs::exists(made, failed)) {
-      picture = ReadPicture(made);
-    } else if (read && !(*read)->exemplars.empty()) {
-      picture = ReadPicture((*read)->exemplars.front().file);
-    }
+    if (!file.empty()) picture = ReadPicture(file);
   } else if (!IsBlenderScene(scene->file)) {
     const StyleEntry* paint = known.FindStyle("oil");
     if (!paint && !known.styles.empty()) paint = &known.styles.front();

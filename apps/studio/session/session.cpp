@@ -10,6 +10,7 @@
 #include "apps/studio/session/session_state.h"
 #include "core/io/picture_file.h"
 #include "core/style/style_file.h"
+#include "pipeline/file_stamp.h"
 #include "pipeline/scene/blender_scene.h"
 
 namespace scumble {
@@ -36,13 +37,6 @@ RunContext ContextOf(const RunContext& context, EventHub& events) {
   ours.clock = nullptr;
   ours.on_progress = BusyReports(events);
   return ours;
-}
-
-std::string StampOfFile(const std::filesystem::path& file) {
-  std::error_code failed;
-  const auto time = std::filesystem::last_write_time(file, failed);
-  const auto size = std::filesystem::file_size(file, failed);
-  return failed ? "gone" : fmt::format("{} {}", time.time_since_epoch().count(), size);
 }
 
 // The description as it is from an orbit that says where it is.
@@ -135,8 +129,8 @@ Expected<SceneDescription> Session::State::Describe(const Moment& moment) {
 
 Expected<std::shared_ptr<const StyleFacts>> Session::State::FactsOf(const StyleEntry& style) {
   const auto stamp_of = [&](const StyleFacts& of) {
-    std::string stamp = StampOfFile(style.toml().empty() ? style.path : style.toml());
-    for (const ExemplarFile& one : of.exemplars) stamp += " " + StampOfFile(one.file);
+    std::string stamp = StampOf((style.toml().empty() ? style.path : style.toml()).string());
+    for (const ExemplarFile& one : of.exemplars) stamp += " " + StampOf(one.file);
     return stamp;
   };
   {

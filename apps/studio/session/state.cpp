@@ -25,7 +25,9 @@ Expected<double> NumberOf(const json& value, const std::string& field, double le
 
 Expected<std::string> TextOf(const json& value, const std::string& field) {
   if (!value.is_string()) return WrongField(field, "a text");
-  return value.get<std::string>();
+  std::string text = value.get<std::string>();
+  if (text.find('\0') != std::string::npos) return WrongField(field, "a text without the byte 0");  // no file has it
+  return text;
 }
 
 // A member of an object; `otherwise` where it is left out.
@@ -41,7 +43,10 @@ Expected<double> MemberOf(const json& object, const std::string& field, const ch
 
 Expected<KeyValue> KeyValueOf(const StyleKey& key, const json& value) {
   if (value.is_boolean()) return KeyValue(value.get<bool>());
-  if (value.is_string()) return KeyValue(value.get<std::string>());
+  if (value.is_string()) {
+    SCUMBLE_ASSIGN(std::string text, TextOf(value, "keys." + key.name));
+    return KeyValue(std::move(text));
+  }
   if (value.is_number_integer() && key.kind == KeyKind::kWhole) return KeyValue(value.get<std::int64_t>());
   if (value.is_number()) return KeyValue(value.get<double>());
   return WrongField("keys." + key.name, "a number, a text, true, false or null");

@@ -1,7 +1,6 @@
 #include "apps/studio/session/watch.h"
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <poll.h>
 #include <sys/eventfd.h>
 #include <sys/inotify.h>
@@ -15,6 +14,7 @@
 
 #include "core/image/hash.h"
 #include "core/io/file/atomic_file.h"
+#include "pipeline/file_stamp.h"
 
 namespace scumble {
 namespace {
@@ -23,12 +23,6 @@ constexpr int kLookEveryMs = 500;
 constexpr int kRestMs =
     5;  // a file is whole when it is closed or moved here; several that are saved together are taken together
 constexpr int kLongestUnrestMs = 1000;  // a file that is written all the time is looked at this often
-
-std::string StatOf(const std::string& file) {
-  struct stat found {};
-  if (::stat(file.c_str(), &found) != 0) return "gone";
-  return fmt::format("{} {} {}.{:09}", found.st_ino, found.st_size, found.st_mtim.tv_sec, found.st_mtim.tv_nsec);
-}
 
 // Of the bytes; 0 where they cannot be read.
 std::uint64_t HashOfFile(const std::string& file) {
@@ -80,7 +74,7 @@ void FileWatch::Watch(const std::vector<std::string>& files, std::chrono::system
   }
   for (const std::string& file : files) {
     if (next.count(file)) continue;
-    next[file] = {StatOf(file), HashOfFile(file)};
+    next[file] = {StampOf(file), HashOfFile(file)};
     if (IsWrittenAfter(file, read)) next[file] = {};
   }
   const std::lock_guard lock(mutex_);
@@ -93,7 +87,7 @@ void FileWatch::Watch(const std::vector<std::string>& files, std::chrono::system
 bool FileWatch::SeesChanges() const {
   const std::lock_guard lock(mutex_);
   for (const auto& [file, seen] : seen_) {
-    if (StatOf(file) != seen.stat) return true;
+    if (StampOf(file) != seen.stamp) return true;
   }
   return false;
 }
@@ -128,12 +122,12 @@ std::vector<std::string> FileWatch::Stale() {
   {
     const std::lock_guard lock(mutex_);
     for (const auto& [file, seen] : seen_) {
-      if (StatOf(file) != seen.stat) touched.emplace_back(file, seen);
+      if (StampOf(file) != seen.stamp) touched.emplace_back(file, seen);
     }
   }
   std::vector<std::string> stale;
   for (auto& [file, seen] : touched) {
-    const Seen now{StatOf(file), HashOfFile(file)};
+    const Seen now{StampOf(file), HashOfFile(file)};
     if (now.hash != seen.hash) stale.push_back(file);
     const std::lock_guard lock(mutex_);
     if (seen_.count(file)) seen_[file] = now;

@@ -36,7 +36,7 @@ class FileWatch {
 
  private:
   struct Seen {
-    std::string stat;  // cheap to compare
+    std::string stamp;  // cheap to compare
     std::uint64_t hash = 0;
   };
   void Run();

@@ -134,6 +134,7 @@ export class Compare {
     if (this.b.startsWith('seen:') && !this.history.find(Number(this.b.slice(5)))) this.b = '';
     if (this.a !== null && !this.history.find(this.a)) this.a = null;
     this.apply();
+    this.refresh();  // B may be another one now
   }
 
   /**

@@ -5,6 +5,7 @@ Usage: browser_test.py SCUMBLE SOURCE_FOLDER WORK_FOLDER [unittest's arguments]
 
 WORK_FOLDER takes axe-core, which npm installs there.
 """
+import atexit
 import json
 import os
 import pathlib
@@ -55,28 +56,41 @@ class Studio:
         return self.process.wait(PATIENCE)
 
 
+def chromium():
+    options = webdriver.ChromeOptions()
+    for word in ("--headless=new", "--disable-dev-shm-usage", "--window-size=1500,950"):
+        options.add_argument(word)
+    if os.geteuid() == 0:
+        options.add_argument("--no-sandbox")
+    browser = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
+    atexit.register(browser.quit)
+    browser.set_page_load_timeout(PATIENCE)
+    browser.set_script_timeout(PATIENCE)
+    return browser
+
+
 class Page(unittest.TestCase):
+    """Each test has a studio and a tab of its own, in one browser."""
     scene = "suzanne"
+    shared = None
 
     def setUp(self):
         self.temporary = tempfile.TemporaryDirectory()
         self.folder = pathlib.Path(self.temporary.name)
         shutil.copytree(SOURCE / "exemplars" / "oil", self.folder / "my")
         self.studio = Studio(self.folder, self.scene)
-        options = webdriver.ChromeOptions()
-        for word in ("--headless=new", "--disable-dev-shm-usage", "--window-size=1500,950"):
-            options.add_argument(word)
-        if os.geteuid() == 0:
-            options.add_argument("--no-sandbox")
-        options.add_experimental_option("prefs", {"download.default_directory": str(self.folder)})
-        self.browser = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
-        self.browser.set_page_load_timeout(PATIENCE)
-        self.browser.set_script_timeout(PATIENCE)
+        self.browser = Page.shared = Page.shared or chromium()
+        before = self.browser.window_handles
+        self.browser.switch_to.new_window("tab")
+        fresh = self.browser.current_window_handle
+        for handle in before:
+            self.browser.switch_to.window(handle)
+            self.browser.close()
+        self.browser.switch_to.window(fresh)
         self.browser.get(self.studio.address)
         self.settled()
 
     def tearDown(self):
-        self.browser.quit()
         self.studio.stop()
         self.temporary.cleanup()
 
