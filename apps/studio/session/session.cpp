@@ -66,8 +66,9 @@ Expected<std::shared_ptr<const StyleFacts>> ReadFacts(const StyleEntry& style) {
   SCUMBLE_ASSIGN(facts.values, StyleValues(style.path));
   SCUMBLE_ASSIGN(const Style read, LoadStyle(style.path));
   for (const Exemplar& one : read.exemplars) {
-    SCUMBLE_ASSIGN(const PictureHeader header, InspectPicture(one.name));
-    facts.exemplars.push_back({one.name, header.width, header.height, one.luminance});
+    const int width = one.cut ? one.cut->file_width : one.picture.width + 2 * one.margin;
+    const int height = one.cut ? one.cut->file_height : one.picture.height + 2 * one.margin;
+    facts.exemplars.push_back({one.name, width, height, one.luminance});
   }
   return std::make_shared<const StyleFacts>(std::move(facts));
 }

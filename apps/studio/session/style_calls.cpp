@@ -133,7 +133,7 @@ HttpResponse Session::State::SaveAs(const HttpRequest& request) {
   std::error_code failed;
   const fs::path folder = options.save_to.empty() ? fs::current_path(failed) : options.save_to;
   const Expected<fs::path> made = SaveStyleAs(*style, moment.state.keys, folder, name.get<std::string>());
-  if (!made) return ErrorAnswer(made.error());
+  if (!made) return ErrorAnswer(made.error(), made.error().kind == ErrorKind::kInput ? kUnreadable : 400);
   Change(
       [&] {
         state.style = catalogue.AddStyle(made->string(), *made, false);

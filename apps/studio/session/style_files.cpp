@@ -82,11 +82,12 @@ Expected<std::string> StyleText(const StyleEntry& style, const std::map<std::str
 }
 
 Status SaveStyle(const StyleEntry& style, const std::map<std::string, KeyValue>& keys) {
-  if (!style.IsWritable()) {
-    return UsageError(style.id + (style.bundled ? " is a bundled style" : " cannot be written") +
-                      ": save it as a new style");
-  }
+  if (style.bundled) return UsageError(style.id + " is a bundled style: save it as a new style");
   SCUMBLE_ASSIGN(const std::string text, StyleText(style, keys));
+  if (!style.IsWritable()) {
+    return UsageError((style.toml().empty() ? style.path : style.toml()).string() +
+                      " cannot be written: save it as a new style");
+  }
   return WriteFileAtomically(style.toml(), text);
 }
 
