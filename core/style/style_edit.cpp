@@ -134,7 +134,9 @@ std::string TomlText(const KeyValue& value) {
 Expected<std::string> WithSettings(std::string text, const std::vector<std::string>& settings,
                                    const std::string& file) {
   for (const std::string& setting : settings) {
-    const auto [name, value] = Split(setting);
+    const auto parts = Split(setting);
+    const auto& name = parts.first;
+    const auto& value = parts.second;
     if (!FindStyleKey(name)) return UsageError(name + " is no key of a style");
     const std::string line = "value = " + value;
     const auto wanted = Parse(line);
