@@ -1,8 +1,8 @@
 // Counts what a program is given by its system's allocator, to be loaded into it by LD_PRELOAD: the bytes of malloc and
 // all that comes down to it, and of memory mapped without a file, in pieces of 4 KiB and more: the small ones depend on
-// how tasks meet threads. When the program ends, their sum is written to the file that SCUMBLE_ALLOCATED_TO names. Freed
-// memory is not subtracted: bench/required.py needs the total of allocations, not the current one. Not seen: what the C
-// library maps for itself, stacks of threads for one, and mapped files.
+// how tasks meet threads. When the program ends, their sum is written to the file that SCUMBLE_ALLOCATED_TO names.
+// Freed memory is not subtracted: bench/required.py needs the total of allocations, not the current one. Not seen: what
+// the C library maps for itself, stacks of threads for one, and mapped files.
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/syscall.h>
