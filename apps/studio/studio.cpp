@@ -1,5 +1,7 @@
 #include "apps/studio/studio.h"
 
+#include <malloc.h>
+
 #include <atomic>
 #include <chrono>
 #include <memory>
@@ -20,13 +22,22 @@ Status RunStudio(const StudioOptions& options, const RunContext& context) {
   ServerOptions server_options;
   server_options.port = options.port, server_options.token = MakeToken(), server_options.web = options.web;
   server_options.on_first_visit = [&] { was_visited = true; };
-  SCUMBLE_ASSIGN(const std::unique_ptr<HttpServer> server,
-                 HttpServer::Start(
-                     server_options, [&](const HttpRequest& request) { return session->Handle(request); }, events));
+  std::atomic<unsigned> calls = 0;
+  const auto handle = [&](const HttpRequest& request) {
+    HttpResponse answer = session->Handle(request);
+    ++calls;
+    return answer;
+  };
+  SCUMBLE_ASSIGN(const std::unique_ptr<HttpServer> server, HttpServer::Start(server_options, handle, events));
   if (options.on_ready) options.on_ready(server->address());
   if (options.open_browser) browser = OpenedBrowser::Start(server->address(), context);
-  while (!options.is_stopped()) {
+  constexpr int kLooksOfRest = 20;  // a second
+  unsigned seen = 0;
+  for (int looks = 0; !options.is_stopped(); ++looks) {
     if (browser && was_visited) browser.reset();  // it has found the page
+    if (const unsigned now = calls; now != seen) seen = now, looks = 0;
+    // What pictures have left behind goes to the painting program beside us.
+    if (looks == kLooksOfRest) ::malloc_trim(0);
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
   events.Publish("bye", "{}");

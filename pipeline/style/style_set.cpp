@@ -8,6 +8,7 @@
 
 #include "core/style/style_file.h"
 #include "core/style/style_keyframes.h"
+#include "core/style/style_keys.h"
 #include "pipeline/style/assignments.h"
 #include "pipeline/style/style_locations.h"
 
@@ -161,9 +162,26 @@ Expected<LayerSet> RequiredLayers(StyleSet& set, const SceneStyleRequests& reque
 
 namespace {
 
-// "NAME:KEY=VALUE" or "KEY=VALUE". No key holds a colon; names may.
+// Whether a known key and '=' begin there.
+bool HasKeyAt(const std::string& text, std::size_t begin) {
+  const std::size_t equals = text.find('=', begin);
+  if (equals == std::string::npos) return false;
+  const std::string key = text.substr(begin, equals - begin);
+  return FindStyleKey(key) || key.rfind("exemplar.", 0) == 0;
+}
+
+// The colon between name and key; none: npos. No key holds a colon; names may, and '=' too.
+std::size_t ColonOf(const std::string& text) {
+  if (HasKeyAt(text, 0)) return std::string::npos;
+  for (std::size_t colon = text.find(':'); colon != std::string::npos; colon = text.find(':', colon + 1)) {
+    if (HasKeyAt(text, colon + 1)) return colon;
+  }
+  return text.substr(0, text.find('=')).rfind(':');
+}
+
+// "NAME:KEY=VALUE" or "KEY=VALUE".
 Expected<StyleSet::Override> ParseOverride(const std::string& text, const RunContext& context) {
-  const std::size_t colon = text.substr(0, text.find('=')).rfind(':');
+  const std::size_t colon = ColonOf(text);
   if (colon == std::string::npos) return StyleSet::Override{"", "", text};
   StyleSet::Override one{text.substr(0, colon), "", text.substr(colon + 1)};
   if (one.style.empty()) return UsageError("--set " + text + ": expected a style's name before the colon");

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <system_error>
 
 #include "core/style/style_file.h"
@@ -14,9 +15,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// `wanted`, or with a number where an entry has that id.
+// `name` in UTF-8, or with a number where an entry has that id.
 template <class Entry>
-std::string UniqueId(const std::vector<Entry>& entries, const std::string& wanted) {
+std::string UniqueId(const std::vector<Entry>& entries, const std::string& name) {
+  using nlohmann::json;
+  const std::string wanted = json::parse(json(name).dump(-1, ' ', false, json::error_handler_t::replace));
   std::string id = wanted;
   const auto is_taken = [&] {
     return std::any_of(entries.begin(), entries.end(), [&](auto& e) { return e.id == id; });

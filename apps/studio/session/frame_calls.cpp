@@ -100,7 +100,7 @@ HttpResponse Session::State::Frame(const Moment& moment, const HttpRequest& requ
     job.picture.leave_small = *format == FrameFormat::kJpeg;  // browsers scale it as they draw it
     job.key += job.picture.leave_small ? " small draft" : " draft";
   }
-  const std::string etag = EtagOf(job.key + format_name);
+  const std::string etag = EtagOf(run_id + job.key + format_name);
   const std::vector<std::pair<std::string, std::string>> known = {
       {"ETag", etag}, {"X-Scumble-Revision", std::to_string(moment.revision)}};
   if (request.if_none_match == etag) return {304, "", "", known};
@@ -126,7 +126,9 @@ HttpResponse Session::State::GetFrame(const HttpRequest& request) {
   const Moment moment = Now();
   HttpResponse answer =
       Frame(moment, request, quality, text("format", "jpeg"), text("show", ""), quality == "draft" ? drafts : finals);
-  if (quality != "draft" && (answer.status == 200 || answer.status == kCannotPaint)) WatchFilesOf(moment, begun);
+  if (quality == "draft") return answer;
+  if (answer.status == 200) SetProblem(std::nullopt);
+  if (answer.status == 200 || answer.status == kCannotPaint) WatchFilesOf(moment, begun, answer.status == 200);
   return answer;
 }
 

@@ -45,16 +45,23 @@ Expected<SceneDescription> Seen(Expected<SceneDescription> described, const Stud
   return described;
 }
 
-// The style's own file, and pictures beside it: those of a style that cannot be read are not known otherwise.
-void AddFilesAround(const StyleEntry& style, std::vector<std::string>& files) {
+// The style's own file, and pictures beside it: those of a style that cannot be read are not known otherwise. Where one
+// may be missing, the folders too.
+void AddFilesAround(const StyleEntry& style, bool with_folders, std::vector<std::string>& files) {
   constexpr std::size_t kMostFiles = 64;
   std::error_code failed;
   const std::filesystem::path toml = style.toml();
   files.push_back((toml.empty() ? style.path : toml).string());
+  const std::filesystem::path& there = toml.empty() ? style.path : toml;
+  const std::filesystem::path folder = there.has_parent_path() ? there.parent_path() : std::filesystem::path(".");
+  if (with_folders) files.push_back(folder.string());
   if (toml.empty()) return;
   std::size_t count = 0;
-  const std::filesystem::path folder = toml.has_parent_path() ? toml.parent_path() : std::filesystem::path(".");
-  for (const auto& entry : std::filesystem::directory_iterator(folder, failed)) {
+  std::filesystem::directory_iterator at(folder, failed);
+  for (; !failed && at != std::filesystem::directory_iterator(); at.increment(failed)) {
+    const std::filesystem::directory_entry& entry = *at;
+    std::error_code none;
+    if (with_folders && entry.is_directory(none) && ++count <= kMostFiles) files.push_back(entry.path().string());
     const bool is_picture =
         HasEnding(entry.path().string(), {".png", ".ora", ".kra", ".psd", ".exr", ".tif", ".tiff", ".jpg", ".jpeg"});
     if (is_picture && ++count <= kMostFiles) files.push_back(entry.path().string());
@@ -79,6 +86,7 @@ Session::State::State(const StudioOptions& given, const RunContext& run, EventHu
     : options(given),
       context(ContextOf(run, hub)),
       events(hub),
+      run_id(fmt::format("{} ", std::chrono::system_clock::now().time_since_epoch().count())),
       finals(context),
       drafts(context),
       others(context),
@@ -165,6 +173,7 @@ nlohmann::json Session::State::StateJson() {
   const Moment moment = Now();
   nlohmann::json json = ToJson(moment.state);
   json["revision"] = moment.revision;
+  json["first"] = {{"scene", first_scene}, {"style", first_style}};
   const Catalogue known = KnownCatalogue();
   json["scenes"] = json["styles"] = json["exemplars"] = nlohmann::json::array();
   for (const SceneEntry& scene : known.scenes) {
@@ -254,10 +263,10 @@ void Session::State::Tell(const std::string& why) {
 }
 
 // After a picture: what it was made of.
-void Session::State::WatchFilesOf(const Moment& moment, std::chrono::system_clock::time_point begun) {
+void Session::State::WatchFilesOf(const Moment& moment, std::chrono::system_clock::time_point begun, bool is_painted) {
   const PictureJob job = JobAt(moment, std::nullopt);
-  const std::string belongs = fmt::format("{}\n{}\n{}\n{}", job.scene.scene, job.style.style,
-                                          fmt::join(job.style.assigned, "\n"), moment.generation);
+  const std::string belongs = fmt::format("{}\n{}\n{}\n{} {}", job.scene.scene, job.style.style,
+                                          fmt::join(job.style.assigned, "\n"), moment.generation, is_painted);
   {
     const std::lock_guard lock(mutex);
     if (watched == belongs) return;
@@ -269,7 +278,7 @@ void Session::State::WatchFilesOf(const Moment& moment, std::chrono::system_cloc
     files = described->files;
     files.insert(files.end(), described->style_files.begin(), described->style_files.end());
   }
-  for (const StyleEntry& style : StylesOf(moment.state)) AddFilesAround(style, files);
+  for (const StyleEntry& style : StylesOf(moment.state)) AddFilesAround(style, !is_painted, files);
   watch->Watch(files, begun);
 }
 
@@ -302,11 +311,14 @@ void Session::State::FilesHaveChanged() {
     if (painted || painted.error().kind == ErrorKind::kCancelled) {
       if (painted) SetProblem(std::nullopt);
       Change([] {}, "files");
-      if (painted) WatchFilesOf(moment, begun);
+      if (painted) WatchFilesOf(moment, begun, true);
       return;
     }
     if (watch->SeesChanges()) return;  // it is called again
-    if (Clock::now() > deadline) return SetProblem(painted.error());
+    if (Clock::now() > deadline) {
+      WatchFilesOf(moment, begun, false);
+      return SetProblem(painted.error());
+    }
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
   }
 }
@@ -338,6 +350,7 @@ Expected<std::unique_ptr<Session>> Session::Open(const StudioOptions& options, c
   };
   first.scene = choose(catalogue.scenes, "suzanne", !options.scene.scene.empty());
   first.style = choose(catalogue.styles, "oil", !options.styles.empty());
+  state->first_scene = first.scene, state->first_style = first.style;
   first.camera = options.scene.camera, first.view = options.scene.view, first.light = options.scene.light;
   first.size = options.scene.size, first.seed = options.seed, first.frame = options.scene.blender.frame;
   state->catalogue = std::move(catalogue);

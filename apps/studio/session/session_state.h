@@ -47,11 +47,14 @@ struct Session::State {
   const StudioOptions options;
   const RunContext context;
   EventHub& events;
+  // Of this run: the same settings may be another picture in another one.
+  const std::string run_id;
   std::atomic<bool> stopped = false;
 
   std::mutex mutex;  // of what follows
   Catalogue catalogue;
   StudioState state;
+  std::string first_scene, first_style;  // that the run began with
   std::uint64_t revision = 1;
   std::uint64_t generation = 1;  // raised when a file has changed
   std::optional<Error> problem;
@@ -79,8 +82,8 @@ struct Session::State {
   // Replaces the state; `why` is for the page.
   void Change(const std::function<void()>& change, const std::string& why);
   void Tell(const std::string& why);
-  // Of a picture whose painting began then, or could not be painted.
-  void WatchFilesOf(const Moment& moment, std::chrono::system_clock::time_point begun);
+  // Of a picture whose painting began then. Where it could not be painted, a file that appears may be what is missing.
+  void WatchFilesOf(const Moment& moment, std::chrono::system_clock::time_point begun, bool is_painted);
   void FilesHaveChanged();
   void SetProblem(std::optional<Error> now);
 

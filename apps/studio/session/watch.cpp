@@ -1,6 +1,8 @@
 #include "apps/studio/session/watch.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <poll.h>
 #include <sys/eventfd.h>
 #include <sys/inotify.h>
@@ -24,8 +26,17 @@ constexpr int kRestMs =
     5;  // a file is whole when it is closed or moved here; several that are saved together are taken together
 constexpr int kLongestUnrestMs = 1000;  // a file that is written all the time is looked at this often
 
-// Of the bytes; 0 where they cannot be read.
+// Of the bytes, or of the names in a folder; 0 where they cannot be read.
 std::uint64_t HashOfFile(const std::string& file) {
+  std::error_code failed;
+  if (std::filesystem::is_directory(file, failed)) {
+    std::set<std::string> names;
+    std::filesystem::directory_iterator at(file, failed);
+    for (; !failed && at != std::filesystem::directory_iterator(); at.increment(failed)) {
+      names.insert(at->path().string());
+    }
+    return HashText(fmt::format("{}", fmt::join(names, "\n"))) | 1;
+  }
   const auto bytes = ReadWholeFile(file);
   if (!bytes) return 0;
   return HashText({reinterpret_cast<const char*>(bytes->data()), bytes->size()}) | 1;
@@ -63,6 +74,11 @@ void FileWatch::Stop() {
   thread_.join();
 }
 
+FileWatch::Seen FileWatch::LookAt(const std::string& file) {
+  std::error_code failed;
+  return {StampOf(file), HashOfFile(file), std::filesystem::is_directory(file, failed)};
+}
+
 void FileWatch::Watch(const std::vector<std::string>& files, std::chrono::system_clock::time_point read) {
   std::map<std::string, Seen> next;
   {
@@ -74,8 +90,8 @@ void FileWatch::Watch(const std::vector<std::string>& files, std::chrono::system
   }
   for (const std::string& file : files) {
     if (next.count(file)) continue;
-    next[file] = {StampOf(file), HashOfFile(file)};
-    if (IsWrittenAfter(file, read)) next[file] = {};
+    next[file] = LookAt(file);
+    if (IsWrittenAfter(file, read)) next[file] = {.is_folder = next[file].is_folder};
   }
   const std::lock_guard lock(mutex_);
   seen_ = std::move(next);
@@ -99,6 +115,7 @@ void FileWatch::WatchFolders() {
   for (const auto& [file, seen] : seen_) {
     const std::string folder = std::filesystem::path(file).parent_path().string();
     wanted.insert(folder.empty() ? "." : folder);
+    if (seen.is_folder) wanted.insert(file);
   }
   for (auto it = folders_.begin(); it != folders_.end();) {
     if (wanted.count(it->first)) {
@@ -127,7 +144,7 @@ std::vector<std::string> FileWatch::Stale() {
   }
   std::vector<std::string> stale;
   for (auto& [file, seen] : touched) {
-    const Seen now{StampOf(file), HashOfFile(file)};
+    const Seen now = LookAt(file);
     if (now.hash != seen.hash) stale.push_back(file);
     const std::lock_guard lock(mutex_);
     if (seen_.count(file)) seen_[file] = now;

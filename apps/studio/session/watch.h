@@ -28,7 +28,7 @@ class FileWatch {
   void Stop();
 
   // Watches these from now on, instead of those before; what is known of a file that stays is kept. One that is new
-  // here and was written after `read` has changed.
+  // here and was written after `read` has changed. A folder changes with the names in it.
   void Watch(const std::vector<std::string>& files, std::chrono::system_clock::time_point read);
 
   // Whether a file has changed that `changed` was not yet told of.
@@ -38,7 +38,9 @@ class FileWatch {
   struct Seen {
     std::string stamp;  // cheap to compare
     std::uint64_t hash = 0;
+    bool is_folder = false;
   };
+  static Seen LookAt(const std::string& file);
   void Run();
   void WatchFolders();
   std::vector<std::string> Stale();

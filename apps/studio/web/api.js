@@ -16,7 +16,7 @@
  *   styles: {id: string, name: string, bundled: boolean, writable: boolean, save_as: boolean}[],
  *   cameras: string[], objects: string[], materials: string[],
  *   animation: {first: number, last: number, fps: number} | null, lights: number, exemplars: Exemplar[],
- *   keys: Record<string, KeyValue>, file_keys: Record<string, KeyValue>, assignments: Assignment[],
+ *   first: {scene: string, style: string}, keys: Record<string, KeyValue>, file_keys: Record<string, KeyValue>, assignments: Assignment[],
  *   camera: string, view: Orbit | null, light: Light | null, eye: Orbit, frame: number | null,
  *   size: [number, number], seed: number, quality: string, budget_ms: number, problem: Problem | null}} State
  * @typedef {{scene?: string, style?: string, keys?: Record<string, KeyValue | null>, assignments?: Assignment[],

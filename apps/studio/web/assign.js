@@ -30,6 +30,7 @@ export class Assigner {
     document.addEventListener('pointerdown', (event) => {
       if (event.target instanceof Node && !this.popover.contains(event.target)) this.close(false);
     });
+    addEventListener('resize', () => this.close(false));
     store.listen((state) => this.update(state));
   }
 

@@ -16,8 +16,11 @@ export class BrushPanel {
     this.page = page;
     this.isOn = false;
     this.saving = false;
-    this.belongsTo = '';
+    // The exemplar that strokes lie on, its file, and what that was when the first of them was drawn.
+    this.belongsTo = this.file = '';
     /** @type {Paintable | null} */
+    this.own = null;
+    /** @type {Paintable | null} of the exemplar that is shown */
     this.paintable = null;
     this.button = byId('paint', HTMLButtonElement);
     this.strokes = new Strokes(byId('exemplar-layer', HTMLCanvasElement));
@@ -77,21 +80,35 @@ export class BrushPanel {
       this.close();
       return;
     }
-    const exemplar = this.exemplar.current;
-    if (!exemplar) return;
+    if (!this.exemplar.current) return;
+    this.isOn = true;
+    await this.follow();
+  }
+
+  get hasUnsaved() { return !this.strokes.isSaved && !this.strokes.isEmpty; }
+
+  /** Another exemplar is shown, or its file has changed. Strokes stay with the one that they were painted on. */
+  async follow() {
+    const {exemplar} = this, here = exemplar.shown;
+    this.strokes.canvas.hidden = this.belongsTo !== here;
+    if (!this.isOn || !exemplar.current) return;
     try {
-      // Strokes belong to the exemplar that they were painted on.
-      if (!this.strokes.isEmpty && this.belongsTo !== this.exemplar.shown)
-        this.strokes.clear(exemplar.width, exemplar.height);
-      this.paintable = exemplar.style === 0 ?
-          await getJson('/api/paintable', {exemplar: exemplar.index}) :
-          {ok: false, why: 'Only the first style can be painted on: choose it among the styles.'};
+      if (!this.hasUnsaved) this.paintable = await this.ask();
+      else if (this.belongsTo === here) this.paintable = this.own;
+      else this.paintable = {ok: false, why: `Strokes on ${this.file} are not saved: go back to it to save or undo them.`};
     } catch (error) {
       this.page.error(error);
       return;
     }
-    this.isOn = true;
-    this.show();
+    if (here === exemplar.shown) this.show();
+  }
+
+  /** @returns {Promise<Paintable>} */
+  async ask() {
+    const {current} = this.exemplar;
+    return current?.style === 0 ?
+        getJson('/api/paintable', {exemplar: current.index}) :
+        {ok: false, why: 'Only the first style can be painted on: choose it among the styles.'};
   }
 
   close() {
@@ -108,7 +125,8 @@ export class BrushPanel {
     const why = byId('paint-why', HTMLElement);
     why.hidden = canPaint;
     why.textContent = paintable?.why ?? '';
-    if (isOn && !canPaint) {
+    const {styles, style} = this.exemplar.store.state;
+    if (isOn && !canPaint && !this.hasUnsaved && !styles.find(({id}) => id === style)?.writable) {
       const button = document.createElement('button');
       button.type = 'button';
       button.textContent = 'Save as…';
@@ -118,9 +136,12 @@ export class BrushPanel {
     this.button.setAttribute('aria-pressed', String(isOn));
     this.exemplar.locked = canPaint;
     document.body.toggleAttribute('data-paint', canPaint);
-    if (canPaint && this.strokes.isEmpty) {
+    if (canPaint && !this.hasUnsaved) {
       this.strokes.clear(paintable?.width ?? this.exemplar.base.width, paintable?.height ?? this.exemplar.base.height);
       this.belongsTo = this.exemplar.shown;
+      this.file = paintable?.file ?? '';
+      this.own = paintable;
+      this.strokes.canvas.hidden = false;
     }
     this.showUndo();
     this.page.layout();
@@ -222,7 +243,7 @@ export class BrushPanel {
     try {
       const query = {exemplar: exemplar.index, stamp: this.paintable?.stamp ?? ''};
       const response = await call('POST', withQuery('/api/paint', query), {blob: await pngOf(this.strokes.canvas)});
-      this.paintable = await response.json();
+      this.paintable = this.own = await response.json();
       this.strokes.isSaved = true;
       this.strokes.clear(exemplar.width, exemplar.height);  // they are in the file now
       this.page.announce(`paint saved in ${this.paintable?.file ?? exemplar.file}`);
@@ -248,7 +269,7 @@ export class BrushPanel {
     const exemplar = this.exemplar.current;
     if (!exemplar) return;
     try {
-      this.paintable = await getJson('/api/paintable', {exemplar: exemplar.index});
+      this.paintable = this.own = await getJson('/api/paintable', {exemplar: exemplar.index});
       await this.exemplar.renew();
       this.page.announce('the file was read anew; your strokes lie over it');
     } catch (error) {

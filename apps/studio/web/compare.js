@@ -9,6 +9,7 @@ import {draw, frameBeside} from './frame.js';
 
 const kQualities = ['final', 'preview', 'draft'];
 const kBudgets = [20, 50, 100];
+const kAgainMs = 200;
 
 export class Compare {
   /**
@@ -38,6 +39,7 @@ export class Compare {
     this.beside = byId('beside', HTMLSelectElement);
     /** @type {() => void} */
     this.onChange = () => {};
+    this.painting = '';  // the B that is on its way
     for (const [value, text] of [
              ['off', 'No comparison'], ['wipe', 'Wipe'], ['side', 'Side by side'], ['difference', 'Difference']]) {
       this.select.append(make('option', {value, textContent: text}));
@@ -143,7 +145,7 @@ export class Compare {
    */
   now(show) {
     this.show = show;
-    if (!this.chosenB.startsWith('seen:')) this.drawnB = '';
+    if (!this.chosenB.startsWith('seen:')) this.drawnB = this.painting = '';
     this.refresh();
   }
 
@@ -153,14 +155,17 @@ export class Compare {
   async refresh() {
     if (!this.isOn) return;
     const b = this.chosenB, a = this.a;
+    /** @type {AbortController | null} */
+    let own = null;
     try {
       if (a !== null && this.drawnA !== a) {
         await this.drawSeen(this.canvasA, a);
         this.drawnA = a;
       }
-      if (b && this.drawnB !== b) {
+      if (b && this.drawnB !== b && this.painting !== b) {
         this.abort.abort();
-        const {signal} = this.abort = new AbortController();
+        const {signal} = this.abort = own = new AbortController();
+        this.painting = b;
         if (b.startsWith('seen:')) await this.drawSeen(this.canvasB, Number(b.slice(5)));
         else draw(this.canvasB, (await frameBeside(this.changesOf(b), this.show, signal)).source);
         if (signal.aborted) return;
@@ -168,7 +173,11 @@ export class Compare {
       }
       this.apply();
     } catch (error) {
-      if (!isAbort(error) && !(error instanceof CallError && error.status === 409)) this.onError(error);
+      if (isAbort(error)) return;
+      if (error instanceof CallError && error.status === 409) setTimeout(() => this.refresh(), kAgainMs);
+      else this.onError(error);
+    } finally {
+      if (own === this.abort) this.painting = '';
     }
   }
 
@@ -249,7 +258,7 @@ export class Compare {
   kept() {
     return this.mode === 'off' ?
         undefined :
-        {mode: this.mode, b: this.b.startsWith('seen:') ? '' : this.b, at: Math.round(this.at)};
+        {mode: this.mode, b: this.b, at: Math.round(this.at)};
   }
 
   /** @param {{mode?: Mode, b?: string, at?: number} | undefined} kept */

@@ -86,9 +86,11 @@ export class ExemplarPanel {
   async check(style) {
     const list = byId('warnings', HTMLElement);
     try {
-      /** @type {{warnings: {what: string, fix: string}[]}} */
+      /** @type {{warnings: {image: string, what: string, fix: string}[]}} */
       const {warnings} = await getJson('/api/check', {style});
-      list.replaceChildren(...warnings.map(({what, fix}) => make('li', {}, what, make('span', {textContent: fix}))));
+      const isOneOfMany = this.store.state.exemplars.filter((exemplar) => exemplar.style === style).length > 1;
+      list.replaceChildren(...warnings.map(({image, what, fix}) => make(
+          'li', {}, isOneOfMany ? `${image}: ${what}` : what, make('span', {textContent: fix}))));
       list.hidden = warnings.length === 0;
     } catch {
       list.hidden = true;  // a style that cannot be read has its sentence in the banner

@@ -1,6 +1,7 @@
 // The strip of what has been seen: a picture and the settings that made it. A click brings the settings back.
 import {byId, make, pngOf, scratch} from './dom.js';
 import {labelOf} from './keys.js';
+import {dropPicture, keepPicture, keptPictures} from './memory.js';
 import {settingsOf} from './store.js';
 
 /** @typedef {import('./api.js').State} State */
@@ -70,7 +71,29 @@ export class History {
     this.filesChanged = false;
     const copy = scratch(canvas.width, canvas.height);
     copy.to.drawImage(canvas, 0, 0);
-    const label = describe(state), id = this.next++;
+    const picture = pngOf(copy.canvas), seen = {id: this.next++, settings, signature, label: describe(state)};
+    this.markNow(this.add({...seen, picture}, canvas));
+    void picture.then((blob) => keepPicture({...seen, picture: blob}));
+    this.onChange();
+  }
+
+  /** What this tab had seen before it was loaded anew. */
+  async remember() {
+    for (const seen of await keptPictures()) {
+      const bitmap = await createImageBitmap(seen.picture);
+      this.add({...seen, picture: Promise.resolve(seen.picture)}, bitmap);
+      this.next = Math.max(this.next, seen.id + 1);
+      bitmap.close();
+    }
+    this.onChange();
+  }
+
+  /**
+   * At the end of the strip.
+   * @param {{id: number, settings: Changes, signature: string, label: string, picture: Promise<Blob>}} seen
+   * @param {HTMLCanvasElement | ImageBitmap} canvas
+   */
+  add({id, settings, signature, label, picture}, canvas) {
     const item = make('li', {className: 'seen'});
     item.dataset.seen = String(id);
     const thumb = make(
@@ -84,10 +107,10 @@ export class History {
     }
     /** @type {Entry} */
     const entry =
-        {id, signature, settings, label, item, picture: pngOf(copy.canvas), width: canvas.width, height: canvas.height};
+        {id, signature, settings, label, item, picture, width: canvas.width, height: canvas.height};
     const restore = make('button', {type: 'button', className: 'restore', title: `${label}: click to come back to it`,
                                     'aria-label': `Come back to ${id}: ${label}`}, thumb);
-    restore.addEventListener('click', () => void this.store.patch(structuredClone(entry.settings)));
+    restore.addEventListener('click', () => void this.store.restore(entry.settings));
     const marks = make('span', {className: 'marks'});
     for (const side of /** @type {const} */ (['a', 'b'])) {
       const button = make('button', {type: 'button', textContent: side.toUpperCase(), 'aria-pressed': 'false',
@@ -100,9 +123,10 @@ export class History {
     item.append(restore, marks);
     this.entries.push(entry);
     this.list.append(item);
-    if (this.entries.length > kMost) this.entries.shift()?.item.remove();
-    this.markNow(entry);
-    this.onChange();
+    const old = this.entries.length > kMost ? this.entries.shift() : undefined;
+    old?.item.remove();
+    if (old) void dropPicture(old.id);
+    return entry;
   }
 
   /** @param {Entry} now */

@@ -45,7 +45,18 @@ export class Keeper {
     byId('save-as', HTMLButtonElement).disabled = this.style?.save_as === false;
   }
 
+  /** A number that is being typed counts, and what is on its way arrives first. */
+  async settle() {
+    const field = document.activeElement;
+    if (field instanceof HTMLInputElement || field instanceof HTMLTextAreaElement) {
+      field.blur();
+      field.focus();
+    }
+    await this.store.rested();
+  }
+
   async save() {
+    await this.settle();
     if (!this.style?.writable) {
       this.askName();
       return;
@@ -54,8 +65,10 @@ export class Keeper {
       this.page.announce('nothing to save');
       return;
     }
+    const {keys, file_keys: before} = this.store.state;
     try {
       const {saved} = await (await call('POST', '/api/save')).json();
+      this.store.rebase(keys, before);
       this.page.announce(`saved ${saved}`);
       await this.store.refresh();
     } catch (error) {
@@ -75,8 +88,10 @@ export class Keeper {
   async saveAs() {
     const error = byId('save-as-error', HTMLElement);
     error.textContent = '';
+    const {keys, file_keys: before} = this.store.state;
     try {
       const {saved} = await (await call('POST', '/api/save-as', {json: {name: this.name.value}})).json();
+      this.store.rebase(keys, before);
       this.dialog.close();
       this.name.value = '';
       this.page.announce(`saved ${saved ?? 'the style'}`);
@@ -87,6 +102,7 @@ export class Keeper {
   }
 
   async copyCommand() {
+    await this.settle();
     try {
       const {command} = await (await call('POST', '/api/export', {json: {what: 'command'}})).json();
       document.documentElement.dataset.command = command;

@@ -27,6 +27,7 @@ import {Keeper} from './keep.js';
 import {KeysPanel} from './keys.js';
 import {showLibrary} from './library.js';
 import {LightPanel} from './light.js';
+import {keepSteps, keptSteps} from './memory.js';
 import {announce, announceSoon, showBusy, showError, showGone, showProblem} from './messages.js';
 import {OrbitControl} from './orbit.js';
 import {OutputPanel} from './output.js';
@@ -97,9 +98,10 @@ frames.onBegin = (/** @type {string} */ quality) => {
 store.onError = fail;
 
 const exemplar = new ExemplarPanel(store, showError);
-const picker =
-    new Picker(view, exemplar, () => !frames.isMoving && !frames.running && frames.drawn?.quality === 'final');
 const compare = new Compare(store, view, seen, showError);
+const picker =
+    new Picker(view, exemplar, () => !frames.isMoving && !frames.running && frames.drawn?.quality === 'final' &&
+                                     !compare.painting);
 const assigner = new Assigner(store, announce);
 const orbit = new OrbitControl(store, view, (pixel, at) => void assigner.offer(pixel, at).catch(showError));
 const timeline = new Timeline(store);
@@ -107,6 +109,7 @@ const keeper = new Keeper(store, {announce, error: showError});
 const brush = new BrushPanel(exemplar, {
   announce, error: showError, saveAs: () => keeper.askName(), layout: () => view.layout(),
 });
+exemplar.onShown = () => void brush.follow();
 new OutputPanel(store);
 new LightPanel(store);
 showLibrary(store);
@@ -121,8 +124,8 @@ function setShow(what) {
 
 /** @param {boolean} isUndo */
 function step(isUndo) {
-  if (brush.isOn && (isUndo ? brush.undo() : brush.redo())) return;
-  const done = isUndo ? store.undo() : store.redo();
+  // While one paints, strokes alone are undone.
+  const done = brush.canPaint ? (isUndo ? brush.undo() : brush.redo()) : isUndo ? store.undo() : store.redo();
   announce(done ? (isUndo ? 'undone' : 'done again') : (isUndo ? 'nothing to undo' : 'nothing to do again'));
 }
 
@@ -171,7 +174,7 @@ async function onEvent(name, data) {
 /** The server is there: at the beginning, again, or the page is looked at again. */
 async function onFound() {
   const before = store.known, wasGone = root.hasAttribute('data-gone');
-  const known = before ? {revision: before.revision, settings: settingsOf(before)} : kept;
+  const known = before ? {revision: before.revision, first: before.first, settings: settingsOf(before)} : kept;
   const state = await store.refresh();
   showGone(null);
   showProblem(state.problem);
@@ -201,6 +204,11 @@ async function start() {
   byId('problem-close', HTMLElement).addEventListener('click', () => showProblem(null));
   listenToKeys(
       shortcutTable({view, orbit, compare, timeline, keeper, brush, assigner, picker, shows: kShows, setShow, step}));
+  const run = JSON.stringify(store.state.first), steps = keptSteps(run);
+  store.undoSteps = steps.undo;
+  store.redoSteps = steps.redo;
+  addEventListener('pagehide', () => keepSteps(run, store.undoSteps, store.redoSteps));
+  await seen.remember();
   restorePage();
   store.listen(update);
 }

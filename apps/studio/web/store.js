@@ -53,8 +53,7 @@ export function inverse(state, changes) {
   const before = {};
   for (const field of fields) if (field !== 'keys') Object.assign(before, {[field]: state[field]});
   if (!state.budget_ms) delete before.budget_ms;
-  if (state.frame === null) delete before.frame;
-  if (changes.style !== undefined) {
+  if (changes.style !== undefined && changes.style !== state.style) {
     before.keys = {...state.keys};
   } else if (changes.keys) {
     before.keys = Object.fromEntries(Object.keys(changes.keys).map((name) => [name, state.keys[name] ?? null]));
@@ -70,8 +69,7 @@ export function inverse(state, changes) {
 export function settingsOf(state) {
   const {scene, style, keys, assignments, camera, view, light, frame, size, seed, quality, budget_ms} = state;
   /** @type {Changes} */
-  const settings = {scene, style, keys: {...keys}, assignments, camera, view, light, size, seed};
-  if (frame !== null) settings.frame = frame;
+  const settings = {scene, style, keys: {...keys}, assignments, camera, view, light, frame, size, seed};
   if (budget_ms) settings.budget_ms = budget_ms;
   else settings.quality = quality;
   return settings;
@@ -168,6 +166,41 @@ export class Store {
     }
     this.redoSteps = [];
     return this.undoSteps[this.undoSteps.length - 1];
+  }
+
+  /**
+   * Comes back to settings: keys that they do not name are the file's again.
+   * @param {Changes} settings
+   */
+  restore(settings) {
+    const changes = structuredClone(settings);
+    if (changes.style === this.state.style) {
+      const others = Object.keys(this.state.keys).filter((name) => !(name in (settings.keys ?? {})));
+      changes.keys = {...Object.fromEntries(others.map((name) => [name, null])), ...changes.keys};
+    }
+    return this.patch(changes);
+  }
+
+  /**
+   * Keys were written into the file: "as the file has it" is another value now, in what undo and redo bring back.
+   * @param {Record<string, any>} saved the keys, as they were changed
+   * @param {Record<string, any>} before the values in the file until now
+   */
+  rebase(saved, before) {
+    for (const {before: back, after} of [...this.undoSteps, ...this.redoSteps]) {
+      for (const {keys} of [back, after]) {
+        for (const name of Object.keys(saved)) {
+          if (!keys || !(name in keys)) continue;
+          if (keys[name] === null) keys[name] = before[name];
+          else if (keys[name] === saved[name]) keys[name] = null;
+        }
+      }
+    }
+  }
+
+  /** Waits until no change is on its way. */
+  async rested() {
+    while (this.sending) await new Promise((resolve) => setTimeout(resolve, 20));
   }
 
   undo() {

@@ -225,6 +225,59 @@ class Pictures(Page):
         self.assertTrue(changed[0].startswith("threshold"), changed)
 
 
+class Changing(Page):
+    """What is changed comes back: by the strip, by undo, after a save."""
+
+    def threshold(self):
+        return self.state()["keys"].get("transfer.threshold")
+
+    def set_threshold(self, value):
+        self.js("const field = document.getElementById('key-transfer.threshold'); field.value = arguments[0];"
+                "field.dispatchEvent(new Event('change', {bubbles: true}))", str(value))
+        self.until(lambda: self.threshold() == value, f"a threshold of {value}")
+        self.settled()
+
+    def seen(self, number):
+        self.until(lambda: self.browser.find_elements(By.CSS_SELECTOR, f"[data-seen='{number}']"), f"picture {number}")
+
+    def test_the_strip_brings_settings_back_and_a_reload_keeps_it(self):
+        self.seen(1)
+        before = self.pixels()
+        self.set_threshold(0.5)
+        self.seen(2)
+        self.find("[data-seen='1'] .restore").click()
+        self.until(lambda: self.threshold() is None, "the settings of the first picture")
+        self.settled()
+        self.assertEqual(self.pixels(), before)
+        self.find("#undo").click()
+        self.until(lambda: self.threshold() == 0.5, "what was before the first picture came back")
+        self.browser.refresh()
+        self.settled()
+        self.seen(2)
+        self.find("#undo").click()
+        self.until(lambda: self.threshold() is None, "the undo of a change before the reload")
+        self.find("[data-seen='2'] .restore").click()
+        self.until(lambda: self.threshold() == 0.5, "the settings of a picture from before the reload")
+
+    def test_undo_goes_on_after_a_save(self):
+        file = self.folder / "my" / "style.toml"
+        own = self.state()["file_keys"]["transfer.threshold"]
+        self.set_threshold(0.5)
+        self.find("#save").click()
+        self.until(lambda: "0.5" in file.read_text() and self.threshold() is None, "the save")
+        self.find("#undo").click()
+        self.until(lambda: self.threshold() == own, "the value from before the save")
+        self.find("#redo").click()
+        self.until(lambda: self.threshold() is None, "the saved value")
+
+    def test_a_number_that_is_being_typed_is_saved(self):
+        field = self.find("[id='key-transfer.threshold']")
+        field.send_keys(Keys.CONTROL + "a")
+        field.send_keys("0.37")
+        field.send_keys(Keys.CONTROL + "s")
+        self.until(lambda: "0.37" in (self.folder / "my" / "style.toml").read_text(), "the save")
+
+
 class Understanding(Page):
     def test_picking_says_what_the_source_field_says(self):
         stage = self.find("#stage")
@@ -311,6 +364,13 @@ class Lasting(Page):
         self.find("#play").click()
         self.until(lambda: self.state()["frame"] != frame, "another frame")
         self.find("#play").click()
+        for _ in range(20):
+            if self.state()["frame"] is None:
+                break
+            self.find("#undo").click()
+            self.settled()
+        self.assertIsNone(self.state()["frame"])
+        self.assertEqual(self.pixels(), before)
 
     def test_a_reload_loses_nothing_also_of_a_new_server(self):
         self.choose("style", "gouache")
@@ -328,6 +388,17 @@ class Lasting(Page):
         self.browser.get(self.studio.address)
         self.settled()
         self.assertEqual(self.state()["scene"], "toys")
+
+    def test_a_studio_for_another_scene_is_left_as_it_is(self):
+        self.choose("style", "gouache")
+        self.assertEqual(self.studio.stop(), 0)
+        self.studio = Studio(self.folder, "snail", self.studio.port)
+        self.browser.switch_to.new_window("tab")
+        self.browser.get(self.studio.address)
+        self.settled()
+        self.browser.switch_to.window(self.browser.window_handles[0])
+        self.settled()
+        self.assertEqual((self.state()["scene"], self.state()["style"]), ("snail", "my"))
 
     def test_two_tabs(self):
         one = self.browser.current_window_handle
@@ -350,6 +421,45 @@ class Lasting(Page):
         self.find("#paint-save").click()
         self.until(lambda: file.read_bytes() != bytes_before, "the paint in the file")
         self.until(lambda: self.pixels() != before, "the paint in the picture")
+
+    def begin_to_paint(self):
+        if self.find("#paint").get_attribute("aria-pressed") != "true":
+            self.find("#paint").click()
+        self.until(lambda: self.js("return document.body.hasAttribute('data-paint')"), "the brush")
+
+    def test_painting_begins_with_a_copy_of_a_bundled_style(self):
+        self.choose("style", "ink")
+        self.find("#paint").click()
+        self.until(lambda: self.find("#paint-why").is_displayed(), "why it is not painted over")
+        self.find("#paint-why button").click()
+        name = self.find("#save-as-dialog input")
+        name.send_keys(Keys.CONTROL + "a")
+        name.send_keys("mine", Keys.ENTER)
+        self.until(lambda: self.state()["style"] == "mine", "the copy")
+        self.begin_to_paint()
+
+    def test_strokes_stay_with_their_exemplar(self):
+        style = self.folder / "my" / "style.toml"
+        shutil.copy(self.folder / "my" / "lit.png", self.folder / "my" / "dark.png")
+        style.write_text(style.read_text() + '\n[[exemplar]]\nimage = "dark.png"\nluminance = 0.1\n')
+        self.until(lambda: len(self.state()["exemplars"]) == 2, "two exemplars")
+        bytes_before = (self.folder / "my" / "dark.png").read_bytes()
+        self.until(lambda: self.find("#exemplar-select").is_displayed(), "the choice")
+        self.begin_to_paint()
+        self.drag(self.find("#exemplar"), 60, 40)
+        self.until(lambda: self.find("#paint-save").is_enabled(), "a stroke")
+        choose = ("const s = document.getElementById('exemplar-select'); s.value = arguments[0];"
+                  "s.dispatchEvent(new Event('change', {bubbles: true}))")
+        self.js(choose, "0/1")
+        self.until(lambda: "lit.png" in self.find("#paint-why").text, "where the strokes lie")
+        self.assertFalse(self.find("#exemplar-layer").is_displayed())
+        self.js(choose, "0/0")
+        self.begin_to_paint()
+        self.assertTrue(self.find("#exemplar-layer").is_displayed())
+        lit = (self.folder / "my" / "lit.png").read_bytes()
+        self.find("#paint-save").click()
+        self.until(lambda: (self.folder / "my" / "lit.png").read_bytes() != lit, "the paint in its file")
+        self.assertEqual((self.folder / "my" / "dark.png").read_bytes(), bytes_before)
 
 
 if __name__ == "__main__":

@@ -220,5 +220,29 @@ TEST_F(SessionTest, AStyleWithoutItsPaintingIsTold) {
   EXPECT_EQ(told, read.error().message);
 }
 
+// Also a painting in a folder below, long after the style was tried in vain.
+TEST_F(SessionTest, APaintingThatAppearsIsSeen) {
+  const std::string whole = TextOf(painting);
+  fs::remove(painting);
+  Open({(folder / "mine").string()});
+  EXPECT_EQ(Frame().status, 422);
+  Write(folder / "mine" / "art" / "other.png", whole);  // not the one, but it is tried
+  EXPECT_FALSE(Await("problem").is_null());
+  EXPECT_FALSE(State()["problem"].is_null());
+  Write(folder / "mine" / "art" / "new.png", whole);
+  fs::rename(folder / "mine" / "art" / "new.png", painting);
+  EXPECT_TRUE(Comes([&] { return Frame().status == 200; }));
+  EXPECT_TRUE(State()["problem"].is_null());
+}
+
+TEST_F(SessionTest, AnotherStyleEndsTheProblem) {
+  ASSERT_EQ(Frame().status, 200);
+  Write(painting, "no picture");
+  EXPECT_FALSE(Await("problem").is_null());
+  ASSERT_EQ(Call("PATCH", "/api/state", {{"style", "ink"}}).status, 200);
+  EXPECT_EQ(Frame().status, 200);
+  EXPECT_TRUE(State()["problem"].is_null());
+}
+
 }  // namespace
 }  // namespace scumble

@@ -158,5 +158,27 @@ TEST_F(SessionTest, AnUnknownCameraIsToldAndTheNextIsSeen) {
   EXPECT_EQ(Frame().status, 200);
 }
 
+// The same settings, another painting: what a browser kept of the run before is old.
+TEST_F(SessionTest, AnotherRunHasOtherTags) {
+  const auto tag_of = [](const HttpResponse& answer) { return answer.headers.at(0).second; };
+  const std::string first = tag_of(Frame());
+  ASSERT_TRUE(WritePicture(painting, Ball(1000)).ok());
+  Open(options.styles);
+  EXPECT_NE(tag_of(Frame()), first);
+}
+
+TEST_F(SessionTest, NamesWithSignsOfTheCommandLineStayNames) {
+  const fs::path style = folder / "d=Öl:bild";
+  fs::copy(folder / "mine", style, fs::copy_options::recursive);
+  Open({style.string()});
+  ASSERT_EQ(Call("PATCH", "/api/state",
+                 {{"keys", {{"transfer.threshold", 0.4}}},
+                  {"assignments", json::array({{{"name", "no such"}, {"style", "ink"}}})}})
+                .status,
+            200);
+  const HttpResponse painted = Frame();
+  EXPECT_EQ(painted.status, 200) << painted.body;
+}
+
 }  // namespace
 }  // namespace scumble
