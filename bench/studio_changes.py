@@ -5,7 +5,7 @@ frame, assignment, light or undo of all.
 
 Usage: studio_changes.py --scumble build/scumble [--changes 10000] [--size 320x180]
 
-Prints the resident memory after each tenth, at rest. Exit code 1 where any later tenth has over 5% more than the first one, or
+Prints the memory of its own after each tenth, at rest. Exit code 1 where any later tenth has over 5% more than the first one, or
 where the studio does not answer or end as it should.
 """
 import argparse
@@ -23,7 +23,7 @@ from studio_client import Studio  # noqa: E402
 
 def memory_mb(process):
     for line in pathlib.Path(f"/proc/{process.pid}/status").read_text().splitlines():
-        if line.startswith("VmRSS:"):
+        if line.startswith("RssAnon:"):  # without the pages of libraries, which are loaded when they are needed
             return int(line.split()[1]) / 1024.0
     raise SystemExit("studio_changes.py: the studio has ended")
 
@@ -34,12 +34,21 @@ class Changes:
         self.chance = random.Random(5)
         self.paintings = [(SOURCE / "exemplars" / name / "lit.png").read_bytes() for name in ("oil", "gouache")]
         self.eye = studio.json("GET", "/api/state")["eye"]
+        # A broken file first: it has the libraries loaded that know other formats.
+        (folder / "lit.png").write_bytes(self.paintings[0][:1000])
+        studio.call("GET", "/api/frame", quality="final")
+        time.sleep(3.0)
+        (folder / "lit.png").write_bytes(self.paintings[0])
+        time.sleep(1.0)
 
     def patch(self, **changes):
         self.studio.json("PATCH", "/api/state", changes)
 
     def frame(self, quality):
         status, _, body = self.studio.call("GET", "/api/frame", quality=quality)
+        while status == 409:  # as the page does it: a file is being written, or its new picture painted
+            time.sleep(0.05)
+            status, _, body = self.studio.call("GET", "/api/frame", quality=quality)
         if status != 200:
             raise SystemExit(f"studio_changes.py: {quality}: {status}: {body[:300]}")
 

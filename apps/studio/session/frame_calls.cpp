@@ -105,6 +105,10 @@ HttpResponse Session::State::Frame(const Moment& moment, const HttpRequest& requ
       {"ETag", etag}, {"X-Scumble-Revision", std::to_string(moment.revision)}};
   if (request.if_none_match == etag) return {304, "", "", known};
   const Expected<Lane::Painted> painted = LaneOf(lane, job).Paint(job);
+  // A file that is being written is no mistake: the page asks again.
+  if (!painted && painted.error().kind == ErrorKind::kInput && watch->SeesChanges()) {
+    return ErrorAnswer(CancelledError(), kCannotPaint);
+  }
   if (!painted) return ErrorAnswer(painted.error(), kCannotPaint);
   Stopwatch clock;
   Expected<std::string> bytes = EncodeFrame((*painted)->picture, *format, draft);

@@ -22,8 +22,7 @@ namespace scumble {
 namespace {
 
 constexpr int kLookEveryMs = 500;
-constexpr int kRestMs =
-    5;  // a file is whole when it is closed or moved here; several that are saved together are taken together
+constexpr int kRestMs = 5;  // closed and moved files are whole; several that are saved together are taken together
 constexpr int kLongestUnrestMs = 1000;  // a file that is written all the time is looked at this often
 
 // Of the bytes, or of the names in a folder; 0 where they cannot be read.

@@ -191,7 +191,7 @@ export class Compare {
   /** @param {HTMLCanvasElement} canvas @param {number} id */
   async drawSeen(canvas, id) {
     const entry = this.history.find(id);
-    if (entry) draw(canvas, await createImageBitmap(await entry.picture));
+    if (entry) draw(canvas, await createImageBitmap(await entry.picture()));
   }
 
   /** Shows what the mode says. */

@@ -1,13 +1,13 @@
 // The strip of what has been seen: a picture and the settings that made it. A click brings the settings back.
-import {byId, make, pngOf, scratch} from './dom.js';
+import {call} from './api.js';
+import {byId, context, make, pngOf, scratch} from './dom.js';
 import {labelOf} from './keys.js';
-import {dropPicture, keepPicture, keptPictures} from './memory.js';
+import {keepSeen, keptSeen} from './memory.js';
 import {settingsOf} from './store.js';
 
 /** @typedef {import('./api.js').State} State */
 /** @typedef {import('./api.js').Changes} Changes */
-/** @typedef {{id: number, signature: string, settings: Changes, label: string, item: HTMLLIElement,
- *   picture: Promise<Blob>, width: number, height: number}} Entry */
+/** @typedef {import('./memory.js').SeenPicture & {item: HTMLLIElement, picture: () => Promise<Blob>}} Entry */
 
 const kMost = 30;
 const kThumbHeight = 152;
@@ -71,46 +71,47 @@ export class History {
     this.filesChanged = false;
     const copy = scratch(canvas.width, canvas.height);
     copy.to.drawImage(canvas, 0, 0);
-    const picture = pngOf(copy.canvas), seen = {id: this.next++, settings, signature, label: describe(state)};
-    this.markNow(this.add({...seen, picture}, canvas));
-    void picture.then((blob) => keepPicture({...seen, picture: blob}));
+    const picture = pngOf(copy.canvas);
+    const thumb = make(
+        'canvas', {height: kThumbHeight, width: Math.max(1, Math.round(kThumbHeight * canvas.width / canvas.height))});
+    const to = context(thumb);
+    to.imageSmoothingQuality = 'high';
+    to.fillStyle = '#fff';
+    to.fillRect(0, 0, thumb.width, thumb.height);
+    to.drawImage(canvas, 0, 0, thumb.width, thumb.height);
+    const thumbnail = thumb.toDataURL('image/jpeg', 0.9);
+    this.markNow(this.add({id: this.next++, settings, signature, label: describe(state), thumbnail}, () => picture));
+    keepSeen(this.entries.map(({id, settings, signature, label, thumbnail}) =>
+        ({id, settings, signature, label, thumbnail})));
     this.onChange();
   }
 
-  /** What this tab had seen before it was loaded anew. */
-  async remember() {
-    for (const seen of await keptPictures()) {
-      const bitmap = await createImageBitmap(seen.picture);
-      this.add({...seen, picture: Promise.resolve(seen.picture)}, bitmap);
+  /** What this tab had seen before it was loaded anew: its settings and thumbnails. The pictures are painted again. */
+  remember() {
+    for (const seen of keptSeen()) {
+      this.add({...seen, label: `${seen.label} · painted anew`}, async () => {
+        const changes = this.store.changesTo(seen.settings);
+        const answer = await call('POST', '/api/frame', {json: {changes, quality: 'final', format: 'png', show: ''}});
+        return answer.blob();
+      });
       this.next = Math.max(this.next, seen.id + 1);
-      bitmap.close();
     }
     this.onChange();
   }
 
   /**
    * At the end of the strip.
-   * @param {{id: number, settings: Changes, signature: string, label: string, picture: Promise<Blob>}} seen
-   * @param {HTMLCanvasElement | ImageBitmap} canvas
+   * @param {import('./memory.js').SeenPicture} seen
+   * @param {() => Promise<Blob>} picture
    */
-  add({id, settings, signature, label, picture}, canvas) {
+  add(seen, picture) {
+    const {id, settings, label, thumbnail} = seen;
     const item = make('li', {className: 'seen'});
     item.dataset.seen = String(id);
-    const thumb = make(
-        'canvas', {height: kThumbHeight, width: Math.max(1, Math.round(kThumbHeight * canvas.width / canvas.height))});
-    const to = thumb.getContext('2d');
-    if (to) {
-      to.imageSmoothingQuality = 'high';
-      to.fillStyle = '#fff';
-      to.fillRect(0, 0, thumb.width, thumb.height);
-      to.drawImage(canvas, 0, 0, thumb.width, thumb.height);
-    }
-    /** @type {Entry} */
-    const entry =
-        {id, signature, settings, label, item, picture, width: canvas.width, height: canvas.height};
     const restore = make('button', {type: 'button', className: 'restore', title: `${label}: click to come back to it`,
-                                    'aria-label': `Come back to ${id}: ${label}`}, thumb);
-    restore.addEventListener('click', () => void this.store.restore(entry.settings));
+                                    'aria-label': `Come back to ${id}: ${label}`},
+                         make('img', {alt: '', src: thumbnail, height: kThumbHeight / 2, draggable: false}));
+    restore.addEventListener('click', () => void this.store.restore(settings));
     const marks = make('span', {className: 'marks'});
     for (const side of /** @type {const} */ (['a', 'b'])) {
       const button = make('button', {type: 'button', textContent: side.toUpperCase(), 'aria-pressed': 'false',
@@ -121,11 +122,11 @@ export class History {
       marks.append(button);
     }
     item.append(restore, marks);
+    /** @type {Entry} */
+    const entry = {...seen, item, picture};
     this.entries.push(entry);
     this.list.append(item);
-    const old = this.entries.length > kMost ? this.entries.shift() : undefined;
-    old?.item.remove();
-    if (old) void dropPicture(old.id);
+    if (this.entries.length > kMost) this.entries.shift()?.item.remove();
     return entry;
   }
 

@@ -208,7 +208,7 @@ async function start() {
   store.undoSteps = steps.undo;
   store.redoSteps = steps.redo;
   addEventListener('pagehide', () => keepSteps(run, store.undoSteps, store.redoSteps));
-  await seen.remember();
+  seen.remember();
   restorePage();
   store.listen(update);
 }

@@ -168,17 +168,20 @@ export class Store {
     return this.undoSteps[this.undoSteps.length - 1];
   }
 
+  /** @param {Changes} settings */
+  restore(settings) { return this.patch(this.changesTo(settings)); }
+
   /**
-   * Comes back to settings: keys that they do not name are the file's again.
+   * What brings these settings about: keys that they do not name are the file's again.
    * @param {Changes} settings
    */
-  restore(settings) {
+  changesTo(settings) {
     const changes = structuredClone(settings);
     if (changes.style === this.state.style) {
       const others = Object.keys(this.state.keys).filter((name) => !(name in (settings.keys ?? {})));
       changes.keys = {...Object.fromEntries(others.map((name) => [name, null])), ...changes.keys};
     }
-    return this.patch(changes);
+    return changes;
   }
 
   /**

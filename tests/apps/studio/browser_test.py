@@ -258,6 +258,9 @@ class Changing(Page):
         self.until(lambda: self.threshold() is None, "the undo of a change before the reload")
         self.find("[data-seen='2'] .restore").click()
         self.until(lambda: self.threshold() == 0.5, "the settings of a picture from before the reload")
+        self.js("document.querySelector(\"[data-seen='1'] [data-side='b']\").click()")
+        self.until(self.find("#wipe").is_displayed, "a comparison with a picture from before the reload")
+        self.assertIn("anew", self.find("#tag-b").text)
 
     def test_undo_goes_on_after_a_save(self):
         file = self.folder / "my" / "style.toml"
