@@ -89,8 +89,9 @@ void FileWatch::Watch(const std::vector<std::string>& files, std::chrono::system
   }
   for (const std::string& file : files) {
     if (next.count(file)) continue;
-    next[file] = LookAt(file);
-    if (IsWrittenAfter(file, read)) next[file] = {.is_folder = next[file].is_folder};
+    Seen now = LookAt(file);
+    if (IsWrittenAfter(file, read)) now.stamp.clear(), now.hash = 0;
+    next[file] = now;
   }
   const std::lock_guard lock(mutex_);
   seen_ = std::move(next);
