@@ -228,10 +228,11 @@ class Tuner {
     for (const auto& [off, settings] : order) {
       const double share = std::exp(off - own_);
       if (share > 1.0 / (1.0 + report_.chance) || chosen.size() > kMostProposals) break;
-      const bool is_known = std::any_of(chosen.begin() + 1, chosen.end(), [&, off = off, &settings = settings](const Settings& better) {
-        const double farther = std::expm1(off - tried_.at(better));
-        return farther == 0.0 || (farther <= report_.chance && KeysThatDiffer(settings, better) < 2);
-      });
+      const bool is_known =
+          std::any_of(chosen.begin() + 1, chosen.end(), [&, off = off, &settings = settings](const Settings& better) {
+            const double farther = std::expm1(off - tried_.at(better));
+            return farther == 0.0 || (farther <= report_.chance && KeysThatDiffer(settings, better) < 2);
+          });
       if (!is_known) chosen.push_back(settings);
     }
     std::vector<std::vector<double>> ms(chosen.size(), std::vector<double>(scenes_.size(), 0.0));

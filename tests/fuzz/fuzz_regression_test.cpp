@@ -88,7 +88,7 @@ std::uint64_t RunsOf(const std::string& target) {
   static const std::map<std::string, std::uint64_t> kRuns = {
       {"baseline", 20000}, {"exr", 2000},    {"gltf", 2500},    {"guides", 3500},  {"header", 50000},
       {"http", 40000},     {"obj", 1400},    {"options", 4000}, {"picture", 3000}, {"ply", 2000},
-      {"png", 50000},      {"raster", 4000}, {"style", 3200}};
+      {"png", 50000},      {"raster", 4000}, {"state", 50000},  {"style", 3200}};
   if (const char* const asked = std::getenv("SCUMBLE_FUZZ_RUNS")) return std::strtoull(asked, nullptr, 10);
   const auto found = kRuns.find(target);
   EXPECT_NE(found, kRuns.end()) << target << " has no number of runs";
