@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -74,12 +75,33 @@ std::map<std::string, std::string> StyleStamps(const StyleSet& styles) {
   RunInputs files;
   files.ReadsStyles(styles);
   std::vector<std::string> paths = files.Inputs();
-  for (const auto& [path, place] : styles.opened) paths.push_back(path);
   for (const std::string& one : styles.options.assigned) {
     if (one.size() > 1 && one.front() == '@') paths.push_back(one.substr(1));
   }
   std::map<std::string, std::string> stamps;
   for (const std::string& path : paths) stamps[path] = StampOf(path);
+  return stamps;
+}
+
+std::map<std::string, std::string> StampsNow(const std::map<std::string, std::string>& of) {
+  std::map<std::string, std::string> now;
+  for (const auto& [path, stamp] : of) now[path] = StampOf(path);
+  return now;
+}
+
+// Of styles that were read since `begun`, when their files had the stamps `before`, as far as they were known. A file
+// that changed while it was read counts as another one: it is read again.
+std::map<std::string, std::string> StampsAsRead(const StyleSet& styles,
+                                                const std::map<std::string, std::string>& before,
+                                                std::chrono::system_clock::time_point begun) {
+  std::map<std::string, std::string> stamps = StyleStamps(styles);
+  for (auto& [path, stamp] : stamps) {
+    if (const auto known = before.find(path); known != before.end()) {
+      stamp = known->second;
+    } else if (HasChangedSince(path, begun)) {
+      stamp.clear();
+    }
+  }
   return stamps;
 }
 
@@ -184,12 +206,14 @@ Status Workspace::State::LoadStyles(StyleRequest request, const std::string& cho
   const std::string text = TextOf(request) + "\n" + choice_text;
   if (styles && text == style_text && style_stamps == StyleStamps(*styles)) return Ok();
   request.reading = {RoomForStyles(context), [this](const std::filesystem::path& file) { return pictures.Read(file); }};
+  const auto begun = std::chrono::system_clock::now();
+  const std::map<std::string, std::string> before = StampsNow(style_stamps);
   SCUMBLE_ASSIGN(StyleSet loaded, OpenStyles(request, context));
   pictures.ForgetUnread();
   ++counters.styles_loaded;
   SCUMBLE_ASSIGN(choice, choose(loaded));
   if (!replaced) replaced = std::move(styles);
-  styles = std::move(loaded), style_text = text, style_stamps = StyleStamps(*styles);
+  styles = std::move(loaded), style_text = text, style_stamps = StampsAsRead(*styles, before, begun);
   picture.exposure.reset(), picture.hashes.clear(), picture.warned = false;
   return Ok();
 }
@@ -344,8 +368,10 @@ Expected<PaintedFrame> Workspace::State::Paint(SceneRequest scene, const StyleRe
   };
   const LayersFor layers_for = [&](const SceneStyleRequests& of_scene) -> Expected<LayerSet> {
     const std::size_t opened = styles->opened.size();
+    const auto begun = std::chrono::system_clock::now();
     const Expected<LayerSet> layers = RequiredLayers(*styles, of_scene, scene.scene);
-    if (styles->opened.size() > opened) style_stamps.merge(StyleStamps(*styles));  // which knows the others already
+    if (styles->opened.size() > opened)
+      style_stamps.merge(StampsAsRead(*styles, {}, begun));  // which knows the others already
     return layers;
   };
   SCUMBLE_RETURN_IF_ERROR(Cast(scene, request.frame, layers_for, Within(progress, 0.0, 0.5)));

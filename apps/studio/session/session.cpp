@@ -277,6 +277,11 @@ void Session::State::WatchFilesOf(const Moment& moment, std::chrono::system_cloc
   if (described) {
     files = described->files;
     files.insert(files.end(), described->style_files.begin(), described->style_files.end());
+    // The names in a folder count only where a file may be missing.
+    std::erase_if(files, [](const std::string& file) {
+      std::error_code failed;
+      return std::filesystem::is_directory(file, failed);
+    });
   }
   for (const StyleEntry& style : StylesOf(moment.state)) AddFilesAround(style, !is_painted, files);
   watch->Watch(files, begun);

@@ -6,7 +6,6 @@
 #include <poll.h>
 #include <sys/eventfd.h>
 #include <sys/inotify.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
@@ -39,13 +38,6 @@ std::uint64_t HashOfFile(const std::string& file) {
   const auto bytes = ReadWholeFile(file);
   if (!bytes) return 0;
   return HashText({reinterpret_cast<const char*>(bytes->data()), bytes->size()}) | 1;
-}
-
-bool IsWrittenAfter(const std::string& file, std::chrono::system_clock::time_point moment) {
-  struct stat found {};
-  if (::stat(file.c_str(), &found) != 0) return false;
-  const auto written = std::chrono::seconds(found.st_mtim.tv_sec) + std::chrono::nanoseconds(found.st_mtim.tv_nsec);
-  return written > moment.time_since_epoch();
 }
 
 }  // namespace
@@ -90,7 +82,7 @@ void FileWatch::Watch(const std::vector<std::string>& files, std::chrono::system
   for (const std::string& file : files) {
     if (next.count(file)) continue;
     Seen now = LookAt(file);
-    if (IsWrittenAfter(file, read)) now.stamp.clear(), now.hash = 0;
+    if (HasChangedSince(file, read)) now.stamp.clear(), now.hash = 0;
     next[file] = now;
   }
   const std::lock_guard lock(mutex_);

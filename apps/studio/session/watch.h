@@ -28,7 +28,7 @@ class FileWatch {
   void Stop();
 
   // Watches these from now on, instead of those before; what is known of a file that stays is kept. One that is new
-  // here and was written after `read` has changed. A folder changes with the names in it.
+  // here and has changed since `read` counts as changed. A folder changes with the names in it.
   void Watch(const std::vector<std::string>& files, std::chrono::system_clock::time_point read);
 
   // Whether a file has changed that `changed` was not yet told of.
