@@ -102,7 +102,11 @@ def main():
             changes.one(number)
             if (number + 1) % max(given.changes // 10, 1) == 0:
                 time.sleep(2.0)  # at rest it gives back what it does not need
-                tenths.append(memory_mb(studio.process))
+                rest = []
+                for _ in range(5):
+                    rest.append(memory_mb(studio.process))
+                    time.sleep(0.4)
+                tenths.append(min(rest))
                 print(f"{number + 1} changes, {time.monotonic() - begun:.0f} s: {tenths[-1]:.0f} MB", flush=True)
         if studio.end() != 0:
             raise SystemExit("studio_changes.py: the studio did not end with 0")

@@ -40,6 +40,7 @@ export class Compare {
     /** @type {() => void} */
     this.onChange = () => {};
     this.painting = '';  // the B that is on its way
+    this.failed = '';    // the B that could not be painted
     for (const [value, text] of [
              ['off', 'No comparison'], ['wipe', 'Wipe'], ['side', 'Side by side'], ['difference', 'Difference']]) {
       this.select.append(make('option', {value, textContent: text}));
@@ -83,6 +84,7 @@ export class Compare {
   /** @param {Mode} mode */
   setMode(mode) {
     this.mode = mode;
+    this.failed = '';
     this.apply();
     this.refresh();
     this.onChange();
@@ -145,6 +147,7 @@ export class Compare {
    */
   now(show) {
     this.show = show;
+    this.failed = '';
     if (!this.chosenB.startsWith('seen:')) this.drawnB = this.painting = '';
     this.refresh();
   }
@@ -162,7 +165,7 @@ export class Compare {
         await this.drawSeen(this.canvasA, a);
         this.drawnA = a;
       }
-      if (b && this.drawnB !== b && this.painting !== b) {
+      if (b && this.drawnB !== b && this.painting !== b && this.failed !== b) {
         this.abort.abort();
         const {signal} = this.abort = own = new AbortController();
         this.painting = b;
@@ -174,8 +177,12 @@ export class Compare {
       this.apply();
     } catch (error) {
       if (isAbort(error)) return;
-      if (error instanceof CallError && error.status === 409) setTimeout(() => this.refresh(), kAgainMs);
-      else this.onError(error);
+      if (error instanceof CallError && error.status === 409) {
+        setTimeout(() => this.refresh(), kAgainMs);
+      } else {
+        this.failed = b;
+        this.onError(error);
+      }
     } finally {
       if (own === this.abort) this.painting = '';
     }

@@ -151,6 +151,7 @@ export class Frames {
       this.drawn = {revision, quality, show};
       this.onPicture(picture);
     } catch (error) {
+      this.failed = `${this.store.state.revision} ${this.show}`;
       this.onError(error);
     }
   }
