@@ -84,7 +84,7 @@ def kill_many(program, failures, scene, home, kills):
         begin(home)
         painter = Painter(program, scene, home)
         painter.studio.json("GET", "/api/paintable")  # the first takes a while
-        killer = threading.Timer(chance.uniform(0.0, 0.05), painter.studio.process.kill)
+        killer = threading.Timer(chance.uniform(0.0, 0.1 * common.SLOWER), painter.studio.process.kill)
         killer.start()
         number = chance.randrange(3)
         try:
