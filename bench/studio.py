@@ -13,13 +13,13 @@ import pathlib
 import shutil
 import statistics
 import subprocess
+import sys
 import tempfile
 import time
 
-from selenium import webdriver
-from selenium.webdriver.chrome.service import Service
-
 SOURCE = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(SOURCE / "tests" / "apps" / "studio"))
+from chromium import chromium  # noqa: E402
 
 # Notes when the page has drawn what: the moment, the quality, and a number that changes with the paint in the middle.
 WATCH = """
@@ -50,15 +50,6 @@ setTimeout(() => {
   done(window.drawn.filter((one) => one[1] === 'draft').length / seconds);
 }, seconds * 1000);
 """
-
-
-def browser():
-    options = webdriver.ChromeOptions()
-    for word in ("--headless=new", "--disable-dev-shm-usage", "--window-size=1600,1000"):
-        options.add_argument(word)
-    if os.geteuid() == 0:
-        options.add_argument("--no-sandbox")
-    return webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
 
 
 def until(condition, seconds=30):
@@ -99,7 +90,7 @@ def main():
             studio = subprocess.Popen([str(given.scumble), "studio", str(SOURCE / "scenes" / "suzanne.glb"), "--style",
                                        str(folder), "--size", given.size, "--no-browser"],
                                       stdout=subprocess.PIPE, text=True)
-            page = browser()
+            page = chromium("1600,1000")
             try:
                 page.set_script_timeout(60)
                 page.get(studio.stdout.readline().strip())

@@ -5,7 +5,7 @@ frame, assignment, light or undo of all.
 
 Usage: studio_changes.py --scumble build/scumble [--changes 10000] [--size 320x180]
 
-Prints the memory of its own after each tenth, at rest. Exit code 1 where any later tenth has over 5% more than the first one, or
+Prints the memory that the program has allocated (RssAnon) after each tenth, at rest. Exit code 1 where any later tenth has over 5% more than the first one, or
 where the studio does not answer or end as it should.
 """
 import argparse
@@ -17,7 +17,7 @@ import tempfile
 import time
 
 SOURCE = pathlib.Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(SOURCE / "tests" / "support"))
+sys.path.insert(0, str(SOURCE / "tests" / "apps" / "studio"))
 from studio_client import Studio  # noqa: E402
 
 

@@ -14,8 +14,9 @@ std::string StampOf(const std::string& path) {
 bool HasChangedSince(const std::string& path, std::chrono::system_clock::time_point moment) {
   struct stat file {};
   if (::stat(path.c_str(), &file) != 0) return false;
+  const auto since = moment.time_since_epoch() - std::chrono::milliseconds(kFileTimeLagMs);
   const auto is_after = [&](const timespec& time) {
-    return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec) > moment.time_since_epoch();
+    return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec) > since;
   };
   return is_after(file.st_mtim) || is_after(file.st_ctim);
 }

@@ -205,7 +205,13 @@ struct Workspace::State {
 Status Workspace::State::LoadStyles(StyleRequest request, const std::string& choice_text, const Choose& choose) {
   const std::string text = TextOf(request) + "\n" + choice_text;
   if (styles && text == style_text && style_stamps == StyleStamps(*styles)) return Ok();
-  request.reading = {RoomForStyles(context), [this](const std::filesystem::path& file) { return pictures.Read(file); }};
+  const StyleRoom room = RoomForStyles(context);
+  request.reading = {room, [this, room](const std::filesystem::path& file) -> Expected<Picture> {
+                       const std::size_t kept = pictures.bytes();
+                       SCUMBLE_ASSIGN(Picture decoded, pictures.Read(file));
+                       if (pictures.bytes() > kept) SCUMBLE_RETURN_IF_ERROR(room(pictures.bytes() - kept));
+                       return decoded;
+                     }};
   const auto begun = std::chrono::system_clock::now();
   const std::map<std::string, std::string> before = StampsNow(style_stamps);
   SCUMBLE_ASSIGN(StyleSet loaded, OpenStyles(request, context));

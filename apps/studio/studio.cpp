@@ -22,10 +22,12 @@ Status RunStudio(const StudioOptions& options, const RunContext& context) {
   ServerOptions server_options;
   server_options.port = options.port, server_options.token = MakeToken(), server_options.web = options.web;
   server_options.on_first_visit = [&] { was_visited = true; };
-  std::atomic<unsigned> calls = 0;
+  std::atomic<unsigned> calls = 0, running = 0;
   const auto handle = [&](const HttpRequest& request) {
-    HttpResponse answer = session->Handle(request);
     ++calls;
+    ++running;
+    HttpResponse answer = session->Handle(request);
+    --running;
     return answer;
   };
   SCUMBLE_ASSIGN(const std::unique_ptr<HttpServer> server, HttpServer::Start(server_options, handle, events));
@@ -35,8 +37,8 @@ Status RunStudio(const StudioOptions& options, const RunContext& context) {
   unsigned seen = 0;
   for (int looks = 0; !options.is_stopped(); ++looks) {
     if (browser && was_visited) browser.reset();  // it has found the page
-    if (const unsigned now = calls; now != seen) seen = now, looks = 0;
-    // What pictures have left behind goes to the painting program beside us.
+    if (const unsigned now = calls; now != seen || running > 0) seen = now, looks = 0;
+    // At rest, memory that pictures no longer use is given back to the system.
     if (looks == kLooksOfRest) ::malloc_trim(0);
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }

@@ -24,6 +24,7 @@ class KeptPictures {
   void ForgetUnread();
 
   std::size_t decoded() const { return decoded_; }  // files so far
+  std::size_t bytes() const { return bytes_; }      // that are kept
 
  private:
   struct Kept {

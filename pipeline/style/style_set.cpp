@@ -167,7 +167,7 @@ bool HasKeyAt(const std::string& text, std::size_t begin) {
   const std::size_t equals = text.find('=', begin);
   if (equals == std::string::npos) return false;
   const std::string key = text.substr(begin, equals - begin);
-  return FindStyleKey(key) || key.rfind("exemplar.", 0) == 0;
+  return FindStyleKey(key) || (key.rfind("exemplar.", 0) == 0 && key.find(':') == std::string::npos);
 }
 
 // The colon between name and key; none: npos. No key holds a colon; names may, and '=' too.

@@ -11,7 +11,7 @@ import tempfile
 import threading
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "support"))
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "apps" / "studio"))
 from studio_client import Studio  # noqa: E402
 
 # A cube that moves from frame 1 to 20, before a camera.

@@ -19,7 +19,7 @@ import common
 import disk
 from common import numpy
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "support"))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "apps" / "studio"))
 from studio_client import Studio  # noqa: E402
 
 SIZE = 64

@@ -14,6 +14,7 @@
 
 #include "core/io/format_dispatch.h"
 #include "core/io/picture_file.h"
+#include "pipeline/file_stamp.h"
 #include "scumble/stylizer.h"
 #include "tests/support/gltf_builder.h"
 #include "tests/support/temporary_folder.h"
@@ -159,6 +160,7 @@ TEST(Workspace, AFrameOfAnAnimationLoadsNoFile) {
 TEST(Workspace, ASavedPaintingIsReadAgain) {
   const TemporaryFolder folder;
   fs::copy(kSource + "/exemplars/oil", folder.path() / "mine", fs::copy_options::recursive);
+  std::this_thread::sleep_for(std::chrono::milliseconds(2 * kFileTimeLagMs));  // what is just written is read twice
   Workspace workspace(Context());
   const StyleRequest style = StyleOf((folder.path() / "mine").string());
   const Picture before = Painted(workspace, SceneOf("suzanne"), style);

@@ -14,14 +14,14 @@ Expected<Lane::Painted> Lane::Paint(const PictureJob& job) {
   std::uint64_t ticket = 0;
   {
     const std::lock_guard lock(mutex_);
-    if (kept_ && kept_key_ == job.key) return *kept_;
+    if (kept_ && kept_key_ == job.key) return kept_;
     if (wanted_ != job.key) wanted_ = job.key, ++newest_;
     ticket = newest_;
   }
   const std::lock_guard working(work_);
   {
     const std::lock_guard lock(mutex_);
-    if (kept_ && kept_key_ == job.key) return *kept_;
+    if (kept_ && kept_key_ == job.key) return kept_;
     if (stopped_ || ticket != newest_) return CancelledError();
     running_ = ticket;
   }
@@ -31,13 +31,10 @@ Expected<Lane::Painted> Lane::Paint(const PictureJob& job) {
     if (wanted_ == job.key) wanted_.clear();
     return painted.error();
   }
+  if (!painted) return painted.error();  // not kept: a file may be whole the next time
   kept_key_ = job.key;
-  if (painted) {
-    kept_.emplace(std::make_shared<const PaintedFrame>(std::move(*painted)));
-  } else {
-    kept_.emplace(painted.error());
-  }
-  return *kept_;
+  kept_ = std::make_shared<const PaintedFrame>(std::move(*painted));
+  return kept_;
 }
 
 void Lane::CancelUnless(const std::string& key) {

@@ -51,7 +51,7 @@ class Lane {
   std::mutex mutex_;                                     // of what follows
   std::string wanted_;                                   // the key of the newest ticket; empty: of none
   std::string kept_key_;
-  std::optional<Expected<Painted>> kept_;
+  Painted kept_;
   std::mutex work_;  // of the workspace
   Workspace workspace_;
 };

@@ -128,11 +128,11 @@ Expected<SceneDescription> Session::State::Describe(const Moment& moment) {
     if (known != descriptions.end()) return Seen(known->second, moment.state);
   }
   const Expected<SceneDescription> described = LaneOf(drafts, job).Describe(job.scene, job.picture.frame);
-  if (!described && described.error().kind == ErrorKind::kCancelled) return described;
+  if (!described) return described;
   const std::lock_guard lock(mutex);
   constexpr std::size_t kMostDescriptions = 64;
   if (descriptions.size() >= kMostDescriptions) descriptions.clear();
-  descriptions.emplace(key, described);
+  descriptions.emplace(key, *described);
   return Seen(described, moment.state);
 }
 
@@ -147,9 +147,13 @@ Expected<std::shared_ptr<const StyleFacts>> Session::State::FactsOf(const StyleE
     const auto known = facts.find(style.id);
     if (known != facts.end() && known->second->stamp == stamp_of(*known->second)) return known->second;
   }
+  const auto begun = std::chrono::system_clock::now();
   SCUMBLE_ASSIGN(const std::shared_ptr<const StyleFacts> read, ReadFacts(style));
   StyleFacts stamped = *read;
   stamped.stamp = stamp_of(stamped);
+  bool is_whole = !HasChangedSince((style.toml().empty() ? style.path : style.toml()).string(), begun);
+  for (const ExemplarFile& one : stamped.exemplars) is_whole = is_whole && !HasChangedSince(one.file, begun);
+  if (!is_whole) stamped.stamp.clear();  // they are read again
   auto kept = std::make_shared<const StyleFacts>(std::move(stamped));
   const std::lock_guard lock(mutex);
   facts[style.id] = kept;

@@ -49,18 +49,18 @@ struct Session::State {
   EventHub& events;
   // Of this run: the same settings may be another picture in another one.
   const std::string run_id;
+  std::string first_scene, first_style;  // that it began with; set before others see the session
   std::atomic<bool> stopped = false;
 
   std::mutex mutex;  // of what follows
   Catalogue catalogue;
   StudioState state;
-  std::string first_scene, first_style;  // that the run began with
   std::uint64_t revision = 1;
   std::uint64_t generation = 1;  // raised when a file has changed
   std::optional<Error> problem;
   std::string watched;                                             // what the files that are watched belong to
   std::map<std::string, std::shared_ptr<const StyleFacts>> facts;  // by style id
-  std::map<std::string, Expected<SceneDescription>> descriptions;  // by what they depend on
+  std::map<std::string, SceneDescription> descriptions;            // by what they depend on
   std::map<std::string, std::string> thumbnails;                   // by kind and id
   std::map<std::string, std::string> checks;                       // JSON, by the style's settings and generation
 

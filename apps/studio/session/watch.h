@@ -24,7 +24,7 @@ class FileWatch {
   FileWatch(const FileWatch&) = delete;
   FileWatch& operator=(const FileWatch&) = delete;
 
-  // Ends the thread; `changed` is not called any more. Other calls stay possible, and do nothing that is seen.
+  // Ends the thread: `changed` is not called any more. Watch and SeesChanges may still be called.
   void Stop();
 
   // Watches these from now on, instead of those before; what is known of a file that stays is kept. One that is new

@@ -85,7 +85,8 @@ export class BrushPanel {
     await this.follow();
   }
 
-  get hasUnsaved() { return !this.strokes.isSaved && !this.strokes.isEmpty; }
+  /** The stroke that is being drawn counts. */
+  get hasUnsaved() { return !!this.strokes.stroke || (!this.strokes.isSaved && !this.strokes.isEmpty); }
 
   /** Another exemplar is shown, or its file has changed. Strokes stay with the one that they were painted on. */
   async follow() {
@@ -98,6 +99,7 @@ export class BrushPanel {
       else this.paintable = {ok: false, why: `Strokes on ${this.file} are not saved: go back to it to save or undo them.`};
     } catch (error) {
       this.page.error(error);
+      this.close();
       return;
     }
     if (here === exemplar.shown) this.show();
@@ -137,7 +139,10 @@ export class BrushPanel {
     this.exemplar.locked = canPaint;
     document.body.toggleAttribute('data-paint', canPaint);
     if (canPaint && !this.hasUnsaved) {
-      this.strokes.clear(paintable?.width ?? this.exemplar.base.width, paintable?.height ?? this.exemplar.base.height);
+      const {base} = this.exemplar, {canvas} = this.strokes;
+      const width = paintable?.width ?? base.width, height = paintable?.height ?? base.height;
+      const isOther = this.belongsTo !== this.exemplar.shown || canvas.width !== width || canvas.height !== height;
+      if (isOther) this.strokes.clear(width, height);  // otherwise what was undone can be done again
       this.belongsTo = this.exemplar.shown;
       this.file = paintable?.file ?? '';
       this.own = paintable;
@@ -237,6 +242,7 @@ export class BrushPanel {
 
   async save() {
     const exemplar = this.exemplar.current;
+    this.strokes.end();
     if (!this.canPaint || this.strokes.isSaved || !exemplar) return;
     this.saving = true;
     this.showUndo();

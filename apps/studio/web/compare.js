@@ -11,6 +11,12 @@ const kQualities = ['final', 'preview', 'draft'];
 const kBudgets = [20, 50, 100];
 const kAgainMs = 200;
 
+/** @typedef {{drawn: string, painting: string, failed: string, abort: AbortController}} Side
+ *   names of pictures, as "seen:3": on its canvas, on its way, and could not be painted */
+
+/** @returns {Side} */
+const newSide = () => ({drawn: '', painting: '', failed: '', abort: new AbortController()});
+
 export class Compare {
   /**
    * @param {import('./store.js').Store} store @param {import('./view.js').View} view
@@ -26,12 +32,11 @@ export class Compare {
     /** @type {number | null} the id of a seen picture; null: now */
     this.a = null;
     this.b = '';  // "seen:3", "style:ink", "quality:draft", "budget:50"; '': chosenB says
-    this.drawnA = 0;
-    this.drawnB = '';
+    this.sideA = newSide();
+    this.sideB = newSide();
     this.at = 50;
     this.flipped = false;
     this.show = 'picture';
-    this.abort = new AbortController();
     this.canvasA = byId('picture-a', HTMLCanvasElement);
     this.canvasB = byId('picture-b', HTMLCanvasElement);
     this.wipe = byId('wipe', HTMLElement);
@@ -39,8 +44,6 @@ export class Compare {
     this.beside = byId('beside', HTMLSelectElement);
     /** @type {() => void} */
     this.onChange = () => {};
-    this.painting = '';  // the B that is on its way
-    this.failed = '';    // the B that could not be painted
     for (const [value, text] of [
              ['off', 'No comparison'], ['wipe', 'Wipe'], ['side', 'Side by side'], ['difference', 'Difference']]) {
       this.select.append(make('option', {value, textContent: text}));
@@ -84,7 +87,7 @@ export class Compare {
   /** @param {Mode} mode */
   setMode(mode) {
     this.mode = mode;
-    this.failed = '';
+    this.sideA.failed = this.sideB.failed = '';
     this.apply();
     this.refresh();
     this.onChange();
@@ -124,7 +127,7 @@ export class Compare {
     if (!this.store.known) return;
     /** @type {[string, [string, string][]][]} */
     const groups = [
-      ['Seen', this.history.entries.map((entry) => [`seen:${entry.id}`, `${entry.id}: ${entry.label}`])],
+      ['Seen', this.history.entries.map((entry) => [`seen:${entry.id}`, `${entry.id}: ${entry.name}`])],
       ['Now, in another style', this.store.state.styles.map(({id, name}) => [`style:${id}`, name])],
       ['Now, in another quality', kQualities.map((name) => [`quality:${name}`, name])],
       ['Now, within a budget', kBudgets.map((ms) => [`budget:${ms}`, `${ms} ms`])],
@@ -147,45 +150,59 @@ export class Compare {
    */
   now(show) {
     this.show = show;
-    this.failed = '';
-    if (!this.chosenB.startsWith('seen:')) this.drawnB = this.painting = '';
+    this.sideA.failed = this.sideB.failed = '';
+    if (!this.chosenB.startsWith('seen:')) {
+      this.sideB.abort.abort();
+      this.sideB = newSide();
+    }
     this.refresh();
   }
 
   get isOn() { return this.mode !== 'off' || this.flipped; }
 
-  /** Fetches and draws what is not there yet. */
+  /** Whether the server paints for it. */
+  get isPainting() { return this.sideA.painting !== '' || this.sideB.painting !== ''; }
+
+  /** Fetches and draws what is not there yet: A, then B. */
   async refresh() {
     if (!this.isOn) return;
-    const b = this.chosenB, a = this.a;
-    /** @type {AbortController | null} */
-    let own = null;
+    await this.bring(this.sideA, this.canvasA, this.a === null ? '' : `seen:${this.a}`);
+    // Two at a time would cancel each other at the server; who waits for A comes here again.
+    if (!this.sideA.painting) await this.bring(this.sideB, this.canvasB, this.chosenB);
+  }
+
+  /** @param {Side} side @param {HTMLCanvasElement} canvas @param {string} what '': nothing */
+  async bring(side, canvas, what) {
+    if (side.painting === what && what) return;
+    side.abort.abort();
+    side.painting = '';
+    if (!what || side.drawn === what || side.failed === what) return;
+    const {signal} = side.abort = new AbortController();
+    side.painting = what;
     try {
-      if (a !== null && this.drawnA !== a) {
-        await this.drawSeen(this.canvasA, a);
-        this.drawnA = a;
-      }
-      if (b && this.drawnB !== b && this.painting !== b && this.failed !== b) {
-        this.abort.abort();
-        const {signal} = this.abort = own = new AbortController();
-        this.painting = b;
-        if (b.startsWith('seen:')) await this.drawSeen(this.canvasB, Number(b.slice(5)));
-        else draw(this.canvasB, (await frameBeside(this.changesOf(b), this.show, signal)).source);
-        if (signal.aborted) return;
-        this.drawnB = b;
-      }
+      const source = await this.pictureOf(what, signal);
+      if (signal.aborted) return;
+      if (source) draw(canvas, source);
+      side.drawn = what;
       this.apply();
     } catch (error) {
-      if (isAbort(error)) return;
+      if (signal.aborted || isAbort(error)) return;
       if (error instanceof CallError && error.status === 409) {
         setTimeout(() => this.refresh(), kAgainMs);
       } else {
-        this.failed = b;
+        side.failed = what;
         this.onError(error);
       }
     } finally {
-      if (own === this.abort) this.painting = '';
+      if (!signal.aborted) side.painting = '';
     }
+  }
+
+  /** @param {string} what @param {AbortSignal} signal */
+  async pictureOf(what, signal) {
+    if (!what.startsWith('seen:')) return (await frameBeside(this.changesOf(what), this.show, signal)).source;
+    const entry = this.history.find(Number(what.slice(5)));
+    return entry ? createImageBitmap(await entry.picture(signal)) : null;
   }
 
   /** @param {string} b @returns {Changes} */
@@ -195,20 +212,14 @@ export class Compare {
     return kind === 'quality' ? {quality: value} : {budget_ms: Number(value)};
   }
 
-  /** @param {HTMLCanvasElement} canvas @param {number} id */
-  async drawSeen(canvas, id) {
-    const entry = this.history.find(id);
-    if (entry) draw(canvas, await createImageBitmap(await entry.picture()));
-  }
-
   /** Shows what the mode says. */
   apply() {
-    const {mode, view} = this, b = this.chosenB, hasB = this.isOn && b !== '' && this.drawnB === b;
+    const {mode, view} = this, b = this.chosenB, hasB = this.isOn && b !== '' && this.sideB.drawn === b;
     const isSide = mode === 'side' && !this.flipped;
     this.select.value = mode;
     byId('beside-choice', HTMLElement).hidden = mode === 'off';
     if (b && this.beside.value !== b) this.beside.value = b;
-    this.canvasA.hidden = this.a === null || this.drawnA !== this.a || !this.isOn;
+    this.canvasA.hidden = this.a === null || this.sideA.drawn !== `seen:${this.a}` || !this.isOn;
     const sheet = view.sheets[isSide ? 1 : 0];
     if (this.canvasB.parentElement !== sheet) sheet.insertBefore(this.canvasB, isSide ? null : view.overlay);
     this.canvasB.hidden = !hasB;
@@ -227,9 +238,9 @@ export class Compare {
 
   /** @param {boolean} hasB @param {string} b @param {boolean} isSide */
   tags(hasB, b, isSide) {
-    const a = this.a === null ? 'A · now' : `A · ${this.a}: ${this.history.find(this.a)?.label}`;
+    const a = this.a === null ? 'A · now' : `A · ${this.a}: ${this.history.find(this.a)?.name}`;
     const seen = b.startsWith('seen:') ? this.history.find(Number(b.slice(5))) : null;
-    const nameB = `B · ${seen ? `${seen.id}: ${seen.label}` : `now, ${b.replace(':', ' ')}`}`;
+    const nameB = `B · ${seen ? `${seen.id}: ${seen.name}` : `now, ${b.replace(':', ' ')}`}`;
     const tagA = byId('tag-a', HTMLElement), tagB = byId('tag-b', HTMLElement);
     tagA.hidden = !this.isOn || this.flipped;
     tagB.hidden = !hasB || isSide;

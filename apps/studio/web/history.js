@@ -7,7 +7,8 @@ import {settingsOf} from './store.js';
 
 /** @typedef {import('./api.js').State} State */
 /** @typedef {import('./api.js').Changes} Changes */
-/** @typedef {import('./memory.js').SeenPicture & {item: HTMLLIElement, picture: () => Promise<Blob>}} Entry */
+/** @typedef {import('./memory.js').SeenPicture & {item: HTMLLIElement, name: string,
+ *   picture: (signal: AbortSignal) => Promise<Blob>}} Entry name: the label, as the page shows it */
 
 const kMost = 30;
 const kThumbHeight = 152;
@@ -80,19 +81,43 @@ export class History {
     to.fillRect(0, 0, thumb.width, thumb.height);
     to.drawImage(canvas, 0, 0, thumb.width, thumb.height);
     const thumbnail = thumb.toDataURL('image/jpeg', 0.9);
-    this.markNow(this.add({id: this.next++, settings, signature, label: describe(state), thumbnail}, () => picture));
+    const label = describe(state), seen = {id: this.next++, settings, signature, label, thumbnail};
+    this.markNow(this.add(seen, label, () => picture));
+    this.write();
+    this.onChange();
+  }
+
+  write() {
     keepSeen(this.entries.map(({id, settings, signature, label, thumbnail}) =>
         ({id, settings, signature, label, thumbnail})));
-    this.onChange();
+  }
+
+  /**
+   * Keys were written into a style's file: what was seen with the file's values has them as keys of its own now.
+   * @param {string} style @param {Record<string, any>} saved @param {Record<string, any>} before as Store.rebase has them
+   */
+  rebase(style, saved, before) {
+    for (const entry of this.entries) {
+      if (entry.settings.style !== style) continue;
+      /** @type {Record<string, any>} */
+      const keys = {...entry.settings.keys};
+      for (const name of Object.keys(saved)) {
+        if (!(name in keys)) keys[name] = before[name];
+        else if (keys[name] === saved[name]) delete keys[name];
+      }
+      entry.settings.keys = keys;
+      entry.signature = JSON.stringify(entry.settings);
+    }
+    this.write();
   }
 
   /** What this tab had seen before it was loaded anew: its settings and thumbnails. The pictures are painted again. */
   remember() {
     for (const seen of keptSeen()) {
-      this.add({...seen, label: `${seen.label} · painted anew`}, async () => {
-        const changes = this.store.changesTo(seen.settings);
-        const answer = await call('POST', '/api/frame', {json: {changes, quality: 'final', format: 'png', show: ''}});
-        return answer.blob();
+      const entry = this.add(seen, `${seen.label} · painted anew`, async (signal) => {
+        const changes = this.store.changesTo(entry.settings);
+        const json = {changes, quality: 'final', format: 'png', show: ''};
+        return (await call('POST', '/api/frame', {json, signal})).blob();
       });
       this.next = Math.max(this.next, seen.id + 1);
     }
@@ -102,16 +127,17 @@ export class History {
   /**
    * At the end of the strip.
    * @param {import('./memory.js').SeenPicture} seen
-   * @param {() => Promise<Blob>} picture
+   * @param {string} name
+   * @param {Entry['picture']} picture
    */
-  add(seen, picture) {
-    const {id, settings, label, thumbnail} = seen;
+  add(seen, name, picture) {
+    const {id, thumbnail} = seen;
     const item = make('li', {className: 'seen'});
     item.dataset.seen = String(id);
-    const restore = make('button', {type: 'button', className: 'restore', title: `${label}: click to come back to it`,
-                                    'aria-label': `Come back to ${id}: ${label}`},
+    const restore = make('button', {type: 'button', className: 'restore', title: `${name}: click to come back to it`,
+                                    'aria-label': `Come back to ${id}: ${name}`},
                          make('img', {alt: '', src: thumbnail, height: kThumbHeight / 2, draggable: false}));
-    restore.addEventListener('click', () => void this.store.restore(settings));
+    restore.addEventListener('click', () => void this.store.restore(entry.settings));
     const marks = make('span', {className: 'marks'});
     for (const side of /** @type {const} */ (['a', 'b'])) {
       const button = make('button', {type: 'button', textContent: side.toUpperCase(), 'aria-pressed': 'false',
@@ -123,7 +149,7 @@ export class History {
     }
     item.append(restore, marks);
     /** @type {Entry} */
-    const entry = {...seen, item, picture};
+    const entry = {...seen, item, name, picture};
     this.entries.push(entry);
     this.list.append(item);
     if (this.entries.length > kMost) this.entries.shift()?.item.remove();

@@ -101,11 +101,13 @@ const exemplar = new ExemplarPanel(store, showError);
 const compare = new Compare(store, view, seen, showError);
 const picker =
     new Picker(view, exemplar, () => !frames.isMoving && !frames.running && frames.drawn?.quality === 'final' &&
-                                     !compare.painting);
+                                     !compare.isPainting);
 const assigner = new Assigner(store, announce);
 const orbit = new OrbitControl(store, view, (pixel, at) => void assigner.offer(pixel, at).catch(showError));
 const timeline = new Timeline(store);
-const keeper = new Keeper(store, {announce, error: showError});
+const keeper = new Keeper(store, {
+  announce, error: showError, rebase: (style, saved, before) => seen.rebase(style, saved, before),
+});
 const brush = new BrushPanel(exemplar, {
   announce, error: showError, saveAs: () => keeper.askName(), layout: () => view.layout(),
 });

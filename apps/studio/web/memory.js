@@ -1,5 +1,5 @@
-// What this tab keeps over a reload, in its session: thumbnails and settings of what was seen, and the steps of undo.
-// It goes with the tab.
+// What this tab keeps over a reload, in its session storage: thumbnails and settings of what was seen, and the steps of
+// undo. The browser deletes it with the tab.
 
 /** @typedef {import('./api.js').Changes} Changes */
 /** @typedef {import('./store.js').Step} Step */
@@ -38,5 +38,8 @@ export const keepSteps = (run, undo, redo) => write(kUndo, {run, undo, redo});
 /** @param {string} run @returns {{undo: Step[], redo: Step[]}} */
 export function keptSteps(run) {
   const kept = read(kUndo);
-  return kept?.run === run ? {undo: kept.undo, redo: kept.redo} : {undo: [], redo: []};
+  if (kept?.run !== run) return {undo: [], redo: []};
+  // Times are those of the page before: no gesture goes on.
+  const steps = (/** @type {Step[]} */ of) => of.map((step) => ({...step, gesture: ''}));
+  return {undo: steps(kept.undo), redo: steps(kept.redo)};
 }

@@ -3,7 +3,8 @@ import {call, getJson} from './api.js';
 
 /** @typedef {import('./api.js').State} State */
 /** @typedef {import('./api.js').Changes} Changes */
-/** @typedef {{before: Changes, after: Changes, gesture: string, time: number}} Step */
+/** @typedef {{before: Changes, after: Changes, style: string, gesture: string, time: number}} Step
+ *   style: that was chosen before it */
 
 // Changes of one gesture, such as a slider's drag, are undone together.
 const kGestureMs = 900;
@@ -73,6 +74,18 @@ export function settingsOf(state) {
   if (budget_ms) settings.budget_ms = budget_ms;
   else settings.quality = quality;
   return settings;
+}
+
+/**
+ * Changed keys, null as the file has it, for a file into which keys were saved.
+ * @param {Changes['keys']} keys @param {Record<string, any>} saved @param {Record<string, any>} before
+ */
+function rebaseKeys(keys, saved, before) {
+  for (const name of Object.keys(saved)) {
+    if (!keys || !(name in keys)) continue;
+    if (keys[name] === null) keys[name] = before[name];
+    else if (keys[name] === saved[name]) keys[name] = null;
+  }
 }
 
 export class Store {
@@ -161,7 +174,7 @@ export class Store {
       last.before = {...before, ...last.before, ...(before.keys && {keys: keysBefore})};
       last.time = time;
     } else {
-      this.undoSteps.push({before, after: changes, gesture, time});
+      this.undoSteps.push({before, after: changes, style: this.state.style, gesture, time});
       if (this.undoSteps.length > kMostSteps) this.undoSteps.shift();
     }
     this.redoSteps = [];
@@ -185,18 +198,31 @@ export class Store {
   }
 
   /**
-   * Keys were written into the file: "as the file has it" is another value now, in what undo and redo bring back.
+   * Keys were written into the style's file: "as the file has it" is another value now, in what undo and redo bring back.
+   * @param {string} style
    * @param {Record<string, any>} saved the keys, as they were changed
    * @param {Record<string, any>} before the values in the file until now
    */
-  rebase(saved, before) {
-    for (const {before: back, after} of [...this.undoSteps, ...this.redoSteps]) {
-      for (const {keys} of [back, after]) {
-        for (const name of Object.keys(saved)) {
-          if (!keys || !(name in keys)) continue;
-          if (keys[name] === null) keys[name] = before[name];
-          else if (keys[name] === saved[name]) keys[name] = null;
-        }
+  rebase(style, saved, before) {
+    for (const step of [...this.undoSteps, ...this.redoSteps]) {
+      for (const changes of [step.before, step.after]) {
+        if ((changes.style ?? step.style) === style) rebaseKeys(changes.keys, saved, before);
+      }
+    }
+  }
+
+  /**
+   * The style was saved under another name, which is chosen now: the newest steps, back to a choice of a style, are taken
+   * back in the copy.
+   * @param {Record<string, any>} saved @param {Record<string, any>} before as rebase has them
+   * @param {string} copy
+   */
+  moveTo(copy, saved, before) {
+    for (const steps of [this.undoSteps, this.redoSteps]) {
+      for (const step of [...steps].reverse()) {
+        if (step.before.style !== undefined || step.after.style !== undefined) break;
+        step.style = copy;
+        for (const {keys} of [step.before, step.after]) rebaseKeys(keys, saved, before);
       }
     }
   }

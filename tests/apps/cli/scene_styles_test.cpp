@@ -407,6 +407,16 @@ TEST_F(CliAssign, OneKeyOfOneStyleAndAllStylesInTheReport) {
   ExpectError(With(stylize, {"red:transfer.scalee=2"}), 2, {"unknown key transfer.scalee"});
 }
 
+// "exemplar." also begins keys of an exemplar, and '=' and ':' may stand in a folder's name.
+TEST_F(CliAssign, NamesThatLookLikeKeysAreNames) {
+  for (const std::string name : {"exemplar.png", "a=b", "a:b"}) {
+    WriteColor(name, 10, 250, 10);
+    const Arguments paint = {"stylize", "s.glb", "--style", name, "--size", "32x8", "-o", "p.png", "--json"};
+    const nlohmann::json json = RunOk(With(paint, {"--set", name + ":transfer.scale=0.5"})).Json();
+    EXPECT_EQ(json["styles"][0]["exemplar_width"], 8) << name;
+  }
+}
+
 TEST_F(CliAssign, TheTwoStepsTakeWhatTheOneTakes) {
   const Arguments styles = {"--style", "red", "--assign", "Tile1=scene/lit", "--set", "red:transfer.colorize=1"};
   RunOk(With(With({"stylize", "s.glb", "--size", "32x8", "-o", "one.png"}, styles), {}));

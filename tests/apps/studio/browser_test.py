@@ -16,11 +16,11 @@ import tempfile
 import time
 import unittest
 
-from selenium import webdriver
 from selenium.webdriver import ActionChains
-from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
+
+from chromium import chromium
 
 SCUMBLE, SOURCE, WORK = (pathlib.Path(word).resolve() for word in sys.argv[1:4])
 AXE = "axe-core@4.10.2"
@@ -56,13 +56,8 @@ class Studio:
         return self.process.wait(PATIENCE)
 
 
-def chromium():
-    options = webdriver.ChromeOptions()
-    for word in ("--headless=new", "--disable-dev-shm-usage", "--window-size=1500,950"):
-        options.add_argument(word)
-    if os.geteuid() == 0:
-        options.add_argument("--no-sandbox")
-    browser = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
+def shared_browser():
+    browser = chromium("1500,950")
     atexit.register(browser.quit)
     browser.set_page_load_timeout(PATIENCE)
     browser.set_script_timeout(PATIENCE)
@@ -79,7 +74,7 @@ class Page(unittest.TestCase):
         self.folder = pathlib.Path(self.temporary.name)
         shutil.copytree(SOURCE / "exemplars" / "oil", self.folder / "my")
         self.studio = Studio(self.folder, self.scene)
-        self.browser = Page.shared = Page.shared or chromium()
+        self.browser = Page.shared = Page.shared or shared_browser()
         before = self.browser.window_handles
         self.browser.switch_to.new_window("tab")
         fresh = self.browser.current_window_handle
@@ -273,6 +268,34 @@ class Changing(Page):
         self.find("#redo").click()
         self.until(lambda: self.threshold() is None, "the saved value")
 
+    def test_a_save_leaves_the_undo_of_other_styles_alone(self):
+        self.choose("style", "ink")
+        self.set_threshold(0.5)
+        self.choose("style", "my")
+        self.set_threshold(0.5)
+        self.find("#save").click()
+        self.until(lambda: self.threshold() is None, "the save")
+        for _ in range(2):  # the key, the choice of the style
+            self.find("#undo").click()
+            self.settled()
+        self.assertEqual((self.state()["style"], self.threshold()), ("ink", 0.5))
+        self.find("#undo").click()
+        self.until(lambda: self.threshold() is None, "ink as its file has it")
+        self.find("#redo").click()
+        self.until(lambda: self.threshold() == 0.5, "ink as it was changed")
+
+    def test_the_strip_shows_what_it_showed_after_a_save(self):
+        self.seen(1)
+        before, own = self.pixels(), self.state()["file_keys"]["transfer.threshold"]
+        self.set_threshold(0.5)
+        self.seen(2)
+        self.find("#save").click()
+        self.until(lambda: self.threshold() is None, "the save")
+        self.find("[data-seen='1'] .restore").click()
+        self.until(lambda: self.threshold() == own, "the value from before the save")
+        self.settled()
+        self.assertEqual(self.pixels(), before)
+
     def test_a_number_that_is_being_typed_is_saved(self):
         field = self.find("[id='key-transfer.threshold']")
         field.send_keys(Keys.CONTROL + "a")
@@ -440,6 +463,33 @@ class Lasting(Page):
         name.send_keys("mine", Keys.ENTER)
         self.until(lambda: self.state()["style"] == "mine", "the copy")
         self.begin_to_paint()
+
+    def test_a_file_event_takes_no_stroke_away(self):
+        layer = ("const c = document.getElementById('exemplar-layer');"
+                 "return c.getContext('2d').getImageData(0, 0, c.width, c.height).data.some((byte) => byte > 0)")
+        paper = self.folder / "my" / "paper.png"
+
+        def touch(name):
+            revision = self.state()["revision"]
+            shutil.copy(SOURCE / "exemplars" / name / "paper.png", self.folder / "new.png")
+            os.replace(self.folder / "new.png", paper)
+            self.until(lambda: self.state()["revision"] > revision, "another paper")
+            self.settled()
+            time.sleep(0.5)  # the panel asks what the file is now
+
+        self.begin_to_paint()
+        stroke = ActionChains(self.browser, duration=20).move_to_element(self.find("#exemplar"))
+        stroke.click_and_hold().move_by_offset(30, 20).perform()
+        self.until(lambda: self.js(layer), "the beginning of a stroke")
+        touch("charcoal")
+        self.assertTrue(self.js(layer), "a stroke that is being drawn")
+        ActionChains(self.browser, duration=20).move_by_offset(20, 20).release().perform()
+        self.until(lambda: self.find("#brush-undo").is_enabled(), "the end of the stroke")
+        self.find("#brush-undo").click()
+        self.assertFalse(self.js(layer))
+        touch("oil")
+        self.find("#brush-redo").click()
+        self.assertTrue(self.js(layer), "a stroke that was undone")
 
     def test_strokes_stay_with_their_exemplar(self):
         style = self.folder / "my" / "style.toml"

@@ -1,22 +1,15 @@
 #!/usr/bin/python3
 """A picture of the studio's page, for README: screenshot.py SCUMBLE SCENE STYLE OUTPUT.png [--dark]"""
-import os
 import subprocess
 import sys
 import time
 
-from selenium import webdriver
-from selenium.webdriver.chrome.service import Service
+from chromium import chromium
 
 scumble, scene, style, output = sys.argv[1:5]
-options = webdriver.ChromeOptions()
-for word in ("--headless=new", "--disable-dev-shm-usage", "--window-size=1600,1040", "--hide-scrollbars"):
-    options.add_argument(word)
-if os.geteuid() == 0:
-    options.add_argument("--no-sandbox")
 studio = subprocess.Popen([scumble, "studio", scene, "--style", style, "--size", "1920x1080", "--no-browser"],
                           stdout=subprocess.PIPE, text=True)
-page = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
+page = chromium("1600,1040")
 try:
     page.get(studio.stdout.readline().strip())
     end = time.monotonic() + 120

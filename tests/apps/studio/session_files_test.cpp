@@ -1,6 +1,7 @@
 // The calls of apps/studio/api.md that write files, and files that others write.
 #include <gmock/gmock.h>
 
+#include "apps/studio/session/lane.h"
 #include "core/io/file/zip_archive.h"
 #include "core/io/picture/open_raster.h"
 #include "core/style/style_file.h"
@@ -242,6 +243,19 @@ TEST_F(SessionTest, AnotherStyleEndsTheProblem) {
   ASSERT_EQ(Call("PATCH", "/api/state", {{"style", "ink"}}).status, 200);
   EXPECT_EQ(Frame().status, 200);
   EXPECT_TRUE(State()["problem"].is_null());
+}
+
+// The files may be whole the next time, though nothing else has changed.
+TEST_F(SessionTest, ALaneKeepsNoError) {
+  Lane lane(context);
+  PictureJob job;
+  job.key = "one", job.scene = options.scene, job.style.style = (folder / "mine").string();
+  fs::rename(painting, folder / "away.png");
+  EXPECT_FALSE(lane.Paint(job).ok());
+  fs::rename(folder / "away.png", painting);
+  const auto painted = lane.Paint(job);
+  ASSERT_TRUE(painted.ok()) << painted.error().message;
+  EXPECT_EQ(*lane.Paint(job), *painted) << "a picture is kept";
 }
 
 }  // namespace
