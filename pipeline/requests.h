@@ -84,11 +84,12 @@ struct SceneRequest {
 
 // A style and what a run changes of it.
 struct StyleRequest {
-  std::string style;                  // a folder, a style.toml, a picture of a sphere, or a bundled style's name
-  std::vector<std::string> sets;      // "[NAME:]KEY=VALUE", the later wins
-  std::vector<std::string> assigned;  // "NAME=STYLE", or "@FILE" of such lines
-  bool scene_styles = true;           // follow the property scumble_style of objects and materials
-  StyleReading reading = {};          // as LoadStyle takes it
+  std::string style;                       // a folder, a style.toml, a picture of a sphere, or a bundled style's name
+  std::vector<std::string> sets;           // "[NAME:]KEY=VALUE", the later wins
+  std::vector<std::string> assigned;       // "NAME=STYLE", or "@FILE" of such lines
+  bool scene_styles = true;                // follow the property scumble_style of objects and materials
+  std::vector<std::string> finishes = {};  // effects and presets after the styles' own; "none" drops those
+  StyleReading reading = {};               // as LoadStyle takes it
 };
 
 // What becomes of the paint: a picture file.

@@ -89,6 +89,7 @@ Expected<Picture> Stylizer::Paint(const SceneSettings& scene, const StyleSetting
   StyleRequest style_request;
   style_request.style = style.style, style_request.sets = style.overrides;
   style_request.assigned = style.assignments, style_request.scene_styles = style.follow_scene;
+  style_request.finishes = style.finishes;
   PictureRequest picture;
   picture.seed = paint.seed, picture.exposure = paint.exposure, picture.upsample = paint.upsample;
   picture.upscale = paint.upscale;

@@ -106,8 +106,8 @@ std::map<std::string, std::string> StampsAsRead(const StyleSet& styles,
 }
 
 std::string TextOf(const StyleRequest& request) {
-  return fmt::format("{}\n{}\n{}\n{}", request.style, fmt::join(request.sets, "\n"), fmt::join(request.assigned, "\n"),
-                     request.scene_styles);
+  return fmt::format("{}\n{}\n{}\n{}\n{}", request.style, fmt::join(request.sets, "\n"),
+                     fmt::join(request.assigned, "\n"), request.scene_styles, fmt::join(request.finishes, "\n"));
 }
 
 Status CheckArguments(const SceneRequest& scene, std::optional<int> frame) {

@@ -88,6 +88,7 @@ struct TransferOptions {
   double exposure = 0.0;          // stops that brighten the scene's luminance; see MeasureExposure
   int threads = 0;                // 0: all
   const Picture* over = nullptr;  // composited underneath instead of the paper; the guides' size
+  bool bare = false;              // neither paper nor `over` is put behind: PutBackground does it later
   std::optional<Region> region;   // only these pixels of the result are made; empty: all
   bool keep_field = false;        // TransferScratch::field and `active` are wanted afterwards; costs some time
   Progress progress;
@@ -127,6 +128,9 @@ Status Transfer(const PreparedStyle& style, const GuideSet& guides, const Transf
 // the first style's. O(covered pixels + the rectangles around each style's pixels).
 Status Transfer(std::span<const PreparedStyle* const> styles, const StyleMap& map, const GuideSet& guides,
                 const TransferOptions& options, TransferScratch& scratch, Picture& out);
+
+// Puts the style's paper, or `over` instead, behind a picture that was made with TransferOptions::bare.
+Status PutBackground(const PreparedStyle& style, const Picture* over, int threads, Picture& picture);
 
 // floor(frame · jitter_fps / fps) in integers, fps = numerator / denominator: equal for a frame however a range is cut.
 // 0 for jitter_fps 0 (frozen), the frame itself for -1. jitter_fps is rounded to thousandths.

@@ -10,7 +10,7 @@
 //   Less(a, b), Both(choice, choice), All(choice), Select(choice, yes, no), Min(a, b), Max(a, b), Sqrt(x)
 //   BitsAsNumber(x)             the integer that x's bits are, as the nearest float
 //   NumberAsBits(n)             the float whose bits are 512 · (n - 2^23), for whole n of 2^23 … 2^24
-// core/image/scalar_lane.h has them for float, transfer/tint/vector_lane-inl.h for vectors.
+// core/image/scalar_lane.h has them for float, core/filter/vector_lane-inl.h for vectors.
 
 // x^(1/3) within 1.9e-7 of the true root, relative, for 2^-126 … 3.4e38. 0 gives 0; values between 0 and 2^-126 give a
 // result between 0 and 2^-42. All others are undefined.

@@ -44,6 +44,7 @@ LayerSet RequiredLayers(const Style& style) {
   if (settings.shadow == ShadowMode::kPaint) layers.Add(Layer::kShadow);
   if (settings.edge == EdgeMode::kExemplar) layers.Add(Layer::kObject).Add(Layer::kDepth);
   if (settings.colorize > 0.0) layers.Add(Layer::kAlbedo);
+  for (const FinishPass& pass : style.finish) layers.Add(RequiredLayers(pass));
   return layers;
 }
 

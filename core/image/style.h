@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/image/finish_pass.h"
 #include "core/image/guides.h"
 #include "core/image/layers.h"
 #include "core/image/status.h"
@@ -186,11 +187,12 @@ struct Style {
   TransferSettings transfer;
   std::vector<Exemplar> exemplars;  // one, or up to kMaxExemplars lighting conditions of the same style
   Paper paper;                      // neither set: transparent
+  std::vector<FinishPass> finish;   // in order
   std::vector<StyleTrack> tracks;
   PictureReader read_picture;  // of files that keys name; null: ReadPicture
 };
 
-// The layers that a transfer with this style reads: `guidegen` makes these and no more.
+// The layers that a transfer with this style and its finish read: `guidegen` makes these and no more.
 LayerSet RequiredLayers(const Style& style);
 
 // Whether the exposure of the scene's light matters: in styles of several exemplars, and in those that weigh radiance.

@@ -1,7 +1,5 @@
 #include "core/style/style_file.h"
 
-#include <toml++/toml.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -11,18 +9,20 @@
 #include "core/io/file/readable_file.h"
 #include "core/io/guide_file.h"
 #include "core/io/picture_file.h"
+#include "core/style/finish_file.h"
+#include "core/style/finish_tables.h"
 #include "core/style/kit/sphere_template.h"
 #include "core/style/place_sphere.h"
 #include "core/style/style_keyframes.h"
 #include "core/style/style_keys.h"
-#include "core/style/toml_keys.h"
+#include "core/style/toml_values.h"
 
 namespace scumble {
 namespace {
 
 namespace fs = std::filesystem;
 
-using internal::Exists;
+using internal::Exists, internal::ParseToml, internal::ValueOf, internal::Where;
 
 // The name of a style without one: its folder's, or its file's without the ending.
 std::string NameFor(const fs::path& path, bool is_folder) {
@@ -31,30 +31,6 @@ std::string NameFor(const fs::path& path, bool is_folder) {
   const fs::path whole = fs::absolute(path, failed).lexically_normal();
   const fs::path folder = is_folder && whole.has_filename() ? whole : whole.parent_path();
   return folder.filename().string();
-}
-
-// Debian's toml++ throws; nothing else here does.
-Expected<toml::table> ParseToml(std::string_view text, const std::string& file) {
-  SCUMBLE_RETURN_IF_ERROR(internal::CheckTomlText(text, file));
-  try {
-    return toml::parse(text, file);
-  } catch (const toml::parse_error& error) {
-    return InputError(file + ":" + std::to_string(error.source().begin.line) +
-                      ": not valid TOML: " + std::string(error.description()));
-  }
-}
-
-std::optional<KeyValue> ValueOf(const toml::node& node) {
-  if (const auto* flag = node.as_boolean()) return KeyValue(flag->get());
-  if (const auto* whole = node.as_integer()) return KeyValue(whole->get());
-  if (const auto* number = node.as_floating_point()) return KeyValue(number->get());
-  if (const auto* text = node.as_string()) return KeyValue(text->get());
-  return std::nullopt;
-}
-
-std::string Where(const std::string& file, const toml::node& node) {
-  const auto line = node.source().begin.line;
-  return line > 0 ? file + ":" + std::to_string(line) : file;
 }
 
 Error Explain(Error error, const std::string& where, const std::string& key, const KeyValue& value) {
@@ -104,7 +80,7 @@ Status SetKey(Style& style, const std::string& name, const toml::node& node, con
                                 : name.rfind("transfer.", 0) == 0 ? "transfer."
                                                                   : "";
     return UsageError(where + ": unknown key " + name + "; there are " + KnownKeys(section) +
-                      (section.empty() ? ", [transfer] and [[exemplar]]" : ""));
+                      (section.empty() ? ", [transfer], [[exemplar]] and [[finish]]" : ""));
   }
   if (const auto* pairs = node.as_array()) return SetTrack(style, *key, *pairs, where, folder);
   const auto value = ValueOf(node);
@@ -336,6 +312,8 @@ Expected<Style> ReadStyleFile(const fs::path& path, const StyleReading& reading)
     const std::string name(key.str());
     if (name == "exemplar") {
       SCUMBLE_RETURN_IF_ERROR(ReadExemplars(node, {path, reading}, style));
+    } else if (name == "finish") {
+      SCUMBLE_ASSIGN(style.finish, internal::ReadFinishTables(node, file));
     } else if (const auto* table = node.as_table(); table && name == "transfer") {
       SCUMBLE_RETURN_IF_ERROR(SetKeysInFile(style, name, *table, path));
     } else {
@@ -396,6 +374,10 @@ Status ApplyOverride(Style& style, const std::string& text) {
   if (table.size() != 1 || !(ValueOf(*table.get("value")) || is_track)) {
     table.clear();
     table.insert("value", value_text);
+  }
+  if (name.rfind(kFinishKeys, 0) == 0) {
+    SCUMBLE_ASSIGN(const std::size_t count, OverrideFinish(style.finish, text));
+    return count > 0 ? Ok() : Status(NoSuchFinish(text, style.finish));
   }
   if (name.rfind("exemplar.", 0) == 0) return SetExemplarKey(style, name, *table.get("value"));
   return SetKey(style, name, *table.get("value"), "--set", fs::path());

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/io/picture_file.h"
+#include "core/style/finish_keys.h"
 
 namespace scumble {
 namespace {
@@ -122,27 +123,21 @@ Status SetJitterFps(Style& style, const KeyValue& value, const std::filesystem::
   return Ok();
 }
 
-constexpr const char* kColor = "a colour is # and six hexadecimal digits, two each of red, green and blue: \"#f4efe6\"";
-
 Status SetPaper(Style& style, const KeyValue& value, const std::filesystem::path& folder) {
   const auto* text = std::get_if<std::string>(&value);
-  if (!text) return UsageError(std::string("expected a picture's name, a colour, or \"\" for transparent; ") + kColor);
+  if (!text)
+    return UsageError(std::string("expected a picture's name, a colour, or \"\" for transparent; ") + kColorForm);
   style.paper = {};
   if (text->empty()) return Ok();
   if (text->front() == '#') {
-    unsigned rgb = 0;
-    const char *begin = text->data() + 1, *end = text->data() + text->size();
-    const auto parsed = std::from_chars(begin, end, rgb, 16);
-    if (end - begin != 6 || parsed.ec != std::errc() || parsed.ptr != end) {
-      return UsageError(kColor);
-    }
-    const auto channel = [&](int shift) { return static_cast<std::uint16_t>(((rgb >> shift) & 255u) * 257u); };
-    style.paper.color = {channel(16), channel(8), channel(0)};
+    const auto color = ParseColor(*text);
+    if (!color) return UsageError(kColorForm);
+    style.paper.color = *color;
     return Ok();
   }
   std::error_code failed;
   if (!text->ends_with('/') && !std::filesystem::exists(folder / *text, failed) && !failed) {
-    return InputError("cannot read " + (folder / *text).string() + ": there is no such file; " + kColor);
+    return InputError("cannot read " + (folder / *text).string() + ": there is no such file; " + kColorForm);
   }
   const std::filesystem::path file = folder / *text;
   SCUMBLE_ASSIGN(style.paper.picture, style.read_picture ? style.read_picture(file) : ReadPicture(file));

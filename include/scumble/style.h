@@ -12,6 +12,8 @@ struct StyleSettings {
   std::vector<std::string> overrides = {};
   // "Tree*=charcoal": another style for objects or materials whose name fits.
   std::vector<std::string> assignments = {};
+  // Finishing effects and presets after the styles' own, "comic"; "none" drops those of the styles.
+  std::vector<std::string> finishes = {};
   bool follow_scene = true;  // the styles that the scene gives its objects (property scumble_style)
 };
 

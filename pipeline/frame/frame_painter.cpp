@@ -1,5 +1,6 @@
 #include "pipeline/frame/frame_painter.h"
 
+#include "core/image/stopwatch.h"
 #include "pipeline/file_cache.h"
 
 namespace scumble {
@@ -27,6 +28,12 @@ FrameRate RateOf(std::optional<FrameRate> given, const GuideSet& guides) {
   return FrameRate();
 }
 
+namespace {
+
+constexpr double kTransferShare = 0.7;  // of a frame's time that has a finish
+
+}  // namespace
+
 Status PaintFrame(std::span<const PreparedStyle> prepared, const StyleMap* map, const GuideSet& guides,
                   const FrameSettings& settings, const RunContext& context, const Progress& progress,
                   TransferScratch& scratch, Picture& picture) {
@@ -38,11 +45,26 @@ Status PaintFrame(std::span<const PreparedStyle> prepared, const StyleMap* map, 
   options.threads = context.threads;
   options.over = settings.over;
   options.keep_field = settings.keep_field;
-  options.progress = progress;
-  if (!map) return Transfer(prepared.front(), guides, options, scratch, picture);
-  std::vector<const PreparedStyle*> pointers;
-  for (const PreparedStyle& one : prepared) pointers.push_back(&one);
-  return Transfer(pointers, *map, guides, options, scratch, picture);
+  options.progress = settings.finish ? Within(progress, 0.0, kTransferShare) : progress;
+  options.bare = settings.finish != nullptr;
+  if (!map) {
+    SCUMBLE_RETURN_IF_ERROR(Transfer(prepared.front(), guides, options, scratch, picture));
+  } else {
+    std::vector<const PreparedStyle*> pointers;
+    for (const PreparedStyle& one : prepared) pointers.push_back(&one);
+    SCUMBLE_RETURN_IF_ERROR(Transfer(pointers, *map, guides, options, scratch, picture));
+  }
+  if (!settings.finish) return Ok();
+  Stopwatch watch;
+  const FrameFinish& finish = *settings.finish;
+  FinishFrame frame{&guides, finish.measures, 1.0, settings.seed};
+  if (finish.reference_height > 0) frame.scale = double(guides.height()) / finish.reference_height;
+  SCUMBLE_RETURN_IF_ERROR(ApplyFinish(finish.steps, FinishPass::Stage::kPaint, frame, context.threads,
+                                      Within(progress, kTransferShare, 1.0), picture));
+  SCUMBLE_RETURN_IF_ERROR(PutBackground(prepared.front(), settings.over, context.threads, picture));
+  SCUMBLE_RETURN_IF_ERROR(ApplyFinish(finish.steps, FinishPass::Stage::kSheet, frame, context.threads, {}, picture));
+  if (settings.finish_ms) *settings.finish_ms += watch.Lap();
+  return Ok();
 }
 
 }  // namespace scumble

@@ -10,6 +10,7 @@
 
 #include "core/image/guides.h"
 #include "core/image/progress.h"
+#include "finish/finish.h"
 #include "pipeline/frame_rate.h"
 #include "pipeline/run_context.h"
 #include "pipeline/style/style_set.h"
@@ -28,13 +29,22 @@ double ExposureOf(std::optional<double> given, std::span<const PreparedStyle> pr
 // The rate that was given, or that of the guides' attribute scumble:fps, or FrameRate().
 FrameRate RateOf(std::optional<FrameRate> given, const GuideSet& guides);
 
+// What is applied to the paint, in order; see finish/finish.h.
+struct FrameFinish {
+  std::vector<FinishStep> steps;
+  FinishMeasures measures;
+  int reference_height = 0;  // of lengths; 0: they are pixels
+};
+
 struct FrameSettings {
   std::uint64_t seed = 0;
   int frame = 0;
   FrameRate fps;
-  double exposure = 0.0;          // stops
-  const Picture* over = nullptr;  // underneath; null: nothing
-  bool keep_field = false;        // the source field stays in the scratch memory
+  double exposure = 0.0;                // stops
+  const Picture* over = nullptr;        // underneath; null: nothing
+  bool keep_field = false;              // the source field stays in the scratch memory
+  const FrameFinish* finish = nullptr;  // null: nothing
+  double* finish_ms = nullptr;          // null, or where its time is added
 };
 
 // Paints one frame. `map` says which style paints which pixel; null: the first one paints all. Errors as of Transfer.

@@ -17,6 +17,7 @@
 #include "measure/mosaic/coherence.h"
 #include "measure/painting/paint_faults.h"
 #include "pipeline/frame/explain_frame.h"
+#include "pipeline/style/finish_set.h"
 #include "transfer/upsample_guides.h"
 
 namespace scumble {
@@ -155,6 +156,28 @@ void NoteExemplarUse(const Style& style, const RunContext& context) {
   }
 }
 
+// The passes of the picture. Measures that they look at are taken of the first picture and told.
+FrameFinish FinishOf(const StyleSet& styles, const GuideSet& guides, const StyleMap* map, const RunContext& context,
+                     PictureState& state) {
+  FrameFinish finish;
+  const bool is_first = !state.told_of_finish;
+  finish.steps = FinishStepsOf(styles, guides, map, [&](const std::string& text) {
+    if (is_first) context.Warn(text);
+  });
+  if (finish.steps.empty()) return finish;
+  state.told_of_finish = true;
+  finish.reference_height = styles.first().transfer.reference_height;
+  std::vector<FinishPass> passes;
+  for (const FinishStep& step : finish.steps) passes.push_back(step.pass);
+  if (!LooksAtMeasures(passes)) return finish;
+  if (!state.finish_measures) {
+    state.finish_measures = MeasureFinish(guides);
+    context.Note("finish: " + DescribeMeasures(*state.finish_measures));
+  }
+  finish.measures = *state.finish_measures;
+  return finish;
+}
+
 }  // namespace
 
 Status ReadOver(const std::string& file, PictureState& state) {
@@ -276,11 +299,14 @@ Expected<PaintedPicture> PaintInMemory(StyleSet& styles, const GuideSet& given, 
   times.emplace_back("prepare", watch.Lap());
   context.EndStage("prepare");
 
-  const FrameSettings settings{request.seed, request.frame.value_or(0), RateOf(request.fps, given), *state.exposure,
-                               over,         request.KeepsField()};
+  const FrameFinish finish = FinishOf(styles, guides, needs_map ? &map : nullptr, context, state);
+  double finish_ms = 0.0;
+  FrameSettings settings{request.seed, request.frame.value_or(0), RateOf(request.fps, given), *state.exposure,
+                         over,         request.KeepsField()};
+  settings.finish = finish.steps.empty() ? nullptr : &finish, settings.finish_ms = &finish_ms;
   TransferScratch& scratch = state.scratch;
   Picture picture;
-  std::vector<double> match, vote, compose, upscale;
+  std::vector<double> match, vote, compose, finished, upscale;
   for (int run = 0; run < request.repeat; ++run) {
     const double begin = double(run) / request.repeat, end = double(run + 1) / request.repeat;
     SCUMBLE_RETURN_IF_ERROR(PaintFrame(state.prepared, needs_map ? &map : nullptr, guides, settings, context,
@@ -288,6 +314,7 @@ Expected<PaintedPicture> PaintInMemory(StyleSet& styles, const GuideSet& given, 
     match.push_back(scratch.times.match_ms);
     vote.push_back(scratch.times.vote_ms);
     compose.push_back(scratch.times.compose_ms);
+    finished.push_back(std::exchange(finish_ms, 0.0));
     if (request.PictureFactor() == 1) continue;
     watch.Lap();
     picture = UpscalePicture(picture, request.PictureFactor(), context.threads);
@@ -298,6 +325,7 @@ Expected<PaintedPicture> PaintInMemory(StyleSet& styles, const GuideSet& given, 
   const auto sum = [](const std::vector<double>& ms) { return std::accumulate(ms.begin(), ms.end(), 0.0); };
   std::vector<std::pair<std::string, double>> inside{
       {"match", sum(match)}, {"vote", sum(vote)}, {"compose", sum(compose)}};
+  if (!finish.steps.empty()) inside.emplace_back("finish", sum(finished));
   if (!upscale.empty()) inside.emplace_back("upscale", sum(upscale));
   context.EndStage("transfer", inside);
 
@@ -328,6 +356,7 @@ Expected<PaintedPicture> PaintInMemory(StyleSet& styles, const GuideSet& given, 
   report.steps.push_back(SpreadOf("match", match));
   report.steps.push_back(SpreadOf("vote", vote));
   report.steps.push_back(SpreadOf("compose", compose));
+  if (!finish.steps.empty()) report.steps.push_back(SpreadOf("finish", finished));
   if (!upscale.empty()) report.steps.push_back(SpreadOf("upscale", upscale));
   made.report = {std::move(report), source.plan, source.memory, source.cost, 0, 0.0};
   if (request.keep_field) made.kept = TakeField(styles, state.prepared, needs_map ? &map : nullptr, scratch);

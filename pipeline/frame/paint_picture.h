@@ -40,13 +40,15 @@ struct GuideSource {
 
 // What a sequence keeps from frame to frame.
 struct PictureState {
-  std::vector<PreparedStyle> prepared;  // by style; empty: not yet
-  std::optional<double> exposure;       // stops, once given or measured
+  std::vector<PreparedStyle> prepared;            // by style; empty: not yet
+  std::optional<double> exposure;                 // stops, once given or measured
+  std::optional<FinishMeasures> finish_measures;  // once they are measured
   TransferScratch scratch;
   ExemplarHashes hashes;
   std::string over_file;        // that `over` is from
   std::optional<Picture> over;  // one picture underneath all frames is read once
   int width = 0, height = 0;    // of the first frame's guides
+  bool told_of_finish = false;  // of names in it that fit nothing
   bool warned = false;          // of options that change nothing
   bool warned_of_size = false;
 };

@@ -7,6 +7,7 @@
 
 #include "core/image/hash.h"
 #include "core/io/existing_output.h"
+#include "core/style/finish_keys.h"
 
 namespace scumble {
 namespace {
@@ -78,7 +79,9 @@ std::uint64_t HashOfStyles(const StyleSet& styles, std::size_t count, ExemplarHa
     }
     if (style.paper.color) hash = Hash(hash, HashBytes(std::span<const std::uint16_t>(*style.paper.color)));
     if (style.paper.picture) hash = Hash(hash, HashOfPicture(*style.paper.picture));
+    for (const FinishPass& pass : style.finish) hash = Hash(hash, HashText(FinishText(pass)));
   }
+  for (const FinishPass& pass : styles.finish) hash = Hash(hash, HashText(FinishText(pass)));
   for (const StyleSet::Assigned& one : styles.assigned) hash = Hash(hash, HashText(one.pattern), one.style);
   return hash;
 }

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "core/io/file/atomic_file.h"
+#include "core/style/nearest_name.h"
 
 namespace scumble {
 namespace {
@@ -54,35 +55,13 @@ std::string Lower(std::string text) {
   return text;
 }
 
-// Letters to add, drop or change, to come from one to the other (Levenshtein).
-std::size_t EditDistance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t changed = diagonal + (a[i - 1] != b[j - 1]);
-      diagonal = row[j];
-      row[j] = std::min({changed, row[j] + 1, row[j - 1] + 1});
-    }
-  }
-  return row[b.size()];
-}
-
 // The name that the pattern fits but for upper and lower case, or the one nearest to it; empty: none is near.
 std::string ProbablyMeant(const std::string& pattern, const std::set<std::string>& names) {
   const std::string lower = Lower(pattern);
-  std::string best;
-  std::size_t best_distance = std::max<std::size_t>(1, pattern.size() / 3) + 1;
   for (const std::string& name : names) {
     if (FitsPattern(Lower(name), lower)) return name;
-    // Long names are no slips of the finger, and the distance takes time.
-    if (name.size() > pattern.size() + best_distance || pattern.size() > 256) continue;
-    const std::size_t distance = EditDistance(lower, Lower(name));
-    if (distance < best_distance) best = name, best_distance = distance;
   }
-  return best;
+  return NearestName(pattern, std::vector<std::string>(names.begin(), names.end()));
 }
 
 std::set<std::string> Sorted(const std::map<std::uint32_t, std::string>& names) {

@@ -6,10 +6,12 @@
 #include <system_error>
 #include <utility>
 
+#include "core/style/finish_keys.h"
 #include "core/style/style_file.h"
 #include "core/style/style_keyframes.h"
 #include "core/style/style_keys.h"
 #include "pipeline/style/assignments.h"
+#include "pipeline/style/finish_set.h"
 #include "pipeline/style/style_locations.h"
 
 namespace scumble {
@@ -28,6 +30,8 @@ bool PaintsShadows(const Style& style) {
   return layers && layers->Has(Layer::kShadow);
 }
 
+bool IsOfFinish(const std::string& set) { return set.rfind(kFinishKeys, 0) == 0; }
+
 // The place of a style in the set, which is opened if it is new.
 Expected<std::uint16_t> PlaceOf(StyleSet& set, const std::string& name, const std::filesystem::path& base) {
   SCUMBLE_ASSIGN(const std::filesystem::path found, FindStyle(name, set.context, base));
@@ -37,9 +41,14 @@ Expected<std::uint16_t> PlaceOf(StyleSet& set, const std::string& name, const st
   SCUMBLE_RETURN_IF_ERROR(set.context.CheckNotCancelled());
   std::vector<std::string> overrides;
   for (const StyleSet::Override& one : set.overrides) {
-    if (one.style.empty() || one.path == path) overrides.push_back(one.text);
+    if ((one.style.empty() && !IsOfFinish(one.text)) || one.path == path) overrides.push_back(one.text);
   }
   SCUMBLE_ASSIGN(Style style, LoadStyle(found, overrides, set.options.reading));
+  for (const StyleSet::Override& one : set.overrides) {
+    if (one.style.empty() && IsOfFinish(one.text)) SCUMBLE_RETURN_IF_ERROR(OverrideFinish(style.finish, one.text));
+  }
+  const auto& finishes = set.options.finishes;
+  if (std::find(finishes.begin(), finishes.end(), kNoFinish) != finishes.end()) style.finish.clear();
   set.styles.push_back(std::move(style));
   set.given.push_back(name);
   return set.opened[path] = static_cast<std::uint16_t>(set.styles.size() - 1);
@@ -152,6 +161,7 @@ Expected<LayerSet> StyleLayers(StyleSet& set, const SceneStyleRequests& requests
     SCUMBLE_ASSIGN(const LayerSet of_style, LayersOverTime(set.styles[i]));
     layers.Add(of_style);
   }
+  for (const FinishPass& pass : set.finish) layers.Add(RequiredLayers(pass));
   return layers;
 }
 
@@ -167,7 +177,8 @@ bool HasKeyAt(const std::string& text, std::size_t begin) {
   const std::size_t equals = text.find('=', begin);
   if (equals == std::string::npos) return false;
   const std::string key = text.substr(begin, equals - begin);
-  return FindStyleKey(key) || (key.rfind("exemplar.", 0) == 0 && key.find(':') == std::string::npos);
+  const bool is_of_list = key.rfind("exemplar.", 0) == 0 || key.rfind(kFinishKeys, 0) == 0;
+  return FindStyleKey(key) || (is_of_list && key.find(':') == std::string::npos);
 }
 
 // The colon between name and key; none: npos. No key holds a colon; names may, and '=' too.
@@ -197,6 +208,23 @@ Status CheckOverrides(const StyleSet& set) {
     for (const std::string& name : set.given) names += (names.empty() ? "" : ", ") + name;
     return UsageError("--set " + one.style + ":" + one.text + ": --style and --assign give no style '" + one.style +
                       "'; they give " + names);
+  }
+  return Ok();
+}
+
+// The run's own passes, and whether every --set of a finish has found one.
+Status SetFinishOfRun(StyleSet& set) {
+  SCUMBLE_ASSIGN(set.finish, OpenFinish(set.options.finishes, set.context));
+  std::vector<FinishPass> all;
+  for (const Style& style : set.styles) all.insert(all.end(), style.finish.begin(), style.finish.end());
+  for (const StyleSet::Override& one : set.overrides) {
+    if (!one.style.empty() || !IsOfFinish(one.text)) continue;
+    SCUMBLE_ASSIGN(std::size_t count, OverrideFinish(set.finish, one.text));
+    std::vector<FinishPass> copy = all;  // they are set already
+    SCUMBLE_ASSIGN(const std::size_t of_styles, OverrideFinish(copy, one.text));
+    if (count + of_styles > 0) continue;
+    all.insert(all.end(), set.finish.begin(), set.finish.end());
+    return NoSuchFinish(one.text, all);
   }
   return Ok();
 }
@@ -231,6 +259,7 @@ Expected<StyleSet> OpenStyles(const StyleRequest& options, const RunContext& con
   }
   set.chosen = set.styles.size();
   SCUMBLE_RETURN_IF_ERROR(CheckOverrides(set));
+  SCUMBLE_RETURN_IF_ERROR(SetFinishOfRun(set));
   return set;
 }
 

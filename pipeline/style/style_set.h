@@ -26,7 +26,7 @@ struct StyleSet {
     bool warned = false;     // that none has
     std::size_t pixels = 0;  // that it has painted in all frames so far
   };
-  // One --set.
+  // One --set. "finish." keys without a style's name are those of all styles and of `finish`.
   struct Override {
     std::string style;  // name as it was given; empty: for all
     std::string path;   // of that style
@@ -42,6 +42,7 @@ struct StyleSet {
   std::size_t chosen = 1;                       // so many of `styles` are the user's, the others the scene's
   std::map<std::string, std::uint16_t> opened;  // by path
   std::vector<std::string> warnings;            // that were given
+  std::vector<FinishPass> finish;               // of StyleRequest::finishes
 
   const Style& first() const { return styles.front(); }
   // Whether any pixel of these guides, which are `file`'s, may have another style than the default.

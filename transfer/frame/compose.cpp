@@ -53,10 +53,10 @@ bool Compose(std::span<const float> coverage, const Background& background, cons
              RowProgress& progress) {
   return ForEachRow(region, progress, [&](int y) {
     const Backdrop behind(background, y);
-    const float* covered = coverage.data() + std::size_t(y) * picture.width;
+    const float* covered = coverage.empty() ? nullptr : coverage.data() + std::size_t(y) * picture.width;
     std::uint16_t* pixel = picture.At(region.x0, y);
     for (int x = region.x0; x < region.x1; ++x, pixel += 4) {
-      const float share = std::min(covered[x], 1.0f);
+      const float share = covered ? std::min(covered[x], 1.0f) : 1.0f;
       if (!(share > 0.0f)) {
         const std::uint16_t* shown = behind.At(x);
         if (shown[3] != 0)

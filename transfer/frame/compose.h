@@ -21,8 +21,9 @@ struct Background {
 // Where front is opaque, or only one of them is there, colours are unchanged.
 void BlendOver(std::uint16_t* front, const std::uint16_t* back);
 
-// Multiplies `coverage`, 0 … 1 by pixel of the picture, into the alpha of `picture`, then blends it over the background
-// in linear light. Where the result is opaque or the background is empty, colours are unchanged. False: cancelled.
+// Multiplies `coverage`, 0 … 1 by pixel of the picture, or empty for 1, into the alpha of `picture`, then blends it
+// over the background in linear light. Where the result is opaque or the background is empty, colours are unchanged.
+// False: cancelled.
 bool Compose(std::span<const float> coverage, const Background& background, const Region& region, Picture& picture,
              RowProgress& progress);
 

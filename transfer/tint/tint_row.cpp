@@ -7,7 +7,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "transfer/tint/vector_lane-inl.h"
+#include "core/filter/vector_lane-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace scumble::internal {
@@ -15,34 +15,8 @@ namespace HWY_NAMESPACE {
 
 #include "transfer/tint/tint-inl.h"
 
-using Words = hn::RebindToUnsigned<Floats>;
-
 constexpr std::size_t kMostLanes = 16;
 constexpr std::size_t kVectors = 16;  // pixels of a row that are tinted together
-
-// Texels are two words each: red and green, blue and alpha, the lower half first.
-HWY_INLINE LaneColor Load(const std::uint16_t* HWY_RESTRICT texels) {
-  const Words du;
-  hn::Vec<Words> red_green, blue_alpha;
-  hn::LoadInterleaved2(du, reinterpret_cast<const std::uint32_t*>(texels), red_green, blue_alpha);
-  const auto number = [&](hn::Vec<Words> code) HWY_ATTR { return hn::ConvertTo(Floats(), hn::BitCast(Ints(), code)); };
-  const auto low = hn::Set(du, 0xffff);
-  return {number(hn::And(red_green, low)), number(hn::ShiftRight<16>(red_green)), number(hn::And(blue_alpha, low))};
-}
-
-// Rounds codes; alpha stays.
-HWY_INLINE void Store(LaneColor codes, std::uint16_t* HWY_RESTRICT texels) {
-  const Words du;
-  std::uint32_t* const words = reinterpret_cast<std::uint32_t*>(texels);
-  hn::Vec<Words> red_green, blue_alpha;
-  hn::LoadInterleaved2(du, words, red_green, blue_alpha);
-  const auto low = hn::Set(du, 0xffff);
-  // The lowest bits of a sum above 2^23 are the nearest whole number.
-  const auto rounded = [&](Lane code) HWY_ATTR { return hn::BitCast(du, (code + 8388608.0f).v); };
-  const auto red = hn::And(rounded(codes.r), low), blue = hn::And(rounded(codes.b), low);
-  hn::StoreInterleaved2(hn::Or(red, hn::ShiftLeft<16>(rounded(codes.g))), hn::Or(blue, hn::AndNot(low, blue_alpha)), du,
-                        words);
-}
 
 HWY_INLINE LaneColor Load(const float* const* planes, std::size_t i) {
   const Floats d;
@@ -71,7 +45,7 @@ class Scene {
 
 void TintBlock(Scene<MultiplyingTint>& scene, const float* const* albedo, std::size_t count, std::uint16_t* texels) {
   for (std::size_t i = 0; i < count; i += hn::Lanes(Floats())) {
-    Store(scene.Of(Load(albedo, i)).Tinted(Load(texels + 4 * i)), texels + 4 * i);
+    StoreTexels(scene.Of(Load(albedo, i)).Tinted(LoadTexels(texels + 4 * i)), texels + 4 * i);
   }
 }
 
@@ -81,11 +55,12 @@ void TintBlock(Scene<OklabTint>& scene, const float* const* albedo, std::size_t 
   LaneColor* const end = colors + count / lanes;
   std::size_t i = 0;
   for (LaneColor* color = colors; color < end; ++color, i += lanes)
-    *color = OklabTint::RootsOfPaint(Load(texels + 4 * i));
+    *color = OklabTint::RootsOfPaint(LoadTexels(texels + 4 * i));
   i = 0;
   for (LaneColor* color = colors; color < end; ++color, i += lanes) *color = scene.Of(Load(albedo, i)).Linear(*color);
   i = 0;
-  for (LaneColor* color = colors; color < end; ++color, i += lanes) Store(OklabTint::Encoded(*color), texels + 4 * i);
+  for (LaneColor* color = colors; color < end; ++color, i += lanes)
+    StoreTexels(OklabTint::Encoded(*color), texels + 4 * i);
 }
 
 // Blocks of whole vectors; the rest of a row is tinted in a copy.

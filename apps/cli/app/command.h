@@ -39,6 +39,7 @@ using Action = std::function<Expected<ExitCode>()>;
 
 // Each command adds itself to the parser; when it is chosen, `chosen` becomes its work.
 void AddSphereVerb(CLI::App& app, Globals& globals, Action& chosen);
+void AddFinishVerb(CLI::App& app, Globals& globals, Action& chosen);
 void AddGuidegenVerb(CLI::App& app, Globals& globals, Action& chosen);
 void AddTransferVerb(CLI::App& app, Globals& globals, Action& chosen);
 void AddStylizeVerb(CLI::App& app, Globals& globals, Action& chosen);

@@ -265,6 +265,15 @@ void AddOneStyleOptions(CLI::App& verb, StyleRequest& request, bool required) {
       ->allow_extra_args(false);
 }
 
+void AddFinishOption(CLI::App& verb, std::vector<std::string>& finishes) {
+  verb.add_option("--finish", finishes,
+                  "finishing effects after the transfer: a preset, an effect or a preset's file; `scumble finish "
+                  "--list` names them; none leaves out the style's own; repeatable")
+      ->type_name("NAME")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
 void AddStyleOptions(CLI::App& verb, StyleRequest& request, bool required) {
   AddOneStyleOptions(verb, request, required);
   verb.add_option("--assign", request.assigned,
@@ -275,6 +284,7 @@ void AddStyleOptions(CLI::App& verb, StyleRequest& request, bool required) {
       ->type_name("NAME=STYLE")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  AddFinishOption(verb, request.finishes);
   verb.add_flag("!--no-scene-styles", request.scene_styles,
                 "do not heed the styles that the scene gives its objects and materials (custom property "
                 "scumble_style); --assign goes before them in any case");

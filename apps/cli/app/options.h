@@ -74,6 +74,9 @@ void AddCastOptions(CLI::App& verb, SceneOptions& options);
 // With all other options but blender.frame, because commands that make pictures have a frame already.
 void AddSceneOptions(CLI::App& verb, SceneOptions& options);
 
+// --finish.
+void AddFinishOption(CLI::App& verb, std::vector<std::string>& finishes);
+
 // --style and --set alone, for one style.
 void AddOneStyleOptions(CLI::App& verb, StyleRequest& request, bool required);
 // One group for commands that paint and for those that make their guides, so that two steps have the options of one.

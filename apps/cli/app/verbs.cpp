@@ -30,6 +30,7 @@ void AddVerbs(CLI::App& app, Globals& globals, Action& chosen) {
   AddTradeoffVerb(app, globals, chosen);
   AddInfoVerb(app, globals, chosen);
   AddStylesVerb(app, globals, chosen);
+  AddFinishVerb(app, globals, chosen);
   AddStudioVerb(app, globals, chosen);
   auto topic = std::make_shared<std::string>();
   CLI::App* help = app.add_subcommand("help", "this text, or a command's: scumble help stylize");

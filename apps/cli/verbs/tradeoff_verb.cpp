@@ -43,7 +43,7 @@ struct TradeoffVerb {
   std::string peak_of;  // a variant's name: its memory alone, for the process that AskForPeak starts
 };
 
-constexpr const char *kPictures = "pictures", *kJson = "tradeoff.json", *kPage = "report.html";
+constexpr const char *kPictures = "pictures", *kJson = "tradeoff.json", *kTradeoffPage = "report.html";
 
 // Folders that a run makes, with those above them; those that stay empty are removed.
 class MadeFolders {
@@ -82,7 +82,7 @@ Status CheckFolder(const TradeoffVerb& verb, const Globals& globals) {
   style.scene_styles = false;
   SCUMBLE_ASSIGN(const StyleSet styles, OpenStyles(style, globals));
   files.ReadsStyles(styles);
-  for (const char* name : {kPage, "tradeoff.csv", kJson, "chart.svg"}) {
+  for (const char* name : {kTradeoffPage, "tradeoff.csv", kJson, "chart.svg"}) {
     SCUMBLE_RETURN_IF_ERROR(files.CheckOutput((fs::path(verb.folder) / name).string()));
   }
   // The pictures' names are not known yet: so no picture in the folder may be an input file.
@@ -147,16 +147,16 @@ Status WriteFolder(const std::string& folder, const TradeReport& report) {
   const std::array<std::pair<const char*, std::string>, 4> texts = {{{"tradeoff.csv", TradeCsv(report)},
                                                                      {kJson, TradeJson(report)},
                                                                      {"chart.svg", TradeChart(report)},
-                                                                     {kPage, TradeHtml(report)}}};
+                                                                     {kTradeoffPage, TradeHtml(report)}}};
   constexpr std::size_t kBlock = 4096;  // a file's size beside its bytes: the rest of its last block
   std::size_t bytes = 0, largest = 0;
   const auto add = [&](std::size_t size) { bytes += size + kBlock, largest = std::max(largest, size); };
   for (const auto& [name, text] : texts) add(text.size());
   for (const TradeMeasure& variant : report.variants) add(variant.picture_png.size());
-  SCUMBLE_RETURN_IF_ERROR(CheckRoom(place / kPage, bytes, largest));
+  SCUMBLE_RETURN_IF_ERROR(CheckRoom(place / kTradeoffPage, bytes, largest));
 
   const std::vector<fs::path> old = OldPictures(folder, report);
-  SCUMBLE_RETURN_IF_ERROR(Remove(place / kPage));
+  SCUMBLE_RETURN_IF_ERROR(Remove(place / kTradeoffPage));
   std::error_code ignored;
   for (const fs::path& picture : old) fs::remove(picture, ignored);
   for (const auto& [name, text] : texts) SCUMBLE_RETURN_IF_ERROR(Remove(place / name));

@@ -178,7 +178,7 @@ double SpreadOnSphere(const TemplateMap& map, std::span<const Pair> pairs, int n
   return kTogether * spread * most;
 }
 
-double Median(std::vector<double> values) {
+double MedianOf(std::vector<double> values) {
   const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
@@ -189,7 +189,7 @@ void FitRobustly(TemplateMap& map, std::span<const Pair> pairs, int numbers) {
     std::vector<double> distances;
     for (const Pair& pair : pairs) distances.push_back(Distance(map, pair));
     // A corner counts half at three times the usual distance.
-    const double scale = std::max(0.02, 3.0 * 1.4826 * Median(distances));
+    const double scale = std::max(0.02, 3.0 * 1.4826 * MedianOf(distances));
     Improve(map, pairs, numbers, scale);
   }
 }

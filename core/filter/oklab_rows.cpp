@@ -1,0 +1,84 @@
+#include "core/filter/oklab_rows.h"
+
+#include <algorithm>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/filter/oklab_rows.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "core/filter/vector_lane-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace scumble::internal {
+namespace HWY_NAMESPACE {
+
+void DecodeHere(const std::uint16_t* texels, std::size_t count, OklabBlock& block) {
+  for (std::size_t i = 0; i < count; i += hn::Lanes(Floats())) {
+    const LaneColor cones = ConesFromLinear(Each(LinearFromCode, LoadTexels(texels + 4 * i)));
+    const LaneColor lab = OklabFromRoots(Each(CubeRoot, cones));
+    hn::Store(lab.r.v, Floats(), block.lightness.data() + i);
+    hn::Store(lab.g.v, Floats(), block.a.data() + i);
+    hn::Store(lab.b.v, Floats(), block.b.data() + i);
+  }
+}
+
+HWY_INLINE LaneColor LinearOf(Lane lightness, Lane a, Lane b, Lane chroma) {
+  return LinearFromRoots(RootsFromOklab({lightness, a * chroma, b * chroma}));
+}
+
+HWY_INLINE Choice InGamut(LaneColor c) {
+  constexpr float kSlack = 1e-4f;
+  return Both(Less(Max(Max(c.r, c.g), c.b), 1.0f + kSlack), Less(-kSlack, Min(Min(c.r, c.g), c.b)));
+}
+
+void EncodeHere(const OklabBlock& block, std::size_t count, std::uint16_t* texels) {
+  for (std::size_t i = 0; i < count; i += hn::Lanes(Floats())) {
+    const Lane lightness = Min(Max(Lane(hn::Load(Floats(), block.lightness.data() + i)), 0.0f), 1.0f);
+    const Lane a = hn::Load(Floats(), block.a.data() + i), b = hn::Load(Floats(), block.b.data() + i);
+    LaneColor linear = LinearOf(lightness, a, b, 1.0f);
+    const Choice fits = InGamut(linear);
+    if (!All(fits)) {
+      Lane inside = 0.0f, outside = 1.0f;
+      for (int step = 0; step < 10; ++step) {
+        const Lane middle = 0.5f * (inside + outside);
+        const Choice in = InGamut(LinearOf(lightness, a, b, middle));
+        inside = Select(in, middle, inside);
+        outside = Select(in, outside, middle);
+      }
+      linear = LinearOf(lightness, a, b, Select(fits, 1.0f, inside));
+    }
+    StoreTexels(Each(ClampedCode, linear), texels + 4 * i);
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace scumble::internal
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace scumble::internal {
+
+HWY_EXPORT(DecodeHere);
+HWY_EXPORT(EncodeHere);
+
+// Vectors may reach beyond the last texel, so the texels go through a whole block.
+void OklabFromTexels(const std::uint16_t* texels, std::size_t count, OklabBlock& block) {
+  alignas(64) std::uint16_t whole[4 * kOklabBlock];
+  std::copy_n(texels, 4 * count, whole);
+  std::fill(whole + 4 * count, whole + std::min(4 * kOklabBlock, 4 * count + 64), std::uint16_t{0});
+  HWY_DYNAMIC_DISPATCH(DecodeHere)(whole, count, block);
+}
+
+void TexelsFromOklab(const OklabBlock& block, std::size_t count, std::uint16_t* texels) {
+  alignas(64) std::uint16_t whole[4 * kOklabBlock];
+  std::copy_n(texels, 4 * count, whole);
+  OklabBlock padded = block;
+  for (auto* plane : {&padded.lightness, &padded.a, &padded.b})
+    std::fill(plane->begin() + std::ptrdiff_t(count), plane->end(), 0.0f);
+  HWY_DYNAMIC_DISPATCH(EncodeHere)(padded, count, whole);
+  std::copy_n(whole, 4 * count, texels);
+}
+
+}  // namespace scumble::internal
+#endif

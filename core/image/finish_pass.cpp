@@ -1,0 +1,38 @@
+#include "core/image/finish_pass.h"
+
+namespace scumble {
+namespace {
+
+LayerSet Of(const OutlinePass& pass) {
+  const auto is_on = [&](LineClass line) { return pass.of_class[std::size_t(line)] > 0.0; };
+  LayerSet layers{Layer::kCoverage, Layer::kNormal, Layer::kDepth, Layer::kObject};
+  if (is_on(LineClass::kMaterial)) layers.Add(Layer::kMaterial);
+  if (is_on(LineClass::kTexture)) layers.Add(Layer::kAlbedo);
+  if (is_on(LineClass::kShadow)) layers.Add(Layer::kShadow);
+  if (pass.light != 0.0) layers.Add(Layer::kLuminance);
+  return layers;
+}
+
+LayerSet Of(const ShadowsPass& pass) {
+  LayerSet layers;
+  if (pass.source != ShadowsPass::Source::kForm) layers.Add(Layer::kShadow);
+  if (pass.source != ShadowsPass::Source::kCast) layers.Add(Layer::kLuminance);
+  return layers;
+}
+
+LayerSet Of(const DepthPass&) { return {Layer::kDepth}; }
+LayerSet Of(const TonesPass&) { return {}; }
+LayerSet Of(const GradePass&) { return {}; }
+LayerSet Of(const FillPass&) { return {}; }
+
+}  // namespace
+
+LayerSet RequiredLayers(const FinishPass& pass) {
+  if (!(pass.strength > 0.0)) return {};
+  LayerSet layers = std::visit([](const auto& effect) { return Of(effect); }, pass.effect);
+  if (!pass.objects.empty()) layers.Add(Layer::kObject);
+  if (!pass.materials.empty()) layers.Add(Layer::kMaterial);
+  return layers;
+}
+
+}  // namespace scumble

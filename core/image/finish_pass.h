@@ -1,0 +1,105 @@
+// The finishing effects of a picture, as plain data: the tables [[finish]] of style.toml and of presets. finish/
+// applies them; core/style/finish_keys.h names their keys.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/image/layers.h"
+
+namespace scumble {
+
+using Rgb16 = std::array<std::uint16_t, 3>;  // 16-bit sRGB
+
+// The classes of line. A border between two pixels has the first that fits.
+enum class LineClass {
+  kSilhouette,  // against nothing
+  kObject,      // between two objects
+  kOcclusion,   // a step in depth within one object
+  kCrease,      // an angle between surfaces
+  kMaterial,    // between two materials
+  kShadow,      // the contour of half shadow
+  kTexture,     // a step in the base colour
+};
+inline constexpr int kLineClasses = 7;
+
+// Lines along borders of the guides. Lengths are pixels at the style's reference height.
+struct OutlinePass {
+  enum class Color { kInk, kPaint, kComplement };  // a fixed ink; the paint beside the line, darker; its opposite hue
+  enum class Side { kCentre, kInside, kOutside };  // of the nearer surface
+  double width = 2.5;                              // 0 … 64
+  double min_width = 0.7;                          // 0 … 64: no line gets thinner by depth or light
+  std::array<double, kLineClasses> of_class = {1.0, 1.0, 1.0, 0.6,
+                                               0.0, 0.0, 0.0};  // factors of the width, 0 … 4; 0: none
+  double crease_angle = 40.0;                                   // degrees between normals, 0 … 180
+  double texture_step = 0.1;                                    // Oklab distance between base colours, 0 … 2
+  double thin = 0.0;            // 0 … 2: the width is multiplied by (thin_at / depth)^thin
+  double thin_at = 0.0;         // metres; 0: the middle depth of the first picture
+  double light = 0.0;           // -2 … 2: the width is multiplied by 1 + light · (1/2 - luminance)
+  double taper = 0.0;           // 0 … 512: ends grow thin over this length
+  double wobble = 0.0;          // 0 … 16: how far lines stray
+  double wobble_length = 24.0;  // 1 … 512: of the waves of that
+  Color color = Color::kInk;
+  Rgb16 ink = {0x1c1c, 0x1a1a, 0x1919};
+  Side side = Side::kCentre;
+};
+
+// Lightness in steps (Winnemöller, Olsen, Gooch 2006, made to keep black, white and the middle of every step).
+struct TonesPass {
+  int bins = 8;            // 2 … 64
+  double sharpness = 4.0;  // 0 … 64: 0 changes nothing, 4 rounds the steps, 64 is hard
+};
+
+// What is in shade is painted otherwise.
+struct ShadowsPass {
+  enum class Mode { kBlack, kDarker, kColor, kComplement, kChiaroscuro, kImpression, kNegative };
+  enum class Source { kCast, kForm, kBoth };  // the layer `shadow`; faces turned from the light; the larger of them
+  Mode mode = Mode::kDarker;
+  Source source = Source::kBoth;
+  // Luminances, as shares of the picture's brightest tenth: form shade is full up to `full`, none from `none` on.
+  double full = 0.1, none = 0.4;  // 0 … 4
+  Rgb16 color = {0x2a2a, 0x3434, 0x6262};
+};
+
+// What distance does to colours. u = clamp(|depth - focus| / (far - near), 0, 1)^gamma.
+struct DepthPass {
+  enum class Metric { kLinear, kInverse };  // depths, or their reciprocals
+  double near = 0.0, far = 0.0;             // metres; 0: the 2nd and 98th percentile of the first picture's depth
+  double focus = 0.0;                       // metres; 0: near
+  double gamma = 1.0;                       // 0.1 … 10
+  int layers = 0;                           // 0 smooth, 2 … 64: u takes so many values
+  Metric metric = Metric::kLinear;
+  double desaturate = 0.6;  // 0 … 1: chroma is multiplied by 1 - desaturate · u
+  double tint = 0.0;        // 0 … 1: hue and chroma go towards `color` by tint · u
+  double air = 0.0;         // 0 … 1: share of `color` at `far`, by Beer and Lambert's law
+  Rgb16 color = {0xb4b4, 0xc6c6, 0xdcdc};
+};
+
+struct GradePass {
+  double saturation = 1.0;  // 0 … 4, of chroma
+  double contrast = 1.0;    // 0 … 4, around the middle of lightness
+  double lift = 0.0;        // -1 … 1, added to lightness
+};
+
+// One colour in place of the paint.
+struct FillPass {
+  Rgb16 color = {0xf4f4, 0xefef, 0xe6e6};
+};
+
+struct FinishPass {
+  enum class Stage { kPaint, kSheet };  // before the paper is put behind, or after
+  using Effect = std::variant<OutlinePass, TonesPass, ShadowsPass, DepthPass, GradePass, FillPass>;
+  std::string name;  // for --set finish.NAME.KEY; the effect's if the user gives none
+  Effect effect;
+  Stage at = Stage::kPaint;
+  double strength = 1.0;                        // 0 … 1; 0 changes no byte
+  std::vector<std::string> objects, materials;  // patterns of names; both empty: the whole picture
+};
+
+// The layers that the pass reads.
+LayerSet RequiredLayers(const FinishPass& pass);
+
+}  // namespace scumble

@@ -1,0 +1,127 @@
+#include "core/style/finish_file.h"
+
+#include <algorithm>
+#include <system_error>
+
+#include "core/io/file/atomic_file.h"
+#include "core/style/finish_keys.h"
+#include "core/style/finish_tables.h"
+
+namespace scumble {
+namespace {
+
+constexpr std::size_t kMaxPresetBytes = 1 << 20;
+
+// One name, or a list of them.
+Status ReadNames(const toml::node& node, std::vector<std::string>& names) {
+  if (const auto* one = node.as_string()) return names = {one->get()}, Ok();
+  const auto* list = node.as_array();
+  if (!list) return UsageError("expected names in quotes, as [\"Tree*\", \"House\"]");
+  for (const auto& item : *list) {
+    const auto* name = item.as_string();
+    if (!name) return UsageError("expected names in quotes, as [\"Tree*\", \"House\"]");
+    names.push_back(name->get());
+  }
+  return Ok();
+}
+
+Expected<FinishPass> ReadPass(const toml::table& table, const std::string& file) {
+  const auto* effect = table.get("effect");
+  const auto* name_of_effect = effect ? effect->as_string() : nullptr;
+  if (!name_of_effect) {
+    return InputError(internal::Where(file, table) + ": [[finish]] has no effect; add effect = \"outline\"");
+  }
+  Expected<FinishPass> made = MakeFinishPass(name_of_effect->get());
+  if (!made) return InputError(internal::Where(file, *effect) + ": " + made.error().message);
+  FinishPass pass = *std::move(made);
+  for (const auto& [key, node] : table) {
+    const std::string name(key.str());
+    if (name == "effect") continue;
+    const auto value = internal::ValueOf(node);
+    Status done = Ok();
+    if (name == "objects" || name == "materials") {
+      done = ReadNames(node, name == "objects" ? pass.objects : pass.materials);
+    } else if (name == "name") {
+      const auto* text = value ? std::get_if<std::string>(&*value) : nullptr;
+      if (!text || text->empty() || text->find_first_of(".=: ") != std::string::npos)
+        done = UsageError("expected a text without dots, colons, blanks or =");
+      else
+        pass.name = *text;
+    } else if (!value) {
+      done = UsageError("expected a plain value");
+    } else {
+      done = SetFinishKey(pass, name, *value);
+    }
+    if (!done) return InputError(internal::Where(file, node) + ": finish." + name + ": " + done.error().message);
+  }
+  return pass;
+}
+
+}  // namespace
+
+Expected<std::vector<FinishPass>> internal::ReadFinishTables(const toml::node& node, const std::string& file) {
+  std::vector<FinishPass> passes;
+  const auto* array = node.as_array();
+  if (!array) return InputError(Where(file, node) + ": write [[finish]] with two brackets");
+  for (const auto& item : *array) {
+    const auto* table = item.as_table();
+    if (!table) return InputError(Where(file, item) + ": write [[finish]] with two brackets");
+    SCUMBLE_ASSIGN(FinishPass pass, ReadPass(*table, file));
+    passes.push_back(std::move(pass));
+  }
+  return passes;
+}
+
+Expected<FinishPreset> LoadFinishPreset(const std::filesystem::path& path) {
+  SCUMBLE_ASSIGN(const auto bytes, ReadWholeFile(path, kMaxPresetBytes));
+  const std::string file = path.string();
+  SCUMBLE_ASSIGN(const toml::table root,
+                 internal::ParseToml({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, file));
+  FinishPreset preset;
+  preset.name = path.stem().string();
+  for (const auto& [key, node] : root) {
+    if (key.str() == "finish") {
+      SCUMBLE_ASSIGN(preset.passes, internal::ReadFinishTables(node, file));
+    } else if (const auto* text = node.as_string(); text && key.str() == "help") {
+      preset.help = text->get();
+    } else {
+      return InputError(internal::Where(file, node) + ": unknown key " + std::string(key.str()) +
+                        "; a preset has help, a text, and [[finish]]");
+    }
+  }
+  if (preset.passes.empty()) {
+    return InputError(file + " has no [[finish]]; add [[finish]] and effect = \"outline\" under it");
+  }
+  return preset;
+}
+
+std::vector<std::filesystem::path> FindFinishPresets(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  std::error_code failed;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, failed)) {
+    if (entry.path().extension() == ".toml") files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+Expected<std::size_t> OverrideFinish(std::span<FinishPass> passes, const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos) return UsageError("--set " + text + ": expected KEY=VALUE");
+  const std::string value_text = text.substr(equals + 1);
+  const auto parsed = internal::ParseToml("value = " + value_text, "--set");
+  const auto value = parsed && parsed->size() == 1 ? internal::ValueOf(*parsed->get("value")) : std::nullopt;
+  Expected<std::size_t> count = SetFinishKeys(passes, text.substr(0, equals), value ? *value : KeyValue(value_text));
+  if (!count) return UsageError("--set " + text + ": " + count.error().message);
+  return count;
+}
+
+Error NoSuchFinish(const std::string& text, std::span<const FinishPass> passes) {
+  std::string names;
+  for (const FinishPass& pass : passes) names += (names.empty() ? "" : ", ") + pass.name;
+  return UsageError(
+      "--set " + text + ": no finish has that name; " +
+      (names.empty() ? "there is none, give --finish or [[finish]] of style.toml" : "there are " + names));
+}
+
+}  // namespace scumble

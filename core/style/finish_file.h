@@ -1,0 +1,34 @@
+// Presets: files with the tables [[finish]] of several effects that make a look.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/image/finish_pass.h"
+#include "core/image/status.h"
+
+namespace scumble {
+
+struct FinishPreset {
+  std::string name;  // the file's, without .toml
+  std::string help;  // one line
+  std::vector<FinishPass> passes;
+};
+
+// Reads a preset: `help`, and [[finish]] as in style.toml.
+Expected<FinishPreset> LoadFinishPreset(const std::filesystem::path& file);
+
+// The presets in a folder, by name.
+std::vector<std::filesystem::path> FindFinishPresets(const std::filesystem::path& folder);
+
+// "finish.NAME.KEY=VALUE": sets the key in every pass of that name; returns how many there are. Values are TOML's;
+// quotes may be left off. Mistakes are kUsage.
+Expected<std::size_t> OverrideFinish(std::span<FinishPass> passes, const std::string& text);
+
+// The error where OverrideFinish sets nothing: which names there are.
+Error NoSuchFinish(const std::string& text, std::span<const FinishPass> passes);
+
+}  // namespace scumble

@@ -1,0 +1,321 @@
+#include "core/style/finish_keys.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdio>
+#include <utility>
+
+#include "core/style/nearest_name.h"
+
+namespace scumble {
+namespace {
+
+// Of a member of one effect.
+template <class Pass, class T>
+T& PassMember(FinishPass& pass, T Pass::*field) {
+  return std::get<Pass>(pass.effect).*field;
+}
+template <class Pass, class T>
+const T& PassMember(const FinishPass& pass, T Pass::*field) {
+  return std::get<Pass>(pass.effect).*field;
+}
+
+std::string FinishRange(double least, double most) {
+  char text[80];
+  std::snprintf(text, sizeof text, "%g to %g", least, most);
+  return text;
+}
+
+template <class Field>  // gives double& of a pass
+FinishKey FinishNumber(const char* name, Field field, double least, double most, const char* help) {
+  FinishKey key{name, KeyKind::kNumber, least, most, {}, "", help + (", " + FinishRange(least, most)), {}, {}};
+  key.set = [=](FinishPass& pass, const KeyValue& value) -> Status {
+    const auto number = AsNumber(value);
+    if (!number || !(*number >= least && *number <= most)) {
+      return UsageError("expected a number, " + FinishRange(least, most));
+    }
+    field(pass) = *number;
+    return Ok();
+  };
+  key.get = [=](const FinishPass& pass) -> KeyValue {
+    FinishPass copy = pass;
+    return field(copy);
+  };
+  return key;
+}
+
+template <class Pass>
+FinishKey PassNumber(const char* name, double Pass::*field, double least, double most, const char* help) {
+  return FinishNumber(
+      name, [=](FinishPass& pass) -> double& { return PassMember(pass, field); }, least, most, help);
+}
+
+template <class Pass>
+FinishKey PassWhole(const char* name, int Pass::*field, int least, int most, const char* help) {
+  FinishKey key{
+      name, KeyKind::kWhole, double(least), double(most), {}, "", help + (", " + FinishRange(least, most)), {}, {}};
+  key.set = [=](FinishPass& pass, const KeyValue& value) -> Status {
+    const auto* number = std::get_if<std::int64_t>(&value);
+    if (!number || *number < least || *number > most) {
+      return UsageError("expected a whole number, " + FinishRange(least, most));
+    }
+    PassMember(pass, field) = static_cast<int>(*number);
+    return Ok();
+  };
+  key.get = [=](const FinishPass& pass) -> KeyValue { return std::int64_t(PassMember(pass, field)); };
+  return key;
+}
+
+template <class Field>  // gives an enum& of a pass, counted from 0 as `choices` are
+FinishKey FinishChoice(const char* name, Field field, std::vector<std::string> choices, const char* help) {
+  FinishKey key{name, KeyKind::kChoice, 0.0, 0.0, choices, "", help, {}, {}};
+  key.set = [=](FinishPass& pass, const KeyValue& value) -> Status {
+    const auto* text = std::get_if<std::string>(&value);
+    const auto found = text ? std::find(choices.begin(), choices.end(), *text) : choices.end();
+    if (found != choices.end()) {
+      auto& member = field(pass);
+      member = static_cast<std::decay_t<decltype(member)>>(found - choices.begin());
+      return Ok();
+    }
+    std::string expected = "expected ";
+    for (std::size_t i = 0; i < choices.size(); ++i) {
+      expected += (i == 0 ? "\"" : i + 1 < choices.size() ? ", \"" : " or \"") + choices[i] + '"';
+    }
+    return UsageError(expected);
+  };
+  key.get = [=](const FinishPass& pass) -> KeyValue {
+    FinishPass copy = pass;
+    return choices[static_cast<std::size_t>(field(copy))];
+  };
+  return key;
+}
+
+template <class Pass, class T>
+FinishKey PassChoice(const char* name, T Pass::*field, std::vector<std::string> choices, const char* help) {
+  return FinishChoice(
+      name, [=](FinishPass& pass) -> T& { return PassMember(pass, field); }, std::move(choices), help);
+}
+
+template <class Pass>
+FinishKey PassColor(const char* name, Rgb16 Pass::*field, const char* help) {
+  FinishKey key{name, KeyKind::kText, 0.0, 0.0, {}, "", help, {}, {}};
+  key.set = [=](FinishPass& pass, const KeyValue& value) -> Status {
+    const auto* text = std::get_if<std::string>(&value);
+    const auto color = text ? ParseColor(*text) : std::nullopt;
+    if (!color) return UsageError(kColorForm);
+    PassMember(pass, field) = *color;
+    return Ok();
+  };
+  key.get = [=](const FinishPass& pass) -> KeyValue {
+    const Rgb16& color = PassMember(pass, field);
+    char text[8];
+    std::snprintf(text, sizeof text, "#%02x%02x%02x", color[0] / 257u, color[1] / 257u, color[2] / 257u);
+    return std::string(text);
+  };
+  return key;
+}
+
+FinishKey LineWidth(const char* name, LineClass line, const char* help) {
+  const auto field = [=](FinishPass& pass) -> double& {
+    return std::get<OutlinePass>(pass.effect).of_class[std::size_t(line)];
+  };
+  return FinishNumber(name, field, 0.0, 4.0, help);
+}
+
+std::vector<FinishKey> OutlineKeys() {
+  using P = OutlinePass;
+  return {
+      PassNumber("width", &P::width, 0.0, 64.0, "of lines, pixels"),
+      PassNumber("min_width", &P::min_width, 0.0, 64.0, "that depth and light thin no line below, pixels"),
+      LineWidth("silhouette", LineClass::kSilhouette, "share of the width of lines against nothing"),
+      LineWidth("object", LineClass::kObject, "the same between objects"),
+      LineWidth("occlusion", LineClass::kOcclusion, "the same where a part hides another of its own object"),
+      LineWidth("crease", LineClass::kCrease, "the same along creases"),
+      LineWidth("material", LineClass::kMaterial, "the same between materials"),
+      LineWidth("shadow", LineClass::kShadow, "the same around shadows"),
+      LineWidth("texture", LineClass::kTexture, "the same where the base colour changes"),
+      PassNumber("crease_angle", &P::crease_angle, 0.0, 180.0, "of normals beside a crease, at least, degrees"),
+      PassNumber("texture_step", &P::texture_step, 0.0, 2.0, "of base colours beside a line, at least, in Oklab"),
+      PassNumber("thin", &P::thin, 0.0, 2.0, "lines get thinner with distance: width * (thin_at / depth)^thin"),
+      PassNumber("thin_at", &P::thin_at, 0.0, 1e9, "depth of the plain width, metres; 0: the first picture's middle"),
+      PassNumber("light", &P::light, -2.0, 2.0, "lines get thinner in light: width * (1 + light * (1/2 - luminance))"),
+      PassNumber("taper", &P::taper, 0.0, 512.0, "length over which lines end in a point, pixels"),
+      PassNumber("wobble", &P::wobble, 0.0, 16.0, "how far lines stray, pixels"),
+      PassNumber("wobble_length", &P::wobble_length, 1.0, 512.0, "of the waves of that, pixels"),
+      PassChoice("color", &P::color, {"ink", "paint", "complement"},
+                 "ink, or paint: the paint beside the line, darker; or complement: its opposite hue"),
+      PassColor("ink", &P::ink, "the colour of ink"),
+      PassChoice("side", &P::side, {"centre", "inside", "outside"}, "of the nearer surface's border")};
+}
+
+std::vector<FinishKey> TonesKeys() {
+  using P = TonesPass;
+  return {PassWhole("bins", &P::bins, 2, 64, "steps of lightness"),
+          PassNumber("sharpness", &P::sharpness, 0.0, 64.0, "of the steps; 0: none show")};
+}
+
+std::vector<FinishKey> ShadowsKeys() {
+  using P = ShadowsPass;
+  return {
+      PassChoice("mode", &P::mode, {"black", "darker", "color", "complement", "chiaroscuro", "impression", "negative"},
+                 "what shade looks like"),
+      PassChoice("source", &P::source, {"cast", "form", "both"}, "cast shadows, faces turned from the light, or both"),
+      PassNumber("full", &P::full, 0.0, 4.0, "luminance up to which a face is in full shade, 1: the brightest tenth's"),
+      PassNumber("none", &P::none, 0.0, 4.0, "luminance from which on it is not"),
+      PassColor("color", &P::color, "of mode color, and the hue of complement where paint is grey")};
+}
+
+std::vector<FinishKey> DepthKeys() {
+  using P = DepthPass;
+  return {PassNumber("near", &P::near, 0.0, 1e9,
+                     "depth where the effect begins, metres; 0: the first picture's 2nd percentile"),
+          PassNumber("far", &P::far, 0.0, 1e9, "depth where it is full, metres; 0: the 98th percentile"),
+          PassNumber("focus", &P::focus, 0.0, 1e9, "depth that stays as it is, metres; 0: near"),
+          PassNumber("gamma", &P::gamma, 0.1, 10.0, "above 1 spares what is near"),
+          PassWhole("layers", &P::layers, 0, 64, "flat layers of depth; 0: it is smooth"),
+          PassChoice("metric", &P::metric, {"linear", "inverse"}, "linear in depth, or in its reciprocal"),
+          PassNumber("desaturate", &P::desaturate, 0.0, 1.0, "chroma lost"),
+          PassNumber("tint", &P::tint, 0.0, 1.0, "share of the colour's hue and chroma taken on"),
+          PassNumber("air", &P::air, 0.0, 1.0, "share of the colour that the air adds at far"),
+          PassColor("color", &P::color, "of tint and air")};
+}
+
+std::vector<FinishKey> GradeKeys() {
+  using P = GradePass;
+  return {PassNumber("saturation", &P::saturation, 0.0, 4.0, "factor of chroma"),
+          PassNumber("contrast", &P::contrast, 0.0, 4.0, "factor of lightness around its middle"),
+          PassNumber("lift", &P::lift, -1.0, 1.0, "added to lightness")};
+}
+
+std::vector<FinishKey> MakeCommonKeys() {
+  std::vector<FinishKey> keys = {
+      FinishNumber(
+          "strength", [](FinishPass& pass) -> double& { return pass.strength; }, 0.0, 1.0, "share of the effect"),
+      FinishChoice(
+          "at", [](FinishPass& pass) -> FinishPass::Stage& { return pass.at; }, {"paint", "sheet"},
+          "paint: objects alone; sheet: the paper behind them, too")};
+  const FinishPass defaults{"", OutlinePass(), FinishPass::Stage::kPaint, 1.0, {}, {}};
+  for (FinishKey& key : keys) key.default_value = ToText(key.get(defaults));
+  return keys;
+}
+
+std::vector<FinishEffect> MakeEffects() {
+  std::vector<FinishEffect> effects = {
+      {"tones", "lightness in steps", TonesPass(), TonesKeys()},
+      {"shadows", "what is in shade: darker, black, in another colour", ShadowsPass(), ShadowsKeys()},
+      {"depth", "what is far: paler, tinted, in haze, in layers", DepthPass(), DepthKeys()},
+      {"grade", "saturation, contrast and lightness", GradePass(), GradeKeys()},
+      {"fill", "one colour instead of the paint", FillPass(), {PassColor("color", &FillPass::color, "of everything")}},
+      {"outline", "ink lines along silhouettes, objects, creases, shadows", OutlinePass(), OutlineKeys()}};
+  for (FinishEffect& effect : effects) {
+    const FinishPass defaults{"", effect.defaults, FinishPass::Stage::kPaint, 1.0, {}, {}};
+    for (FinishKey& key : effect.keys) key.default_value = ToText(key.get(defaults));
+  }
+  return effects;
+}
+
+const FinishKey* FindKey(const FinishPass& pass, const std::string& name) {
+  for (const auto keys : {std::span<const FinishKey>(EffectOf(pass).keys), CommonFinishKeys()}) {
+    for (const FinishKey& key : keys) {
+      if (key.name == name) return &key;
+    }
+  }
+  return nullptr;
+}
+
+template <class Named>
+std::vector<std::string> NamesOf(std::span<const Named> list) {
+  std::vector<std::string> names;
+  for (const Named& one : list) names.push_back(one.name);
+  return names;
+}
+
+std::string Listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+std::string DidYouMean(const std::string& given, const std::vector<std::string>& names) {
+  const std::string meant = NearestName(given, names);
+  return meant.empty() ? "" : "; did you mean " + meant + "?";
+}
+
+}  // namespace
+
+std::optional<Rgb16> ParseColor(const std::string& text) {
+  unsigned rgb = 0;
+  if (text.size() != 7 || text[0] != '#') return std::nullopt;
+  const auto parsed = std::from_chars(text.data() + 1, text.data() + text.size(), rgb, 16);
+  if (parsed.ec != std::errc() || parsed.ptr != text.data() + text.size()) return std::nullopt;
+  const auto channel = [&](int shift) { return static_cast<std::uint16_t>(((rgb >> shift) & 255u) * 257u); };
+  return Rgb16{channel(16), channel(8), channel(0)};
+}
+
+std::span<const FinishEffect> FinishEffects() {
+  static const std::vector<FinishEffect> effects = MakeEffects();
+  return effects;
+}
+
+std::span<const FinishKey> CommonFinishKeys() {
+  static const std::vector<FinishKey> keys = MakeCommonKeys();
+  return keys;
+}
+
+const FinishEffect* FindFinishEffect(const std::string& name) {
+  for (const FinishEffect& effect : FinishEffects()) {
+    if (effect.name == name) return &effect;
+  }
+  return nullptr;
+}
+
+const FinishEffect& EffectOf(const FinishPass& pass) {
+  const auto has_it = [&](const FinishEffect& one) { return one.defaults.index() == pass.effect.index(); };
+  return *std::find_if(FinishEffects().begin(), FinishEffects().end(), has_it);
+}
+
+Expected<FinishPass> MakeFinishPass(const std::string& effect) {
+  if (const FinishEffect* found = FindFinishEffect(effect)) {
+    return FinishPass{effect, found->defaults, FinishPass::Stage::kPaint, 1.0, {}, {}};
+  }
+  const auto names = NamesOf(FinishEffects());
+  return UsageError("there is no effect '" + effect + "'; there are " + Listed(names) + DidYouMean(effect, names));
+}
+
+Status SetFinishKey(FinishPass& pass, const std::string& name, const KeyValue& value) {
+  if (const FinishKey* key = FindKey(pass, name)) return key->set(pass, value);
+  auto names = NamesOf(std::span<const FinishKey>(EffectOf(pass).keys));
+  for (const FinishKey& key : CommonFinishKeys()) names.push_back(key.name);
+  return UsageError("effect " + EffectOf(pass).name + " has no key '" + name + "'; it has " + Listed(names) +
+                    DidYouMean(name, names));
+}
+
+Expected<std::size_t> SetFinishKeys(std::span<FinishPass> passes, const std::string& key, const KeyValue& value) {
+  const std::size_t begin = std::string_view(kFinishKeys).size(), dot = key.find('.', begin);
+  if (key.rfind(kFinishKeys, 0) != 0 || dot == std::string::npos) {
+    return UsageError("expected finish.NAME.KEY, as in finish.outline.width");
+  }
+  const std::string name = key.substr(begin, dot - begin);
+  std::size_t count = 0;
+  for (FinishPass& pass : passes) {
+    if (pass.name != name) continue;
+    SCUMBLE_RETURN_IF_ERROR(SetFinishKey(pass, key.substr(dot + 1), value));
+    ++count;
+  }
+  return count;
+}
+
+std::string FinishText(const FinishPass& pass) {
+  std::string text = EffectOf(pass).name;
+  for (const auto keys : {CommonFinishKeys(), std::span<const FinishKey>(EffectOf(pass).keys)}) {
+    for (const FinishKey& key : keys) {
+      const std::string value = ToText(key.get(pass));
+      if (value != key.default_value) text += " " + key.name + "=" + value;
+    }
+  }
+  for (const std::string& name : pass.objects) text += " object " + name;
+  for (const std::string& name : pass.materials) text += " material " + name;
+  return text;
+}
+
+}  // namespace scumble

@@ -1,0 +1,67 @@
+// The keys of finishing effects: one table for [[finish]], for --set finish.NAME.KEY and for `scumble finish --list`.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/image/finish_pass.h"
+#include "core/image/status.h"
+#include "core/style/style_keys.h"
+
+namespace scumble {
+
+// What the keys begin with in --set.
+inline constexpr const char* kFinishKeys = "finish.";
+
+inline constexpr const char* kColorForm =
+    "a colour is # and six hexadecimal digits, two each of red, green and blue: \"#f4efe6\"";
+// "#f4efe6"; none for any other text.
+std::optional<Rgb16> ParseColor(const std::string& text);
+
+// A key of one effect.
+struct FinishKey {
+  std::string name;  // "width"
+  KeyKind kind = KeyKind::kNumber;
+  double least = 0.0, most = 0.0;    // of numbers
+  std::vector<std::string> choices;  // of kChoice
+  std::string default_value;         // as TOML text
+  std::string help;                  // one line: meaning, unit, range
+  // Puts a value into a pass of this effect. A kUsage error gives the expected form.
+  std::function<Status(FinishPass&, const KeyValue&)> set;
+  std::function<KeyValue(const FinishPass&)> get;  // the value in a pass of this effect
+};
+
+struct FinishEffect {
+  std::string name;  // "outline"
+  std::string help;
+  FinishPass::Effect defaults;
+  std::vector<FinishKey> keys;
+};
+
+// All effects, in the order in which they are best applied.
+std::span<const FinishEffect> FinishEffects();
+
+// Keys that every effect has, besides the lists `objects` and `materials`.
+std::span<const FinishKey> CommonFinishKeys();
+
+// The effect of that name, or null.
+const FinishEffect* FindFinishEffect(const std::string& name);
+// The effect that a pass has.
+const FinishEffect& EffectOf(const FinishPass& pass);
+
+// A pass of that effect with its defaults. A kUsage error lists the effects and names the nearest.
+Expected<FinishPass> MakeFinishPass(const std::string& effect);
+
+// Sets a key of the pass, common ones included. A kUsage error lists the keys and names the nearest.
+Status SetFinishKey(FinishPass& pass, const std::string& key, const KeyValue& value);
+
+// "finish.NAME.KEY": sets the key in every pass of that name. Returns how many there are; 0 is no error.
+Expected<std::size_t> SetFinishKeys(std::span<FinishPass> passes, const std::string& key, const KeyValue& value);
+
+// The effect and what is not its default, as text: equal texts, equal passes. The name is left out.
+std::string FinishText(const FinishPass& pass);
+
+}  // namespace scumble

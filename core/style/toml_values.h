@@ -1,0 +1,24 @@
+// Values and places of TOML, for the readers of this folder.
+#pragma once
+
+#include <toml++/toml.h>
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "core/image/status.h"
+#include "core/style/style_keys.h"
+
+namespace scumble::internal {
+
+// A kInput error names file and line. `text` may be anything.
+Expected<toml::table> ParseToml(std::string_view text, const std::string& file);
+
+// A plain value; none of tables, arrays and dates.
+std::optional<KeyValue> ValueOf(const toml::node& node);
+
+// "style.toml:12", or the file alone where the node has no line.
+std::string Where(const std::string& file, const toml::node& node);
+
+}  // namespace scumble::internal

@@ -1,0 +1,139 @@
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <optional>
+#include <string>
+
+#include "core/filter/oklab_rows.h"
+#include "core/filter/parallel.h"
+#include "core/image/check.h"
+#include "finish/finish.h"
+#include "finish/outline/outline.h"
+#include "finish/tone/point_effect.h"
+
+namespace scumble {
+namespace {
+
+using internal::OklabBlock, internal::PointEffect;
+
+// A step of a loop over pixels.
+struct PointStep {
+  PointEffect apply;
+  const FinishStep* step = nullptr;
+};
+
+// The effect, where it treats each pixel by itself.
+std::optional<PointEffect> PointEffectOf(const FinishPass& pass, const FinishFrame& frame) {
+  struct {
+    const FinishFrame& frame;
+    std::optional<PointEffect> operator()(const OutlinePass&) { return std::nullopt; }
+    std::optional<PointEffect> operator()(const TonesPass& one) { return internal::MakeTones(one); }
+    std::optional<PointEffect> operator()(const ShadowsPass& one) { return internal::MakeShadows(one, frame); }
+    std::optional<PointEffect> operator()(const DepthPass& one) { return internal::MakeDepth(one, frame); }
+    std::optional<PointEffect> operator()(const GradePass& one) { return internal::MakeGrade(one); }
+    std::optional<PointEffect> operator()(const FillPass& one) { return internal::MakeFill(one); }
+  } make{frame};
+  return std::visit(make, pass.effect);
+}
+
+// Where the step changes nothing or only part of it, puts back what was before.
+void Weigh(const FinishStep& step, std::size_t first, std::size_t count, const OklabBlock& before, OklabBlock& block) {
+  const auto strength = static_cast<float>(step.pass.strength);
+  if (strength >= 1.0f && step.only.empty()) return;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float share = step.only.empty() || step.only[first + i] ? strength : 0.0f;
+    const auto mix = [&](float from, float to) { return share >= 1.0f ? to : from + (to - from) * share; };
+    block.lightness[i] = mix(before.lightness[i], block.lightness[i]);
+    block.a[i] = mix(before.a[i], block.a[i]);
+    block.b[i] = mix(before.b[i], block.b[i]);
+  }
+}
+
+// Texels whose colour no step changes keep their bits, those of alpha 0 too.
+void PaintBlock(std::span<const PointStep> steps, std::size_t first, std::size_t count, std::uint16_t* texels) {
+  OklabBlock given, block, before;
+  internal::OklabFromTexels(texels, count, given);
+  block = given;
+  for (const PointStep& one : steps) {
+    before = block;
+    one.apply(first, count, block);
+    Weigh(*one.step, first, count, before, block);
+  }
+  std::uint16_t made[4 * internal::kOklabBlock];
+  std::copy_n(texels, 4 * count, made);
+  internal::TexelsFromOklab(block, count, made);
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool same = block.lightness[i] == given.lightness[i] && block.a[i] == given.a[i] && block.b[i] == given.b[i];
+    if (!same && texels[4 * i + 3] != 0) std::copy_n(made + 4 * i, 3, texels + 4 * i);
+  }
+}
+
+bool PaintPoints(std::span<const PointStep> steps, internal::RowProgress& progress, Picture& picture) {
+  return internal::ForEachRow({0, 0, picture.width, picture.height}, progress, [&](int y) {
+    const auto width = static_cast<std::size_t>(picture.width);
+    for (std::size_t x = 0; x < width; x += internal::kOklabBlock) {
+      const std::size_t count = std::min(internal::kOklabBlock, width - x);
+      PaintBlock(steps, std::size_t(y) * width + x, count, picture.At(static_cast<int>(x), y));
+    }
+  });
+}
+
+Status Apply(std::span<const FinishStep* const> steps, const FinishFrame& frame, const Progress& progress,
+             Picture& picture) {
+  const double share = 1.0 / static_cast<double>(steps.size());
+  for (std::size_t i = 0; i < steps.size();) {
+    std::vector<PointStep> points;
+    const std::size_t begin = i;
+    for (; i < steps.size(); ++i) {
+      std::optional<PointEffect> effect = PointEffectOf(steps[i]->pass, frame);
+      if (!effect) break;
+      points.push_back({*std::move(effect), steps[i]});
+    }
+    if (!points.empty()) {
+      internal::RowProgress rows(progress, share * double(begin), share * double(i), std::max(1, picture.height));
+      if (!PaintPoints(points, rows, picture)) return CancelledError();
+      continue;
+    }
+    const FinishStep& step = *steps[i++];
+    internal::DrawOutline(std::get<OutlinePass>(step.pass.effect), step.pass.strength, step.only, frame, picture);
+    if (progress && !progress(share * double(i))) return CancelledError();
+  }
+  return Ok();
+}
+
+}  // namespace
+
+Status CheckFinishLayers(std::span<const FinishStep> steps, const GuideSet* guides) {
+  for (const FinishStep& step : steps) {
+    const LayerSet needed = RequiredLayers(step.pass), held = guides ? guides->layers() : LayerSet();
+    LayerSet lacking;
+    for (const LayerInfo& info : AllLayers()) {
+      if (needed.Has(info.layer) && !held.Has(info.layer)) lacking.Add(info.layer);
+    }
+    if (lacking.empty()) continue;
+    return InputError("finish " + step.pass.name + " needs " + lacking.ToString() + "; " +
+                      (guides ? "the guides hold " + held.ToString() + ": make them with --layers " + lacking.ToString()
+                              : "there are no guides: name a guide file of this picture"));
+  }
+  return Ok();
+}
+
+Status ApplyFinish(std::span<const FinishStep> steps, FinishPass::Stage stage, const FinishFrame& frame, int threads,
+                   const Progress& progress, Picture& picture) {
+  SCUMBLE_RETURN_IF_ERROR(CheckFinishLayers(steps, frame.guides));
+  std::vector<const FinishStep*> chosen;
+  for (const FinishStep& step : steps) {
+    if (step.pass.at == stage && step.pass.strength > 0.0) chosen.push_back(&step);
+  }
+  if (chosen.empty() || picture.empty()) return Ok();
+  if (frame.guides) {
+    SCUMBLE_CHECK_EQ(frame.guides->width(), picture.width);
+    SCUMBLE_CHECK_EQ(frame.guides->height(), picture.height);
+  }
+  tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+  return arena.execute([&] { return Apply(chosen, frame, progress, picture); });
+}
+
+}  // namespace scumble

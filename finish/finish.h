@@ -1,0 +1,55 @@
+// Finishing effects over a painted or rendered picture: the manual of this library.
+//
+//   MeasureFinish(guides)               what a sequence measures once, on its first picture
+//   ApplyFinish(steps, stage, frame, …) applies the passes of one stage, in order, in place
+//
+// A pass (core/image/finish_pass.h) looks at guides and changes the picture. Neighbouring passes that treat each pixel
+// by itself (tone/) run as one loop in Oklab. Lines (outline/) are traced along the borders of the guides and stroked.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/image/finish_pass.h"
+#include "core/image/guides.h"
+#include "core/image/progress.h"
+#include "core/image/status.h"
+#include "scumble/picture.h"
+
+namespace scumble {
+
+// What passes take from the first picture of a sequence where a key is 0. Of the covered pixels.
+struct FinishMeasures {
+  double near = 0.0, middle = 0.0, far = 0.0;  // the 2nd, 50th and 98th percentile of depth, metres
+  double bright = 1.0;                         // the 90th percentile of luminance; 1 without light
+};
+
+// Whether any of the passes looks at them.
+bool LooksAtMeasures(std::span<const FinishPass> passes);
+
+// Of layers that the guides lack, and of nothing covered, the values stay as they are above.
+FinishMeasures MeasureFinish(const GuideSet& guides);
+
+struct FinishStep {
+  FinishPass pass;
+  std::vector<std::uint8_t> only;  // by pixel: 0 is left as it is; empty: none is
+};
+
+struct FinishFrame {
+  const GuideSet* guides = nullptr;  // the picture's size; null where no pass reads any
+  FinishMeasures measures;
+  double scale = 1.0;      // pixels of the picture for one of the reference height
+  std::uint64_t seed = 0;  // of all that is left to chance
+};
+
+// The layers that the steps read and the guides lack, with the name of the first pass that asks; Ok if there is none.
+Status CheckFinishLayers(std::span<const FinishStep> steps, const GuideSet* guides);
+
+// Applies the steps of that stage to a picture with straight alpha. Pixels of alpha 0 stay so, but where lines run. A
+// step of strength 0 changes nothing. The bytes depend on the arguments alone, not on threads (0: all) or machine.
+// kInput where layers are missing; kCancelled. O(pixels) for each step.
+Status ApplyFinish(std::span<const FinishStep> steps, FinishPass::Stage stage, const FinishFrame& frame, int threads,
+                   const Progress& progress, Picture& picture);
+
+}  // namespace scumble

@@ -1,0 +1,54 @@
+#include <algorithm>
+#include <vector>
+
+#include "finish/finish.h"
+
+namespace scumble {
+namespace {
+
+// Of the covered pixels whose value is finite. `values` is reordered.
+double Percentile(std::vector<float>& values, double share) {
+  const auto at = values.begin() + std::ptrdiff_t(share * double(values.size() - 1) + 0.5);
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+std::vector<float> CoveredValues(const GuideSet& guides, Layer layer) {
+  std::vector<float> values;
+  if (!guides.Has(layer)) return values;
+  const auto coverage = guides.Plane(Layer::kCoverage), plane = guides.Plane(layer);
+  for (std::size_t i = 0; i < plane.size(); ++i) {
+    if (coverage[i] > 0.0f && plane[i] >= 0.0f && plane[i] <= 3e38f) values.push_back(plane[i]);
+  }
+  return values;
+}
+
+bool Looks(const OutlinePass& pass) { return (pass.thin != 0.0 && pass.thin_at == 0.0) || pass.light != 0.0; }
+bool Looks(const ShadowsPass& pass) { return pass.source != ShadowsPass::Source::kCast; }
+bool Looks(const DepthPass& pass) { return pass.near == 0.0 || pass.far == 0.0; }
+bool Looks(const TonesPass&) { return false; }
+bool Looks(const GradePass&) { return false; }
+bool Looks(const FillPass&) { return false; }
+
+}  // namespace
+
+bool LooksAtMeasures(std::span<const FinishPass> passes) {
+  return std::any_of(passes.begin(), passes.end(), [](const FinishPass& pass) {
+    return std::visit([](const auto& effect) { return Looks(effect); }, pass.effect);
+  });
+}
+
+FinishMeasures MeasureFinish(const GuideSet& guides) {
+  FinishMeasures measures;
+  if (std::vector<float> depth = CoveredValues(guides, Layer::kDepth); !depth.empty()) {
+    measures.near = Percentile(depth, 0.02), measures.middle = Percentile(depth, 0.5);
+    measures.far = Percentile(depth, 0.98);
+  }
+  if (std::vector<float> light = CoveredValues(guides, Layer::kLuminance); !light.empty()) {
+    const double bright = Percentile(light, 0.9);
+    if (bright > 0.0) measures.bright = bright;
+  }
+  return measures;
+}
+
+}  // namespace scumble

@@ -1,0 +1,129 @@
+#include "finish/outline/border_map.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/filter/edge_test.h"
+#include "core/image/oklab.h"
+
+namespace scumble::internal {
+namespace {
+
+// Of a step in depth, as a share of the distance; see DepthTolerance.
+constexpr double kDepthTolerance = 0.002;
+
+std::vector<glm::vec3> OklabOf(const GuideSet& guides) {
+  std::vector<glm::vec3> colors(guides.pixel_count());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, colors.size(), 1 << 14), [&](const auto& part) {
+    for (std::size_t i = part.begin(); i != part.end(); ++i)
+      colors[i] = OklabFromLinear(guides.Vec3(Layer::kAlbedo, i));
+  });
+  return colors;
+}
+
+class Classifier {
+ public:
+  Classifier(const OutlinePass& pass, const GuideSet& guides, std::span<const std::uint8_t> only)
+      : pass_(pass),
+        only_(only),
+        guides_(guides),
+        give_(guides, kDepthTolerance),
+        crease_(EdgeRules::CreaseCosine(pass.crease_angle)),
+        coverage_(guides.Plane(Layer::kCoverage)),
+        depth_(guides.Plane(Layer::kDepth)),
+        object_(guides.Plane(Layer::kObject)),
+        texture_step_(static_cast<float>(pass.texture_step * pass.texture_step)) {
+    if (IsOn(LineClass::kMaterial)) material_ = guides.Plane(Layer::kMaterial);
+    if (IsOn(LineClass::kShadow)) shadow_ = guides.Plane(Layer::kShadow);
+    if (IsOn(LineClass::kTexture)) colors_ = OklabOf(guides);
+  }
+
+  // Of the border between pixels p and q, the next one of a row or a column. `before` and `after`: the pixels beyond
+  // them in the same direction; empty at the picture's edge.
+  std::uint8_t Between(std::optional<std::size_t> before, std::size_t p, std::size_t q,
+                       std::optional<std::size_t> after) const {
+    const bool covers_p = coverage_[p] > 0.0f, covers_q = coverage_[q] > 0.0f;
+    if (!covers_p && !covers_q) return 0;
+    if (!only_.empty() && !only_[covers_q && (!covers_p || depth_[q] < depth_[p]) ? q : p]) return 0;
+    const std::optional<LineClass> line = covers_p == covers_q ? Inside(before, p, q, after) : LineClass::kSilhouette;
+    return line && IsOn(*line) ? static_cast<std::uint8_t>(1 + int(*line)) : 0;
+  }
+
+ private:
+  bool IsOn(LineClass line) const { return pass_.of_class[std::size_t(line)] > 0.0; }
+
+  // Whether the depth goes on from p to q: as it does on one of the sides, by up to twice the slope there, give or take
+  // the tolerance. A step's two sides are flatter than the step.
+  bool DepthGoesOn(std::optional<std::size_t> before, std::size_t p, std::size_t q,
+                   std::optional<std::size_t> after) const {
+    const float step = depth_[q] - depth_[p], give = give_.At(std::min(depth_[p], depth_[q]));
+    if (std::fabs(step) <= give) return true;
+    const auto fits = [&](std::optional<std::size_t> from, std::optional<std::size_t> to) {
+      if (!from || !to || !(coverage_[*from] > 0.0f && coverage_[*to] > 0.0f)) return false;
+      if (object_[*from] != object_[*to]) return false;
+      const float slope = depth_[*to] - depth_[*from];
+      return std::fabs(step - slope) <= std::fabs(slope) + give;
+    };
+    return fits(before, p) || fits(q, after);
+  }
+
+  bool IsCrease(std::size_t p, std::size_t q) const {
+    const glm::vec3 a = guides_.Vec3(Layer::kNormal, p), b = guides_.Vec3(Layer::kNormal, q);
+    return !(a.x * b.x + a.y * b.y + a.z * b.z > crease_);
+  }
+
+  // Both pixels are covered.
+  std::optional<LineClass> Inside(std::optional<std::size_t> before, std::size_t p, std::size_t q,
+                                  std::optional<std::size_t> after) const {
+    if (object_[p] != object_[q]) return LineClass::kObject;
+    if (!DepthGoesOn(before, p, q, after)) return LineClass::kOcclusion;
+    if (IsCrease(p, q)) return LineClass::kCrease;
+    if (!material_.empty() && material_[p] != material_[q]) return LineClass::kMaterial;
+    if (!shadow_.empty() && (shadow_[p] >= 0.5f) != (shadow_[q] >= 0.5f)) return LineClass::kShadow;
+    if (!colors_.empty()) {
+      const glm::vec3 step = colors_[q] - colors_[p];
+      if (step.x * step.x + step.y * step.y + step.z * step.z > texture_step_) return LineClass::kTexture;
+    }
+    return std::nullopt;
+  }
+
+  const OutlinePass& pass_;
+  std::span<const std::uint8_t> only_;
+  const GuideSet& guides_;
+  DepthTolerance give_;
+  float crease_;
+  std::span<const float> coverage_, depth_, object_, material_, shadow_;
+  std::vector<glm::vec3> colors_;
+  float texture_step_;
+};
+
+}  // namespace
+
+BorderMap FindBorders(const OutlinePass& pass, const GuideSet& guides, std::span<const std::uint8_t> only) {
+  const Classifier classifier(pass, guides, only);
+  BorderMap map{guides.width(), guides.height(), {}, {}};
+  map.right.assign(guides.pixel_count(), 0), map.below.assign(guides.pixel_count(), 0);
+  tbb::parallel_for(tbb::blocked_range<int>(0, map.height, 16), [&](const auto& rows) {
+    for (int y = rows.begin(); y != rows.end(); ++y) {
+      for (int x = 0; x < map.width; ++x) {
+        const std::size_t p = guides.Index(x, y), row = std::size_t(map.width);
+        const auto at = [&](bool is_inside, std::size_t pixel) {
+          return is_inside ? std::optional(pixel) : std::nullopt;
+        };
+        if (x + 1 < map.width) {
+          map.right[p] = classifier.Between(at(x > 0, p - 1), p, p + 1, at(x + 2 < map.width, p + 2));
+        }
+        if (y + 1 < map.height) {
+          map.below[p] = classifier.Between(at(y > 0, p - row), p, p + row, at(y + 2 < map.height, p + 2 * row));
+        }
+      }
+    }
+  });
+  return map;
+}
+
+}  // namespace scumble::internal

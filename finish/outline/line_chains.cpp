@@ -1,0 +1,260 @@
+#include "finish/outline/line_chains.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace scumble::internal {
+namespace {
+
+constexpr std::uint8_t kTaken = 0x80;  // a border that is in a line already
+
+// A border: the one to the right of the pixel, or below it.
+struct Border {
+  int x, y;
+  bool is_right;
+};
+
+// A corner of the pixels, 0 … width by 0 … height.
+struct Corner {
+  int x, y;
+  bool operator==(const Corner&) const = default;
+};
+
+class Tracer {
+ public:
+  Tracer(BorderMap& map, const GuideSet& guides)
+      : map_(map), coverage_(guides.Plane(Layer::kCoverage)), depth_(guides.Plane(Layer::kDepth)) {
+    if (guides.Has(Layer::kShadow)) shadow_ = guides.Plane(Layer::kShadow);
+  }
+
+  std::vector<LineChain> Trace(double shortest) {
+    std::vector<LineChain> chains;
+    const auto add = [&](LineChain chain) {
+      const bool is_noise = double(chain.points.size()) < (chain.closed ? 2.0 * shortest : shortest);
+      if (!is_noise || !(chain.begins && chain.ends)) chains.push_back(std::move(chain));
+    };
+    // From ends and junctions first; what is left then are rings.
+    ForEachBorder([&](const Border& border) {
+      for (const Corner& corner : Corners(border)) {
+        if (!(At(border) & kTaken) && Degree(corner) != 2) add(Walk(border, corner));
+      }
+    });
+    ForEachBorder([&](const Border& border) {
+      if (!(At(border) & kTaken)) add(Walk(border, Corners(border)[0]));
+    });
+    return chains;
+  }
+
+ private:
+  std::uint8_t& At(const Border& border) {
+    const std::size_t i = std::size_t(border.y) * map_.width + border.x;
+    return border.is_right ? map_.right[i] : map_.below[i];
+  }
+
+  template <class Visit>
+  void ForEachBorder(const Visit& visit) {
+    for (int y = 0; y < map_.height; ++y) {
+      const std::size_t row = std::size_t(y) * map_.width;
+      for (int x = 0; x < map_.width; ++x) {
+        if (map_.right[row + x]) visit(Border{x, y, true});
+        if (map_.below[row + x]) visit(Border{x, y, false});
+      }
+    }
+  }
+
+  static std::array<Corner, 2> Corners(const Border& border) {
+    const auto [x, y, is_right] = border;
+    return is_right ? std::array{Corner{x + 1, y}, Corner{x + 1, y + 1}}
+                    : std::array{Corner{x, y + 1}, Corner{x + 1, y + 1}};
+  }
+
+  // Calls visit for each border that ends in the corner: above, to the left, to the right, below.
+  template <class Visit>
+  void ForEachAt(const Corner& corner, const Visit& visit) {
+    const auto [x, y] = corner;
+    const auto offer = [&](const Border& border) {
+      if (border.x >= 0 && border.y >= 0 && border.x < map_.width && border.y < map_.height && At(border))
+        visit(border);
+    };
+    offer({x - 1, y - 1, true});
+    offer({x - 1, y - 1, false});
+    offer({x, y - 1, false});
+    offer({x - 1, y, true});
+  }
+  int Degree(const Corner& corner) {
+    int count = 0;
+    ForEachAt(corner, [&](const Border&) { ++count; });
+    return count;
+  }
+
+  LineChain Walk(Border border, Corner corner) {
+    LineChain chain;
+    const Corner start = corner;
+    chain.first = {corner.x, corner.y};
+    chain.begins = Degree(corner) == 1;
+    for (;;) {
+      At(border) |= kTaken;
+      const std::array<Corner, 2> ends = Corners(border);
+      corner = ends[0] == corner ? ends[1] : ends[0];
+      chain.points.push_back(PointOf(border));
+      Border next{-1, 0, false};
+      if (Degree(corner) == 2) {
+        ForEachAt(corner, [&](const Border& one) {
+          if (!(At(one) & kTaken)) next = one;
+        });
+      }
+      if (next.x < 0) break;
+      border = next;
+    }
+    chain.last = {corner.x, corner.y};
+    chain.closed = corner == start && Degree(start) == 2;
+    chain.ends = Degree(corner) == 1;
+    if (chain.closed) chain.begins = chain.ends = true;
+    return chain;
+  }
+
+  LinePoint PointOf(const Border& border) {
+    const auto [x, y, is_right] = border;
+    const std::size_t p = std::size_t(y) * map_.width + x, q = is_right ? p + 1 : p + std::size_t(map_.width);
+    const bool q_owns = coverage_[q] > 0.0f && (!(coverage_[p] > 0.0f) || depth_[q] < depth_[p]);
+    const glm::vec2 across = is_right ? glm::vec2(1, 0) : glm::vec2(0, 1);  // from p to q
+    const auto line = static_cast<LineClass>((At(border) & ~kTaken) - 1);
+    const glm::vec2 at = is_right ? glm::vec2(x + 1, y + 0.5f) : glm::vec2(x + 0.5f, y + 1);
+    const glm::vec2 to_owner = q_owns ? across : -across;
+    const std::size_t owner = q_owns ? q : p;
+    float shift = 0.0f;
+    if (line == LineClass::kSilhouette) {
+      shift = Uncovered(q_owns ? (is_right ? x + 1 : x) : x, q_owns ? (is_right ? y : y + 1) : y, to_owner);
+    } else if (line == LineClass::kShadow) {
+      const float from = shadow_[p], to = shadow_[q];
+      shift = (std::clamp((0.5f - from) / (to - from), 0.0f, 1.0f) - 0.5f) * (q_owns ? 1.0f : -1.0f);
+    }
+    return {at, to_owner, static_cast<std::uint32_t>(owner), line, shift};
+  }
+
+  // How far behind its border a silhouette runs: what is not covered of the pixels from (x, y) inwards. A line at less
+  // than 45 degrees from the border crosses up to three; beyond them, or where the coverage falls again, counting ends.
+  float Uncovered(int x, int y, glm::vec2 inwards) const {
+    float sum = 0.0f, last = 0.0f;
+    for (int k = 0; k < 4; ++k) {
+      if (x < 0 || y < 0 || x >= map_.width || y >= map_.height) break;
+      const float coverage = std::min(coverage_[std::size_t(y) * std::size_t(map_.width) + std::size_t(x)], 1.0f);
+      if (coverage < last) break;
+      sum += 1.0f - coverage;
+      if (coverage >= 1.0f) break;
+      last = coverage;
+      x += static_cast<int>(inwards.x), y += static_cast<int>(inwards.y);
+    }
+    return sum;
+  }
+
+  BorderMap& map_;
+  std::span<const float> coverage_, depth_, shadow_;
+};
+
+// A Gaussian of sigma 4 borders.
+constexpr int kReach = 12;
+const std::array<float, kReach + 1>& Weights() {
+  // exp(-i² / 32), normalised, as literals: a libm's may differ.
+  static constexpr std::array<double, kReach + 1> kExp = {1.0,
+                                                          0.9692332344763441,
+                                                          0.8824969025845955,
+                                                          0.7548396019890073,
+                                                          0.6065306597126334,
+                                                          0.45783336177161427,
+                                                          0.32465246735834974,
+                                                          0.2162651668298873,
+                                                          0.1353352832366127,
+                                                          0.07955950871822769,
+                                                          0.04393693362340742,
+                                                          0.022794180883612344,
+                                                          0.011108996538242306};
+  static const std::array<float, kReach + 1> weights = [] {
+    double sum = kExp[0];
+    for (int i = 1; i <= kReach; ++i) sum += 2.0 * kExp[std::size_t(i)];
+    std::array<float, kReach + 1> normal{};
+    for (int i = 0; i <= kReach; ++i) normal[std::size_t(i)] = static_cast<float>(kExp[std::size_t(i)] / sum);
+    return normal;
+  }();
+  return weights;
+}
+
+// `values` with the chain's continuation on both sides: round it, or turned about its ends.
+template <class T>
+std::vector<T> Padded(const std::vector<T>& values, bool closed, const T& first, const T& last) {
+  const auto count = static_cast<std::ptrdiff_t>(values.size());
+  std::vector<T> padded(std::size_t(count) + 2 * kReach);
+  for (std::ptrdiff_t i = -kReach; i < count + kReach; ++i) {
+    T& out = padded[std::size_t(i + kReach)];
+    if (closed) {
+      out = values[std::size_t(((i % count) + count) % count)];
+    } else if (i < 0) {
+      out = first + first - values[std::size_t(std::min(-1 - i, count - 1))];
+    } else if (i >= count) {
+      out = last + last - values[std::size_t(std::max<std::ptrdiff_t>(0, 2 * count - 1 - i))];
+    } else {
+      out = values[std::size_t(i)];
+    }
+  }
+  return padded;
+}
+
+template <class T>
+std::vector<T> Blurred(const std::vector<T>& values, bool closed, const T& first, const T& last) {
+  const std::vector<T> padded = Padded(values, closed, first, last);
+  const auto& weights = Weights();
+  std::vector<T> out(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    T sum = padded[i + kReach] * weights[0];
+    for (std::size_t k = 1; k <= kReach; ++k) sum += (padded[i + kReach - k] + padded[i + kReach + k]) * weights[k];
+    out[i] = sum;
+  }
+  return out;
+}
+
+// Twice the blurred curve less the twice blurred one: steps of pixels vanish, bends keep their size.
+void Smooth(LineChain& chain) {
+  std::vector<glm::vec2> given;
+  for (const LinePoint& point : chain.points) given.push_back(point.at);
+  // Where the line crosses a border rather than runs along it, the shift says little, and the neighbours say more.
+  const std::vector<glm::vec2> rough = Blurred(given, chain.closed, chain.first, chain.last);
+  std::vector<float> crossing(given.size());  // 0 … 1
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    const LinePoint& point = chain.points[i];
+    const glm::vec2 along = rough[std::min(i + 1, given.size() - 1)] - rough[i > 0 ? i - 1 : 0];
+    const float whole = along.x * along.x + along.y * along.y;
+    const float across = along.x * point.to_owner.x + along.y * point.to_owner.y;
+    if (whole > 0.0f) crossing[i] = std::clamp((across * across / whole - 0.8f) / 0.15f, 0.0f, 1.0f);
+    given[i] += point.to_owner * point.shift;
+  }
+  const std::vector<glm::vec2> shifted = given;
+  for (std::size_t i = 1; i + 1 < given.size(); ++i) {
+    if (crossing[i] > 0.0f) given[i] += (0.5f * (shifted[i - 1] + shifted[i + 1]) - shifted[i]) * crossing[i];
+  }
+  const std::vector<glm::vec2> once = Blurred(given, chain.closed, chain.first, chain.last);
+  const std::vector<glm::vec2> twice = Blurred(once, chain.closed, chain.first, chain.last);
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    LinePoint& point = chain.points[i];
+    const glm::vec2 moved = once[i] + once[i] - twice[i] - given[i];
+    const float across = moved.x * point.to_owner.x + moved.y * point.to_owner.y;
+    const float most = std::clamp(across, -0.5f, 0.5f);
+    point.at = given[i] + moved + point.to_owner * (most - across);
+  }
+}
+
+}  // namespace
+
+std::vector<LineChain> TraceLines(BorderMap& borders, const GuideSet& guides, double shortest) {
+  std::vector<LineChain> chains = Tracer(borders, guides).Trace(shortest);
+  tbb::parallel_for(std::size_t(0), chains.size(), [&](std::size_t i) { Smooth(chains[i]); });
+  return chains;
+}
+
+void SmoothAlong(const LineChain& chain, std::vector<float>& values) {
+  values = Blurred(values, chain.closed, values.front(), values.back());
+}
+
+}  // namespace scumble::internal

@@ -1,0 +1,38 @@
+// Borders between pixels, joined to lines.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "core/image/guides.h"
+#include "finish/outline/border_map.h"
+
+namespace scumble::internal {
+
+// A border of one pixel's length. Positions are of the picture: pixel (0, 0) covers [0, 1) × [0, 1).
+struct LinePoint {
+  glm::vec2 at;         // on the line, near the middle of the border
+  glm::vec2 to_owner;   // unit vector along x or y, to the pixel that the line belongs to
+  std::uint32_t owner;  // that pixel: the nearer one
+  LineClass line;
+  float shift = 0.0f;  // pixels towards the owner, by which the line misses the border where it runs along that
+};
+
+struct LineChain {
+  std::vector<LinePoint> points;
+  bool closed = false;              // the last point is next to the first
+  bool begins = true, ends = true;  // the line has an end there; otherwise other lines go on
+  glm::vec2 first, last;            // where an open line begins and ends
+};
+
+// Joins borders to lines from junction to junction, or round. Takes borders out of the map. Lines shorter than
+// `shortest` borders that meet no other are noise and left out. Each line is smoothed: a position may move by up to
+// half a pixel across its border, which is as much as is unknown about it. Silhouettes begin where the coverage says,
+// shadows where half shade lies between pixels. The order is that of the first border, row by row. O(pixels).
+std::vector<LineChain> TraceLines(BorderMap& borders, const GuideSet& guides, double shortest);
+
+// `values` under a Gaussian of the chain's own smoothing, for quantities that follow a line.
+void SmoothAlong(const LineChain& chain, std::vector<float>& values);
+
+}  // namespace scumble::internal

@@ -1,0 +1,83 @@
+#include "finish/outline/outline.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "core/filter/oklab_rows.h"
+#include "finish/outline/border_map.h"
+#include "finish/outline/line_chains.h"
+#include "finish/outline/strokes.h"
+
+namespace scumble::internal {
+namespace {
+
+// Lines of fewer borders that meet no other are noise of the guides, at the reference height.
+constexpr double kShortest = 4.0;
+
+// Ink from the paint beside a line: a third as light, of its own or of the opposite hue. `texel` keeps its alpha.
+void InkFromPaint(bool is_complement, std::uint16_t* texel) {
+  OklabBlock block;
+  OklabFromTexels(texel, 1, block);
+  block.lightness[0] *= 1.0f / 3.0f;
+  const float chroma = is_complement ? -1.0f : 1.0f;
+  block.a[0] *= chroma, block.b[0] *= chroma;
+  TexelsFromOklab(block, 1, texel);
+}
+
+// Porter and Duff's "over" with straight alpha, on sRGB codes, as drawing programs do it: a line between two pixels
+// then looks as dark as one that lies on a pixel.
+void LayInk(const std::uint16_t* ink, std::uint16_t* pixel) {
+  const float share = static_cast<float>(ink[3]) / 65535.0f;
+  const float below = static_cast<float>(pixel[3]) / 65535.0f * (1.0f - share), alpha = share + below;
+  for (int c = 0; c < 3; ++c) {
+    const float code = (static_cast<float>(ink[c]) * share + static_cast<float>(pixel[c]) * below) / alpha;
+    pixel[c] = static_cast<std::uint16_t>(code + 0.5f);
+  }
+  pixel[3] = static_cast<std::uint16_t>(std::min(65535.0f, alpha * 65535.0f + 0.5f));
+}
+
+}  // namespace
+
+void DrawOutline(const OutlinePass& pass, double strength, std::span<const std::uint8_t> only, const FinishFrame& frame,
+                 Picture& picture) {
+  const int width = picture.width, height = picture.height;
+  BorderMap borders = FindBorders(pass, *frame.guides, only);
+  const std::vector<LineChain> chains =
+      TraceLines(borders, *frame.guides, std::max(kShortest, kShortest * frame.scale));
+  std::vector<std::vector<StrokePiece>> strokes(chains.size());
+  tbb::parallel_for(std::size_t(0), chains.size(),
+                    [&](std::size_t i) { strokes[i] = StrokeOf(pass, frame, chains[i]); });
+  std::vector<StrokePiece> pieces;
+  for (const auto& stroke : strokes) pieces.insert(pieces.end(), stroke.begin(), stroke.end());
+  const bool of_paint = pass.color != OutlinePass::Color::kInk;
+  const StrokeCover cover = CoverOf(pieces, width, height, of_paint);
+  std::vector<std::uint16_t> paint;  // as it was before the lines
+  if (of_paint) paint = picture.rgba;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cover.share.size(), 1 << 14), [&](const auto& part) {
+    std::uint32_t last_owner = 0;
+    bool has_last = false;
+    std::uint16_t last_ink[4] = {};
+    for (std::size_t i = part.begin(); i != part.end(); ++i) {
+      if (!(cover.share[i] > 0.0f)) continue;
+      std::uint16_t texel[4] = {pass.ink[0], pass.ink[1], pass.ink[2], 65535};
+      if (of_paint) {
+        const std::uint32_t owner = cover.owner[i];
+        if (!has_last || owner != last_owner) {
+          std::copy_n(paint.data() + 4 * std::size_t(owner), 4, last_ink);
+          InkFromPaint(pass.color == OutlinePass::Color::kComplement, last_ink);
+          last_owner = owner, has_last = true;
+        }
+        std::copy_n(last_ink, 3, texel);
+      }
+      texel[3] = static_cast<std::uint16_t>(cover.share[i] * static_cast<float>(strength) * 65535.0f + 0.5f);
+      if (texel[3] == 0) continue;
+      std::uint16_t* const pixel = picture.rgba.data() + 4 * i;
+      LayInk(texel, pixel);
+    }
+  });
+}
+
+}  // namespace scumble::internal

@@ -1,0 +1,201 @@
+#include "finish/outline/strokes.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/image/exact_math.h"
+#include "core/image/hash.h"
+
+namespace scumble::internal {
+namespace {
+
+constexpr float kPieceError = 0.1f;  // pixels
+constexpr int kBandRows = 32;
+
+// Smooth noise, -1 … 1, of a lattice with cells of size 1: the same at the same place, whatever runs through it.
+float Noise(std::uint64_t seed, glm::vec2 at) {
+  const float floor_x = std::floor(at.x), floor_y = std::floor(at.y);
+  const auto x = static_cast<std::int64_t>(floor_x), y = static_cast<std::int64_t>(floor_y);
+  const float u = at.x - floor_x, v = at.y - floor_y;
+  const float su = u * u * (3.0f - 2.0f * u), sv = v * v * (3.0f - 2.0f * v);
+  const auto value = [&](std::int64_t dx, std::int64_t dy) {
+    return 2.0f * UnitFloat(Hash(seed, x + dx, y + dy)) - 1.0f;
+  };
+  const float above = value(0, 0) + (value(1, 0) - value(0, 0)) * su;
+  const float below = value(0, 1) + (value(1, 1) - value(0, 1)) * su;
+  return above + (below - above) * sv;
+}
+
+// Widths before the taper.
+std::vector<float> WidthsOf(const OutlinePass& pass, const FinishFrame& frame, const LineChain& chain) {
+  const GuideSet& guides = *frame.guides;
+  const auto depth = guides.Plane(Layer::kDepth);
+  const auto light = pass.light != 0.0 ? guides.Plane(Layer::kLuminance) : std::span<const float>();
+  const double thin_at = pass.thin_at > 0.0 ? pass.thin_at : frame.measures.middle;
+  std::vector<float> widths;
+  for (const LinePoint& point : chain.points) {
+    double width = pass.width;
+    if (pass.thin > 0.0 && thin_at > 0.0)
+      width *= Exp2(pass.thin * Log2(thin_at / std::max(depth[point.owner], 1e-9f)));
+    if (!light.empty()) {
+      const double share = std::clamp(double(light[point.owner]) / frame.measures.bright, 0.0, 1.0);
+      width *= std::max(0.0, 1.0 + pass.light * (0.5 - share));
+    }
+    width = std::clamp(width, std::min(pass.min_width, pass.width), 64.0);
+    widths.push_back(static_cast<float>(width * pass.of_class[std::size_t(point.line)] * frame.scale));
+  }
+  SmoothAlong(chain, widths);
+  return widths;
+}
+
+// Makes free ends thin.
+void Taper(double length, const LineChain& chain, std::vector<float>& widths) {
+  if (!(length > 0.0) || chain.closed) return;
+  std::vector<float> along(chain.points.size());  // from the beginning
+  for (std::size_t i = 1; i < along.size(); ++i) {
+    along[i] = along[i - 1] + glm::length(chain.points[i].at - chain.points[i - 1].at);
+  }
+  const auto per_length = static_cast<float>(1.0 / length);
+  for (std::size_t i = 0; i < along.size(); ++i) {
+    const float to_end = std::min(chain.begins ? along[i] : 1e9f, chain.ends ? along.back() - along[i] : 1e9f);
+    const float share = std::min(to_end * per_length, 1.0f);
+    widths[i] *= share * (2.0f - share);
+  }
+}
+
+float Dot(glm::vec2 a, glm::vec2 b) { return a.x * b.x + a.y * b.y; }
+
+float DistanceToSegment(glm::vec2 p, glm::vec2 a, glm::vec2 b) {
+  const glm::vec2 along = b - a;
+  const float squared = Dot(along, along);
+  const float t = squared > 0.0f ? std::clamp(Dot(p - a, along) / squared, 0.0f, 1.0f) : 0.0f;
+  const glm::vec2 off = p - a - along * t;
+  return std::sqrt(Dot(off, off));
+}
+
+// Where the stroke's middle runs: the line, moved to its side and by the wobble. Open lines get their ends.
+struct Middle {
+  std::vector<glm::vec2> at;
+  std::vector<float> width;
+  std::vector<std::uint32_t> owner;
+};
+
+Middle MiddleOf(const OutlinePass& pass, const FinishFrame& frame, const LineChain& chain,
+                const std::vector<float>& widths) {
+  const auto& points = chain.points;
+  const std::size_t count = points.size();
+  const float side = pass.side == OutlinePass::Side::kInside    ? 0.5f
+                     : pass.side == OutlinePass::Side::kOutside ? -0.5f
+                                                                : 0.0f;
+  const auto wobble = static_cast<float>(pass.wobble * frame.scale);
+  const auto per_wave = static_cast<float>(1.0 / (pass.wobble_length * frame.scale));
+  const auto moved = [&](glm::vec2 at, std::size_t i) {
+    if (side != 0.0f) {
+      const std::size_t before = i > 0 ? i - 1 : chain.closed ? count - 1 : 0;
+      const std::size_t after = i + 1 < count ? i + 1 : chain.closed ? 0 : i;
+      const glm::vec2 along = points[after].at - points[before].at;
+      const float length = std::sqrt(Dot(along, along));
+      glm::vec2 across = length > 0.0f ? glm::vec2(-along.y, along.x) / length : points[i].to_owner;
+      if (Dot(across, points[i].to_owner) < 0.0f) across = -across;
+      at += across * (side * widths[i]);
+    }
+    if (wobble > 0.0f) {
+      const glm::vec2 cell = at * per_wave;
+      at += wobble * glm::vec2(Noise(Hash(frame.seed, 1), cell), Noise(Hash(frame.seed, 2), cell));
+    }
+    return at;
+  };
+  Middle middle;
+  const auto add = [&](glm::vec2 at, std::size_t i) {
+    middle.at.push_back(moved(at, i));
+    middle.width.push_back(widths[i]);
+    middle.owner.push_back(points[i].owner);
+  };
+  if (!chain.closed) add(chain.first, 0);
+  for (std::size_t i = 0; i < count; ++i) add(points[i].at, i);
+  chain.closed ? add(points[0].at, 0) : add(chain.last, count - 1);
+  return middle;
+}
+
+// Whether a straight piece from i to j keeps to all points between.
+bool IsStraight(const Middle& middle, std::size_t i, std::size_t j) {
+  const float from = middle.width[i], step = (middle.width[j] - from) / static_cast<float>(j - i);
+  for (std::size_t k = i + 1; k < j; ++k) {
+    if (DistanceToSegment(middle.at[k], middle.at[i], middle.at[j]) > kPieceError) return false;
+    if (std::fabs(middle.width[k] - from - step * static_cast<float>(k - i)) > kPieceError) return false;
+  }
+  return true;
+}
+
+// Draws a piece into the rows [y0, y1).
+void Draw(const StrokePiece& piece, int y0, int y1, int width, StrokeCover& cover) {
+  const float most = std::max(1.0f, std::max(piece.from_width, piece.to_width)) * 0.5f + 0.5f;
+  const auto low = [](float value) { return static_cast<int>(std::floor(value)); };
+  const int left = std::max(0, low(std::min(piece.from.x, piece.to.x) - most));
+  const int right = std::min(width - 1, low(std::max(piece.from.x, piece.to.x) + most));
+  y0 = std::max(y0, low(std::min(piece.from.y, piece.to.y) - most));
+  y1 = std::min(y1, low(std::max(piece.from.y, piece.to.y) + most) + 1);
+  const glm::vec2 along = piece.to - piece.from;
+  const float squared = Dot(along, along), per_squared = squared > 0.0f ? 1.0f / squared : 0.0f;
+  for (int y = y0; y < y1; ++y) {
+    const float dy = static_cast<float>(y) + 0.5f - piece.from.y;
+    float* const row = cover.share.data() + std::size_t(y) * std::size_t(width);
+    for (int x = left; x <= right; ++x) {
+      const float dx = static_cast<float>(x) + 0.5f - piece.from.x;
+      const float t = std::min(std::max((dx * along.x + dy * along.y) * per_squared, 0.0f), 1.0f);
+      const float off_x = dx - along.x * t, off_y = dy - along.y * t;
+      const float thick = piece.from_width + (piece.to_width - piece.from_width) * t;
+      const float edge = std::max(thick, 1.0f) * 0.5f + 0.5f - std::sqrt(off_x * off_x + off_y * off_y);
+      const float share = std::min(std::max(edge, 0.0f), 1.0f) * std::min(thick, 1.0f);
+      if (!(share > row[x])) continue;
+      row[x] = share;
+      if (!cover.owner.empty()) cover.owner[std::size_t(y) * std::size_t(width) + std::size_t(x)] = piece.owner;
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<StrokePiece> StrokeOf(const OutlinePass& pass, const FinishFrame& frame, const LineChain& chain) {
+  std::vector<float> widths = WidthsOf(pass, frame, chain);
+  Taper(pass.taper * frame.scale, chain, widths);
+  const Middle middle = MiddleOf(pass, frame, chain, widths);
+  std::vector<StrokePiece> pieces;
+  const std::size_t last = middle.at.size() - 1;
+  for (std::size_t i = 0; i < last;) {
+    const auto most = std::max<std::size_t>(2, std::size_t(0.5f * middle.width[i]));
+    std::size_t j = i + 1;
+    while (j < last && j - i < most && IsStraight(middle, i, j + 1)) ++j;
+    pieces.push_back({middle.at[i], middle.at[j], middle.width[i], middle.width[j], middle.owner[i]});
+    i = j;
+  }
+  return pieces;
+}
+
+StrokeCover CoverOf(std::span<const StrokePiece> pieces, int width, int height, bool with_owner) {
+  StrokeCover cover;
+  const std::size_t pixels = std::size_t(width) * std::size_t(height);
+  cover.share.assign(pixels, 0.0f);
+  if (with_owner) cover.owner.assign(pixels, 0);
+  const int bands = (height + kBandRows - 1) / kBandRows;
+  std::vector<std::vector<std::uint32_t>> of_band(static_cast<std::size_t>(bands));
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const StrokePiece& piece = pieces[i];
+    if (!(std::max(piece.from_width, piece.to_width) > 0.0f)) continue;
+    const float most = std::max(1.0f, std::max(piece.from_width, piece.to_width)) * 0.5f + 1.5f;
+    const auto band = [&](float y) { return std::clamp(static_cast<int>(std::floor(y / kBandRows)), 0, bands - 1); };
+    const int to = band(std::max(piece.from.y, piece.to.y) + most);
+    for (int b = band(std::min(piece.from.y, piece.to.y) - most); b <= to; ++b)
+      of_band[std::size_t(b)].push_back(static_cast<std::uint32_t>(i));
+  }
+  tbb::parallel_for(0, bands, [&](int b) {
+    const int y0 = b * kBandRows, y1 = std::min(height, y0 + kBandRows);
+    for (const std::uint32_t i : of_band[std::size_t(b)]) Draw(pieces[i], y0, y1, width, cover);
+  });
+  return cover;
+}
+
+}  // namespace scumble::internal

@@ -1,0 +1,85 @@
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "core/image/exact_math.h"
+#include "finish/tone/point_effect.h"
+
+namespace scumble::internal {
+namespace {
+
+// Depth as a share of the way from near to far.
+class DepthScale {
+ public:
+  DepthScale(const DepthPass& pass, const FinishMeasures& measures)
+      : inverse_(pass.metric == DepthPass::Metric::kInverse) {
+    const double near = pass.near > 0.0 ? pass.near : measures.near, far = pass.far > 0.0 ? pass.far : measures.far;
+    near_ = Of(near);
+    const double span = Of(far) - near_;
+    per_span_ = span != 0.0 ? 1.0 / span : 0.0;
+    focus_ = pass.focus > 0.0 ? Of(pass.focus) : near_;
+    gamma_ = pass.gamma;
+    layers_ = pass.layers;
+  }
+  // Depth above 0, infinity allowed. Unclamped: 0 near, 1 far.
+  double Distance(float depth) const { return (Of(depth) - near_) * per_span_; }
+  // 0 … 1, by the formula at DepthPass.
+  double Share(float depth) const {
+    double u = std::min(std::fabs(Of(depth) - focus_) * std::fabs(per_span_), 1.0);
+    if (!(u >= 0.0)) u = 1.0;
+    if (gamma_ != 1.0 && u > 0.0) u = Exp2(gamma_ * Log2(u));
+    if (layers_ > 1) u = std::min(std::floor(u * layers_), layers_ - 1.0) / (layers_ - 1);
+    return u;
+  }
+
+ private:
+  double Of(double depth) const { return inverse_ ? -1.0 / depth : depth; }
+
+  bool inverse_;
+  double near_ = 0.0, per_span_ = 0.0, focus_ = 0.0, gamma_ = 1.0;
+  int layers_ = 0;
+};
+
+// Of the air between near and a distance, by Beer and Lambert's law: `air` at 1.
+class Air {
+ public:
+  explicit Air(double air) : air_(air), rate_(air < 1.0 ? Log2(1.0 - air) : 0.0) {}
+  double Share(double distance) const {
+    if (!(distance > 0.0)) return 0.0;
+    if (air_ >= 1.0 || std::isinf(distance)) return air_ > 0.0 ? 1.0 : 0.0;
+    return 1.0 - Exp2(rate_ * distance);
+  }
+
+ private:
+  double air_, rate_;
+};
+
+}  // namespace
+
+PointEffect MakeDepth(const DepthPass& pass, const FinishFrame& frame) {
+  const DepthScale scale(pass, frame.measures);
+  const Air air(pass.air);
+  const std::span<const float> depth = frame.guides->Plane(Layer::kDepth);
+  const LabColor color = ToOklab(pass.color);
+  const bool has_air = pass.air > 0.0;
+  const auto desaturate = static_cast<float>(pass.desaturate), tint = static_cast<float>(pass.tint);
+  return [=](std::size_t first, std::size_t count, OklabBlock& block) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const float at = depth[first + i];
+      const auto u = static_cast<float>(scale.Share(at));
+      float &lightness = block.lightness[i], &a = block.a[i], &b = block.b[i];
+      if (u > 0.0f) {
+        const float kept = 1.0f - desaturate * u, taken = tint * u;
+        a = kept * a, b = kept * b;
+        a += (color.a - a) * taken, b += (color.b - b) * taken;
+      }
+      if (!has_air) continue;
+      const auto share = static_cast<float>(air.Share(scale.Distance(at)));
+      if (!(share > 0.0f)) continue;
+      lightness += (color.lightness - lightness) * share;
+      a += (color.a - a) * share, b += (color.b - b) * share;
+    }
+  };
+}
+
+}  // namespace scumble::internal

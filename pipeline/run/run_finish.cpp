@@ -1,0 +1,178 @@
+#include "pipeline/run/run_finish.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "core/image/stopwatch.h"
+#include "core/io/existing_output.h"
+#include "core/io/file/atomic_file.h"
+#include "core/io/guide_file.h"
+#include "core/io/picture_file.h"
+#include "core/style/finish_keys.h"
+#include "finish/finish.h"
+#include "pipeline/memory/memory_estimate.h"
+#include "pipeline/scene/run_inputs.h"
+#include "pipeline/style/finish_set.h"
+
+namespace scumble {
+namespace {
+
+// The passes of a run, and what it keeps from frame to frame.
+struct FinishState {
+  std::vector<FinishPass> passes;
+  LayerSet required;
+  std::optional<FinishMeasures> measures;
+  bool told = false;  // of names that fit nothing
+};
+
+LayerSet LayersOf(const std::vector<FinishPass>& passes) {
+  LayerSet layers;
+  for (const FinishPass& pass : passes) layers.Add(RequiredLayers(pass));
+  return layers.empty() ? layers : layers.Add(Layer::kCoverage);
+}
+
+GuideReadOptions ReadOptions(const FinishRequest& request, const LayerSet& required, const std::string& camera) {
+  GuideReadOptions read;
+  read.required = required, read.view_layer = request.view_layer, read.light_layer = request.light_layer;
+  read.blender_camera = camera;
+  return read;
+}
+
+std::string SettingsText(const FinishRequest& request, const std::vector<FinishPass>& passes) {
+  std::string text;
+  for (const FinishPass& pass : passes) text += (text.empty() ? "" : ", ") + FinishText(pass);
+  return fmt::format("scumble {}; finish {}; seed {}; height {}", SCUMBLE_VERSION, text, request.seed,
+                     request.reference_height);
+}
+
+// The frame's files.
+struct FrameFiles {
+  std::string picture, guides, camera, output;
+};
+
+Expected<FrameWrite> Finish(const FinishRequest& request, const FrameFiles& files, const RunContext& context,
+                            const Progress& progress, FinishState& state) {
+  StepTimes times;
+  Stopwatch watch;
+  const auto picture = std::make_shared<Picture>();
+  SCUMBLE_ASSIGN(*picture, ReadPicture(files.picture));
+  std::optional<GuideSet> guides;
+  if (!files.guides.empty() && !state.required.empty()) {
+    SCUMBLE_ASSIGN(guides, ReadGuides(files.guides, ReadOptions(request, state.required, files.camera)));
+    if (guides->width() != picture->width || guides->height() != picture->height) {
+      return InputError(fmt::format("{} is {}×{}, its guides {} are {}×{}: render both at one size", files.picture,
+                                    picture->width, picture->height, files.guides, guides->width(), guides->height()));
+    }
+  }
+  times.emplace_back("read", watch.Lap());
+  context.EndStage("read");
+  const bool is_first = !std::exchange(state.told, true);
+  const std::vector<FinishStep> steps =
+      FinishStepsOf(state.passes, guides ? &*guides : nullptr, [&](const std::string& text) {
+        if (is_first) context.Warn(files.guides + ": " + text);
+      });
+  if (!state.measures && guides && LooksAtMeasures(state.passes)) {
+    state.measures = MeasureFinish(*guides);
+    context.Note("finish: " + DescribeMeasures(*state.measures));
+  }
+  FinishFrame frame{guides ? &*guides : nullptr, state.measures.value_or(FinishMeasures()), 1.0, request.seed};
+  if (request.reference_height > 0) frame.scale = double(picture->height) / request.reference_height;
+  SCUMBLE_RETURN_IF_ERROR(ApplyFinish(steps, FinishPass::Stage::kPaint, frame, context.threads, progress, *picture));
+  SCUMBLE_RETURN_IF_ERROR(ApplyFinish(steps, FinishPass::Stage::kSheet, frame, context.threads, {}, *picture));
+  times.emplace_back("finish", watch.Lap());
+  context.EndStage("finish");
+  PictureWriteOptions write{request.bits, request.png_level};
+  write.fast = request.fast_io, write.settings = SettingsText(request, state.passes);
+  PictureReport report{files.output, picture->width, picture->height, 1, false, 1, request.seed, {}, {}, {}, {}};
+  for (const auto& [name, ms] : times) report.steps.push_back({name, ms, ms, ms});
+  return FrameWrite([picture, write, output = files.output,
+                     made = std::make_shared<PictureReport>(std::move(report))]() -> Expected<FrameReport> {
+    Stopwatch clock;
+    const std::uint64_t before = BytesWrittenByThisThread();
+    SCUMBLE_RETURN_IF_ERROR(WritePicture(output, *picture, write));
+    const double ms = clock.Lap();
+    made->steps.push_back({"write", ms, ms, ms});
+    FrameReport done;
+    done.made = std::move(*made);
+    done.write_ms = ms, done.bytes_written = BytesWrittenByThisThread() - before;
+    return done;
+  });
+}
+
+// What the passes read must be there before any frame is begun.
+Status CheckLayers(const FinishRequest& request, const FinishState& state) {
+  if (state.required.empty() || !request.guides.empty()) return Ok();
+  std::vector<FinishStep> steps;
+  for (const FinishPass& pass : state.passes) steps.push_back({pass, {}});
+  return CheckFinishLayers(steps, nullptr);
+}
+
+}  // namespace
+
+Expected<RunReport> RunFinish(FinishRequest request, const SequenceListener& listener, const RunContext& context) {
+  FinishState state;
+  SCUMBLE_ASSIGN(state.passes, OpenFinish(request.finishes, context));
+  SCUMBLE_RETURN_IF_ERROR(SetFinish(request.sets, state.passes));
+  state.required = LayersOf(state.passes);
+  SCUMBLE_RETURN_IF_ERROR(CheckLayers(request, state));
+  SCUMBLE_RETURN_IF_ERROR(CheckPictureTarget(request.output, {request.bits}));
+  SCUMBLE_ASSIGN(const auto sequence, PlanSequence(request.sequence, request.frame, request.output));
+  RunInputs inputs;
+  for (const auto& [what, name] : {std::pair("the picture", &request.picture),
+                                   {"the guides", &request.guides},
+                                   {"the .camera file", &request.camera}}) {
+    if (!sequence) {
+      SCUMBLE_ASSIGN(*name, NameOfOne(*name, request.frame));
+    }
+    SCUMBLE_ASSIGN(const auto names, NamesOf(*name, sequence));
+    for (const std::string& file : names) {
+      if (!file.empty()) inputs.Reads(what, file);
+    }
+  }
+  if (!sequence) {
+    SCUMBLE_ASSIGN(request.output, NameOfOne(request.output, request.frame));
+  }
+  SCUMBLE_ASSIGN(const auto outputs, NamesOf(request.output, sequence));
+  SCUMBLE_RETURN_IF_ERROR(inputs.CheckOutputs(outputs));
+  RunReport report;
+  report.paints = true;
+  if (!sequence) {
+    SCUMBLE_ASSIGN(const FrameWrite write,
+                   Finish(request, {request.picture, request.guides, request.camera, request.output}, context,
+                          context.StartProgress("finish"), state));
+    SCUMBLE_ASSIGN(report.frame, write());
+    context.EndStage("write");
+    return report;
+  }
+  SCUMBLE_ASSIGN(const FrameName picture, FrameName::Parse(request.picture));
+  SCUMBLE_ASSIGN(const FrameName guides, FrameName::Parse(request.guides));
+  SCUMBLE_ASSIGN(const FrameName camera, FrameName::Parse(request.camera));
+  SequenceWork work;
+  work.check = [&](int frame, const std::string& output) -> Status {
+    const auto header = InspectPicture(picture.At(frame));
+    if (!header) return header.error();
+    PictureWriteOptions write{request.bits, request.png_level};
+    return CheckWholePicture(output, {header->width, header->height, PictureChannels(output),
+                                      PictureBits(output, write), SettingsText(request, state.passes)});
+  };
+  // A sequence that is resumed goes on with the measures of its first frame.
+  work.begin = [&](std::span<const int>, const Progress&) -> Status {
+    if (!LooksAtMeasures(state.passes)) return Ok();
+    const int first = sequence->frames.front();
+    SCUMBLE_ASSIGN(const GuideSet set,
+                   ReadGuides(guides.At(first), ReadOptions(request, state.required, camera.At(first))));
+    state.measures = MeasureFinish(set);
+    context.Note("finish: " + DescribeMeasures(*state.measures));
+    return Ok();
+  };
+  work.make = [&](int frame, const std::string& output, const Progress& progress) {
+    return Finish(request, {picture.At(frame), guides.At(frame), camera.At(frame), output}, context, progress, state);
+  };
+  SCUMBLE_ASSIGN(report.sequence, RunSequence(*sequence, work, listener, context, context.StartProgress("finish")));
+  return report;
+}
+
+}  // namespace scumble

@@ -1,0 +1,38 @@
+// Finishing effects on pictures of any renderer: `finish`, for one frame or a range.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/image/status.h"
+#include "pipeline/requests.h"
+#include "pipeline/run/run_requests.h"
+#include "pipeline/run/sequence.h"
+#include "pipeline/run_context.h"
+
+namespace scumble {
+
+struct FinishRequest {
+  std::string picture;                // a file, with a place for the frame's number for a range
+  std::string guides;                 // of the same view and size; empty: for effects that need none
+  std::string view_layer;             // of a multilayer file; empty: the only one
+  std::string light_layer;            // as TransferRequest has it
+  std::string camera;                 // likewise
+  std::vector<std::string> finishes;  // as StyleRequest has it; at least one
+  std::vector<std::string> sets;      // "finish.NAME.KEY=VALUE"
+  std::string output;
+  int bits = 8;
+  int png_level = 6;
+  bool fast_io = false;
+  std::uint64_t seed = 0;
+  std::optional<int> frame;     // of a single picture, for names with a place for it
+  int reference_height = 1080;  // lengths are pixels at this height; 0: plain pixels
+  SequenceRequest sequence;
+};
+
+// The effects see the picture as it is, with its alpha. What they measure is measured on the first frame. Errors leave
+// older files as they are.
+Expected<RunReport> RunFinish(FinishRequest request, const SequenceListener& listener, const RunContext& context);
+
+}  // namespace scumble

@@ -1,0 +1,149 @@
+#include "pipeline/style/finish_set.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <system_error>
+#include <utility>
+
+#include "core/style/finish_keys.h"
+#include "core/style/nearest_name.h"
+#include "pipeline/style/assignments.h"
+
+namespace scumble {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> PresetFiles(const RunContext& context) {
+  std::vector<fs::path> files;
+  for (const fs::path& folder : context.DataFolders("finish/presets")) {
+    for (const fs::path& file : FindFinishPresets(folder)) files.push_back(file);
+  }
+  return files;
+}
+
+Expected<std::vector<FinishPass>> PassesOf(const std::string& name, const RunContext& context) {
+  if (FindFinishEffect(name)) {
+    SCUMBLE_ASSIGN(FinishPass pass, MakeFinishPass(name));
+    return std::vector{std::move(pass)};
+  }
+  std::vector<std::string> names;
+  for (const fs::path& file : PresetFiles(context)) {
+    if (file.stem() == name) {
+      SCUMBLE_ASSIGN(FinishPreset preset, LoadFinishPreset(file));
+      return std::move(preset.passes);
+    }
+    names.push_back(file.stem().string());
+  }
+  if (std::error_code failed; fs::is_regular_file(name, failed)) {
+    SCUMBLE_ASSIGN(FinishPreset preset, LoadFinishPreset(name));
+    return std::move(preset.passes);
+  }
+  for (const FinishEffect& effect : FinishEffects()) names.push_back(effect.name);
+  const std::string meant = NearestName(name, names);
+  return InputError(fmt::format("--finish {}: there is no such effect, preset or file; there are {}, none{}", name,
+                                fmt::join(names, ", "), meant.empty() ? "" : "; did you mean " + meant + "?"));
+}
+
+// The ids whose name fits one of the patterns.
+std::set<std::uint32_t> IdsThatFit(const std::vector<std::string>& patterns,
+                                   const std::map<std::uint32_t, std::string>& names) {
+  std::set<std::uint32_t> ids;
+  for (const auto& [id, name] : names) {
+    if (std::any_of(patterns.begin(), patterns.end(), [&](const auto& one) { return FitsPattern(name, one); }))
+      ids.insert(id);
+  }
+  return ids;
+}
+
+// Takes pixels out of `only` that are not of the objects and materials which the pass names.
+void LimitToNames(const FinishPass& pass, const GuideSet& guides, const std::function<void(const std::string&)>& tell,
+                  std::vector<std::uint8_t>& only) {
+  if (pass.objects.empty() && pass.materials.empty()) return;
+  std::vector<std::uint8_t> named(guides.pixel_count(), 0);
+  const auto add = [&](Layer layer, const std::vector<std::string>& patterns, const auto& names) {
+    if (patterns.empty() || !guides.Has(layer)) return;
+    const std::set<std::uint32_t> ids = IdsThatFit(patterns, names);
+    if (ids.empty()) {
+      tell(fmt::format("finish {}: no {} has the name {}", pass.name, layer == Layer::kObject ? "object" : "material",
+                       fmt::join(patterns, ", ")));
+      return;
+    }
+    const auto plane = guides.Plane(layer);
+    for (std::size_t i = 0; i < plane.size(); ++i) named[i] |= std::uint8_t(ids.count(IdOf(plane[i])) > 0);
+  };
+  add(Layer::kObject, pass.objects, guides.object_names);
+  add(Layer::kMaterial, pass.materials, guides.material_names);
+  if (only.empty()) {
+    only = std::move(named);
+  } else {
+    for (std::size_t i = 0; i < only.size(); ++i) only[i] &= named[i];
+  }
+}
+
+}  // namespace
+
+Expected<std::vector<FinishPreset>> FinishPresets(const RunContext& context) {
+  std::vector<FinishPreset> presets;
+  for (const fs::path& file : PresetFiles(context)) {
+    SCUMBLE_ASSIGN(FinishPreset preset, LoadFinishPreset(file));
+    presets.push_back(std::move(preset));
+  }
+  return presets;
+}
+
+Expected<std::vector<FinishPass>> OpenFinish(const std::vector<std::string>& names, const RunContext& context) {
+  std::vector<FinishPass> passes;
+  for (const std::string& name : names) {
+    if (name == kNoFinish) continue;
+    SCUMBLE_ASSIGN(std::vector<FinishPass> more, PassesOf(name, context));
+    passes.insert(passes.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+  }
+  return passes;
+}
+
+Status SetFinish(const std::vector<std::string>& sets, std::vector<FinishPass>& passes) {
+  for (const std::string& text : sets) {
+    SCUMBLE_ASSIGN(const std::size_t count, OverrideFinish(passes, text));
+    if (count == 0) return NoSuchFinish(text, passes);
+  }
+  return Ok();
+}
+
+std::vector<FinishStep> FinishStepsOf(const StyleSet& styles, const GuideSet& guides, const StyleMap* map,
+                                      const std::function<void(const std::string&)>& tell) {
+  std::vector<FinishStep> steps;
+  for (std::size_t i = 0; i < styles.styles.size(); ++i) {
+    if (styles.styles[i].finish.empty()) continue;
+    std::vector<std::uint8_t> own;
+    if (map) {
+      own.resize(map->style.size());
+      for (std::size_t p = 0; p < own.size(); ++p) own[p] = map->style[p] == i;
+    }
+    for (const FinishPass& pass : styles.styles[i].finish) {
+      FinishStep& step = steps.emplace_back(FinishStep{pass, own});
+      LimitToNames(pass, guides, tell, step.only);
+    }
+  }
+  for (FinishStep& step : FinishStepsOf(styles.finish, &guides, tell)) steps.push_back(std::move(step));
+  return steps;
+}
+
+std::vector<FinishStep> FinishStepsOf(const std::vector<FinishPass>& passes, const GuideSet* guides,
+                                      const std::function<void(const std::string&)>& tell) {
+  std::vector<FinishStep> steps;
+  for (const FinishPass& pass : passes) {
+    FinishStep& step = steps.emplace_back(FinishStep{pass, {}});
+    if (guides) LimitToNames(pass, *guides, tell, step.only);
+  }
+  return steps;
+}
+
+std::string DescribeMeasures(const FinishMeasures& measures) {
+  return fmt::format("near {:.4g} m, middle {:.4g} m, far {:.4g} m, bright {:.4g}", measures.near, measures.middle,
+                     measures.far, measures.bright);
+}
+
+}  // namespace scumble

@@ -1,0 +1,45 @@
+// The finishing effects of one picture: those of its styles, and those that a run adds.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/image/finish_pass.h"
+#include "core/image/guides.h"
+#include "core/image/status.h"
+#include "core/style/finish_file.h"
+#include "finish/finish.h"
+#include "pipeline/run_context.h"
+#include "pipeline/style/style_set.h"
+#include "transfer/frame/style_map.h"
+
+namespace scumble {
+
+// Instead of a name: the styles' own effects are left out.
+inline constexpr const char* kNoFinish = "none";
+
+// The bundled presets, by name.
+Expected<std::vector<FinishPreset>> FinishPresets(const RunContext& context);
+
+// The passes of these names, in their order: of an effect with its defaults, a bundled preset, or a preset's file.
+// kNoFinish adds nothing. A kInput error lists what there is.
+Expected<std::vector<FinishPass>> OpenFinish(const std::vector<std::string>& names, const RunContext& context);
+
+// Applies "finish.NAME.KEY=VALUE" to the passes; an error where none has that name.
+Status SetFinish(const std::vector<std::string>& sets, std::vector<FinishPass>& passes);
+
+// The passes of these styles and of the run, in their order, each with the pixels that it is for: a style's passes are
+// for its own pixels, the run's for all of them, and `objects` and `materials` limit both. `map`: null where one style
+// paints all. The styles must be at the picture's frame. Names that fit nothing are told to `tell`.
+std::vector<FinishStep> FinishStepsOf(const StyleSet& styles, const GuideSet& guides, const StyleMap* map,
+                                      const std::function<void(const std::string&)>& tell);
+
+// One chain of passes without styles, likewise.
+std::vector<FinishStep> FinishStepsOf(const std::vector<FinishPass>& passes, const GuideSet* guides,
+                                      const std::function<void(const std::string&)>& tell);
+
+// "near 2.1 m, middle 4 m, far 11 m, bright 0.8".
+std::string DescribeMeasures(const FinishMeasures& measures);
+
+}  // namespace scumble

@@ -1,0 +1,158 @@
+// What holds for every effect: strength, masks, alpha, threads, missing layers, odd numbers.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "core/style/finish_keys.h"
+#include "tests/finish/finish_fixtures.h"
+
+namespace scumble {
+namespace {
+
+// Guides with every layer that some effect reads.
+GuideSet AllGuides(int size) {
+  GuideSet guides = BallGuides(size, 0.4f * static_cast<float>(size));
+  for (const Layer layer : {Layer::kMaterial, Layer::kAlbedo, Layer::kLuminance, Layer::kShadow}) guides.Add(layer);
+  for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
+    guides.Plane(Layer::kLuminance)[i] = std::max(0.0f, guides.Plane(Layer::kNormal)[i]);
+    guides.Plane(Layer::kShadow)[i] = static_cast<float>(i % 7) / 6.0f;
+  }
+  return guides;
+}
+
+Picture CoveredPicture(const GuideSet& guides) {
+  Picture picture = ColorfulPicture(guides.width(), guides.height());
+  for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
+    const float coverage = guides.Plane(Layer::kCoverage)[i];
+    picture.rgba[4 * i + 3] = static_cast<std::uint16_t>(coverage * 65535.0f);
+    if (coverage == 0.0f) std::fill_n(picture.rgba.begin() + std::ptrdiff_t(4 * i), 3, std::uint16_t{0});
+  }
+  return picture;
+}
+
+class EveryEffect : public ::testing::TestWithParam<std::string> {
+ protected:
+  FinishStep Step(double strength = 1.0) {
+    if (GetParam() == "grade") return StepOf(GradePass{0.5, 1.2, 0.1}, strength);  // its defaults change nothing
+    return StepOf(FindFinishEffect(GetParam())->defaults, strength);
+  }
+  GuideSet guides_ = AllGuides(90);
+  Picture picture_ = CoveredPicture(guides_);
+  FinishMeasures measures_ = MeasureFinish(guides_);
+};
+
+TEST_P(EveryEffect, WithoutStrengthChangesNoByte) {
+  EXPECT_EQ(Finished(Step(0.0), &guides_, picture_, measures_).rgba, picture_.rgba);
+}
+
+TEST_P(EveryEffect, IsTheSameOnAnyNumberOfThreads) {
+  EXPECT_EQ(Finished(Step(), &guides_, picture_, measures_, 1).rgba,
+            Finished(Step(), &guides_, picture_, measures_, 4).rgba);
+}
+
+TEST_P(EveryEffect, LeavesClearPixelsClearButForLines) {
+  const Picture made = Finished(Step(), &guides_, picture_, measures_);
+  for (std::size_t i = 0; i < picture_.rgba.size(); i += 4) {
+    if (GetParam() != "outline" && picture_.rgba[i + 3] == 0) {
+      EXPECT_EQ(made.rgba[i], 0);
+    }
+    if (GetParam() != "outline") {
+      EXPECT_EQ(made.rgba[i + 3], picture_.rgba[i + 3]);
+    }
+  }
+}
+
+TEST_P(EveryEffect, OfNoPixelsChangesNone) {
+  FinishStep step = Step();
+  step.only.assign(guides_.pixel_count(), 0);
+  EXPECT_EQ(Finished(step, &guides_, picture_, measures_).rgba, picture_.rgba);
+}
+
+TEST_P(EveryEffect, HalfStrengthLiesBetween) {
+  const Picture half = Finished(Step(0.5), &guides_, picture_, measures_);
+  EXPECT_NE(half.rgba, picture_.rgba);
+  EXPECT_NE(half.rgba, Finished(Step(), &guides_, picture_, measures_).rgba);
+}
+
+TEST_P(EveryEffect, TakesWhatBackgroundAndEdgesHold) {
+  // Infinite depth under paint, as a sky that a renderer painted.
+  Picture opaque = ColorfulPicture(90, 90);
+  EXPECT_FALSE(Finished(Step(), &guides_, opaque, measures_).empty());
+  GuideSet one(1, 1);
+  for (const LayerInfo& info : AllLayers()) one.Add(info.layer);
+  EXPECT_FALSE(Finished(Step(), &one, PlainPicture(1, 1, 1, 2, 3), measures_).empty());
+}
+
+TEST_P(EveryEffect, NamesTheLayersThatAreMissing) {
+  const FinishStep step = Step();
+  if (RequiredLayers(step.pass).empty()) {
+    EXPECT_TRUE(CheckFinishLayers(std::span(&step, 1), nullptr));
+    return;
+  }
+  Picture picture = picture_;
+  const Status done = ApplyFinish(std::span(&step, 1), FinishPass::Stage::kPaint, {}, 0, {}, picture);
+  ASSERT_FALSE(done);
+  EXPECT_EQ(done.error().kind, ErrorKind::kInput);
+  EXPECT_THAT(done.error().message, ::testing::HasSubstr("finish it needs"));
+  EXPECT_EQ(picture.rgba, picture_.rgba);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, EveryEffect, ::testing::ValuesIn([] {
+                           std::vector<std::string> names;
+                           for (const FinishEffect& effect : FinishEffects()) names.push_back(effect.name);
+                           return names;
+                         }()),
+                         [](const auto& one) { return one.param; });
+
+TEST(Chain, GoesInOrder) {
+  FillPass white, red;
+  white.color = {65535, 65535, 65535}, red.color = {65535, 0, 0};
+  const FinishStep steps[] = {StepOf(red), StepOf(white)};
+  EXPECT_EQ(Finished(steps, nullptr, PlainPicture(3, 3, 0, 0, 0)).At(1, 1)[1], 65535);
+  const FinishStep other[] = {StepOf(white), StepOf(red)};
+  EXPECT_LT(Finished(other, nullptr, PlainPicture(3, 3, 0, 0, 0)).At(1, 1)[1], 1000);
+}
+
+TEST(Chain, LinesStopAndStartTheLoopOverPixels) {
+  const GuideSet guides = BallGuides(60, 20.0f);
+  FillPass grey;
+  grey.color = {0x8080, 0x8080, 0x8080};
+  OutlinePass ink;
+  ink.ink = {0, 0, 0}, ink.width = 6.0;
+  const FinishStep steps[] = {StepOf(grey), StepOf(ink), StepOf(GradePass{1.0, 1.0, 0.3})};
+  const Picture made = Finished(steps, &guides, PlainPicture(60, 60, 0, 0, 0));
+  EXPECT_GT(made.At(30, 10)[0], 5000) << "the line was lifted, too";
+  EXPECT_LT(made.At(30, 10)[0], made.At(30, 30)[0]);
+}
+
+TEST(Chain, StagesAreApart) {
+  FinishStep sheet = StepOf(FillPass());
+  sheet.pass.at = FinishPass::Stage::kSheet;
+  Picture picture = PlainPicture(2, 2, 0, 0, 0);
+  ASSERT_TRUE(ApplyFinish(std::span(&sheet, 1), FinishPass::Stage::kPaint, {}, 0, {}, picture));
+  EXPECT_EQ(picture.At(0, 0)[0], 0);
+  ASSERT_TRUE(ApplyFinish(std::span(&sheet, 1), FinishPass::Stage::kSheet, {}, 0, {}, picture));
+  EXPECT_GT(picture.At(0, 0)[0], 50000);
+}
+
+TEST(Chain, CanBeCancelled) {
+  const FinishStep step = StepOf(FillPass());
+  Picture picture = PlainPicture(8, 64, 0, 0, 0);
+  const Status done = ApplyFinish(
+      std::span(&step, 1), FinishPass::Stage::kPaint, {}, 0, [](double) { return false; }, picture);
+  ASSERT_FALSE(done);
+  EXPECT_EQ(done.error().kind, ErrorKind::kCancelled);
+}
+
+TEST(MeasureFinish, OfNothingAreDefaults) {
+  GuideSet empty(8, 8);
+  for (const Layer layer : {Layer::kCoverage, Layer::kDepth, Layer::kLuminance}) empty.Add(layer);
+  const FinishMeasures measures = MeasureFinish(empty);
+  EXPECT_EQ(measures.near, 0.0);
+  EXPECT_EQ(measures.bright, 1.0);
+}
+
+}  // namespace
+}  // namespace scumble

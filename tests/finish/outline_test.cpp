@@ -1,0 +1,314 @@
+// Outlines against formulas: where strokes run, how wide they are, and what they leave alone.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "tests/finish/finish_fixtures.h"
+
+namespace scumble {
+namespace {
+
+// Ink alone: the share of each pixel that strokes cover.
+std::vector<double> InkOf(const OutlinePass& pass, const GuideSet& guides, int threads = 0,
+                          FinishMeasures measures = {}) {
+  const Picture drawn = Finished(StepOf(pass), &guides, Picture(guides.width(), guides.height()), measures, threads);
+  std::vector<double> ink;
+  for (std::size_t i = 3; i < drawn.rgba.size(); i += 4) ink.push_back(drawn.rgba[i] / 65535.0);
+  return ink;
+}
+
+double Sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
+
+// A stroke around a centre: its area, and the ink-weighted mean and the deviation of its radius, by direction.
+struct Ring {
+  double area = 0.0, radius = 0.0, deviation = 0.0;
+};
+Ring RingOf(const std::vector<double>& ink, int width, glm::dvec2 centre) {
+  constexpr int kSectors = 180;
+  std::vector<double> weight(kSectors), weighted(kSectors);
+  Ring ring;
+  for (std::size_t i = 0; i < ink.size(); ++i) {
+    const glm::dvec2 at =
+        glm::dvec2(double(i % std::size_t(width)) + 0.5, double(i / std::size_t(width)) + 0.5) - centre;
+    const double angle = std::atan2(at.y, at.x) / (2.0 * std::numbers::pi) + 0.5;
+    const auto sector = std::min<std::size_t>(kSectors - 1, std::size_t(angle * kSectors));
+    weight[sector] += ink[i], weighted[sector] += ink[i] * glm::length(at);
+    ring.area += ink[i];
+  }
+  double sum = 0.0, squares = 0.0;
+  for (int s = 0; s < kSectors; ++s) {
+    const double radius = weighted[std::size_t(s)] / weight[std::size_t(s)];
+    sum += radius, squares += radius * radius;
+  }
+  ring.radius = sum / kSectors;
+  ring.deviation = std::sqrt(std::max(0.0, squares / kSectors - ring.radius * ring.radius));
+  return ring;
+}
+
+TEST(Outline, StrokeOfABallIsARing) {
+  for (const double width : {1.0, 2.5, 6.0}) {
+    OutlinePass pass;
+    pass.width = width;
+    const GuideSet guides = BallGuides(220, 80.0f);
+    const Ring ring = RingOf(InkOf(pass, guides), 220, {110, 110});
+    EXPECT_NEAR(ring.radius, 80.0, 0.1) << width;
+    EXPECT_LT(ring.deviation, 0.15) << width;
+    EXPECT_NEAR(ring.area / (2.0 * std::numbers::pi * 80.0 * width), 1.0, 0.02) << width;
+  }
+}
+
+// Without subsamples a silhouette is only known to half a pixel.
+TEST(Outline, HardCoverageGivesASmoothRingToo) {
+  GuideSet guides = GuidesOf(220, 220, [](glm::vec2 at) {
+    const glm::vec2 centre = glm::floor(at) + glm::vec2(0.5f);
+    return SeenOnBall(centre, {110, 110}, 80.0f, 5.0f, 1.0f);
+  });
+  const Ring ring = RingOf(InkOf({}, guides), 220, {110, 110});
+  EXPECT_NEAR(ring.radius, 80.0, 0.1);
+  EXPECT_LT(ring.deviation, 0.25);
+}
+
+TEST(Outline, ThinnerThanAPixelIsFainter) {
+  OutlinePass pass;
+  pass.width = 0.4, pass.min_width = 0.0;
+  const Ring ring = RingOf(InkOf(pass, BallGuides(220, 80.0f)), 220, {110, 110});
+  EXPECT_NEAR(ring.area / (2.0 * std::numbers::pi * 80.0 * 0.4), 1.0, 0.05);
+}
+
+TEST(Outline, SideMovesTheStroke) {
+  OutlinePass pass;
+  pass.width = 6.0;
+  const GuideSet guides = BallGuides(220, 80.0f);
+  pass.side = OutlinePass::Side::kInside;
+  EXPECT_NEAR(RingOf(InkOf(pass, guides), 220, {110, 110}).radius, 77.0, 0.15);
+  pass.side = OutlinePass::Side::kOutside;
+  EXPECT_NEAR(RingOf(InkOf(pass, guides), 220, {110, 110}).radius, 83.0, 0.15);
+}
+
+TEST(Outline, LengthsFollowThePictureHeight) {
+  const GuideSet guides = BallGuides(220, 80.0f);
+  const FinishStep step = StepOf(OutlinePass());
+  const Picture drawn = Finished(step, &guides, Picture(220, 220), {}, 0, 2.0);
+  double area = 0.0;
+  for (std::size_t i = 3; i < drawn.rgba.size(); i += 4) area += drawn.rgba[i] / 65535.0;
+  EXPECT_NEAR(area / (2.0 * std::numbers::pi * 80.0 * 5.0), 1.0, 0.02);
+}
+
+// Depth that a slope explains is no step.
+TEST(Outline, SteepPlaneHasNoInnerLine) {
+  const double slope = std::tan(85.0 * std::numbers::pi / 180.0) * 0.01;
+  const GuideSet guides = GuidesOf(120, 80, [&](glm::vec2 at) {
+    return SeenPoint{true, {0.0f, 0.99619f, 0.08716f}, static_cast<float>(20.0 - slope * at.y), 1.0f};
+  });
+  EXPECT_EQ(Sum(InkOf({}, guides)), 0.0);
+}
+
+// Two faces at a right angle, which meet at x = 60.
+GuideSet CreaseGuides() {
+  const float h = std::sqrt(0.5f);
+  return GuidesOf(120, 80, [&](glm::vec2 at) {
+    return SeenPoint{true, {at.x < 60.0f ? -h : h, 0.0f, h}, 5.0f + 0.01f * std::fabs(at.x - 60.0f), 1.0f};
+  });
+}
+
+TEST(Outline, CreaseIsOneLine) {
+  OutlinePass pass;
+  pass.width = 3.0;
+  pass.of_class[std::size_t(LineClass::kCrease)] = 1.0;
+  const std::vector<double> ink = InkOf(pass, CreaseGuides());
+  for (int x = 0; x < 120; ++x) {
+    const double expected = std::clamp(2.0 - std::fabs(x + 0.5 - 60.0), 0.0, 1.0);  // half of 3 pixels, and a half
+    EXPECT_NEAR(ink[40 * 120 + std::size_t(x)], expected, 1e-4) << x;
+  }
+  pass.crease_angle = 91.0;
+  EXPECT_EQ(Sum(InkOf(pass, CreaseGuides())), 0.0);
+  pass.crease_angle = 40.0, pass.of_class[std::size_t(LineClass::kCrease)] = 0.0;
+  EXPECT_EQ(Sum(InkOf(pass, CreaseGuides())), 0.0);
+}
+
+// The nearer of two overlapping things has the line, whatever lies behind.
+TEST(Outline, StepInDepthIsALineOfTheNearerSide) {
+  GuideSet guides = GuidesOf(120, 80, [](glm::vec2 at) {
+    return SeenPoint{true, {0, 0, 1}, at.x < 60.0f ? 5.0f : 9.0f, 1.0f};
+  });
+  OutlinePass pass;
+  pass.width = 4.0, pass.side = OutlinePass::Side::kInside;
+  const std::vector<double> ink = InkOf(pass, guides);
+  EXPECT_NEAR(ink[40 * 120 + 57], 1.0, 1e-3);
+  EXPECT_EQ(ink[40 * 120 + 61], 0.0);
+  EXPECT_NEAR(Sum(ink) / 80.0, 4.0, 0.1);
+}
+
+TEST(Outline, LinesGetThinnerWithDistance) {
+  GuideSet guides = GuidesOf(360, 180, [](glm::vec2 at) {
+    const SeenPoint near = SeenOnBall(at, {90, 90}, 60.0f, 4.1f, 1.0f);
+    return near.hit ? near : SeenOnBall(at, {270, 90}, 60.0f, 8.1f, 2.0f);
+  });
+  OutlinePass pass;
+  pass.width = 4.0, pass.thin = 1.0, pass.thin_at = 4.1;
+  const std::vector<double> ink = InkOf(pass, guides);
+  double left = 0.0, right = 0.0;
+  for (std::size_t i = 0; i < ink.size(); ++i) (i % 360 < 180 ? left : right) += ink[i];
+  EXPECT_NEAR(left / right, 8.1 / 4.1, 0.05 * 8.1 / 4.1);
+}
+
+TEST(Outline, LinesGetThinnerInLight) {
+  GuideSet guides = BallGuides(220, 80.0f);
+  guides.Add(Layer::kLuminance);
+  OutlinePass pass;
+  pass.width = 4.0, pass.light = 1.0;
+  const double dark = Sum(InkOf(pass, guides));
+  for (float& value : guides.Plane(Layer::kLuminance)) value = 1.0f;
+  EXPECT_NEAR(dark / Sum(InkOf(pass, guides)), 3.0, 0.1);  // 1.5 against 0.5
+}
+
+// The contour of half shade lies between pixels where the shadow says.
+TEST(Outline, ShadowsHaveAContour) {
+  GuideSet guides = FlatGuides(120, 80);
+  for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
+    const double x = double(i % 120) + 0.5;
+    guides.Plane(Layer::kShadow)[i] = static_cast<float>(std::clamp((x - 60.2) / 8.0 + 0.5, 0.0, 1.0));
+  }
+  OutlinePass pass;
+  pass.width = 3.0;
+  pass.of_class[std::size_t(LineClass::kShadow)] = 1.0;
+  const std::vector<double> ink = InkOf(pass, guides);
+  double mean = 0.0, weight = 0.0;
+  for (int x = 0; x < 120; ++x) {
+    mean += ink[40 * 120 + std::size_t(x)] * (x + 0.5), weight += ink[40 * 120 + std::size_t(x)];
+  }
+  EXPECT_NEAR(mean / weight, 60.2, 0.02);
+  EXPECT_NEAR(weight, 3.0, 0.02);
+}
+
+TEST(Outline, MaterialsAndBaseColoursHaveBorders) {
+  GuideSet guides = FlatGuides(120, 80);
+  guides.Add(Layer::kMaterial), guides.Add(Layer::kAlbedo);
+  for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
+    guides.Plane(Layer::kMaterial)[i] = i % 120 < 40 ? 1.0f : 2.0f;
+    for (int c = 0; c < 3; ++c) guides.Plane(Layer::kAlbedo, c)[i] = i % 120 < 80 ? 0.2f : 0.5f;
+  }
+  OutlinePass pass;
+  pass.width = 3.0;
+  EXPECT_EQ(Sum(InkOf(pass, guides)), 0.0) << "both are off";
+  pass.of_class[std::size_t(LineClass::kMaterial)] = 1.0;
+  const std::vector<double> material = InkOf(pass, guides);
+  EXPECT_NEAR(material[40 * 120 + 40], 1.0, 1e-3);
+  EXPECT_EQ(material[40 * 120 + 80], 0.0);
+  pass.of_class[std::size_t(LineClass::kTexture)] = 1.0;
+  EXPECT_NEAR(InkOf(pass, guides)[40 * 120 + 80], 1.0, 1e-3);
+  pass.texture_step = 0.5;
+  EXPECT_EQ(InkOf(pass, guides)[40 * 120 + 80], 0.0);
+}
+
+TEST(Outline, EndsTaper) {
+  // A step in depth that ends in the middle of a surface.
+  GuideSet guides = GuidesOf(160, 80, [](glm::vec2 at) {
+    const float step = std::clamp((60.0f - at.y) / 20.0f, 0.0f, 1.0f);
+    return SeenPoint{true, {0, 0, 1}, at.x < 80.0f ? 5.0f : 5.0f + 2.0f * step, 1.0f};
+  });
+  OutlinePass pass;
+  pass.width = 6.0, pass.taper = 40.0;
+  const std::vector<double> ink = InkOf(pass, guides);
+  const auto width_at = [&](int y) {
+    double sum = 0.0;
+    for (int x = 60; x < 100; ++x) sum += ink[std::size_t(y) * 160 + std::size_t(x)];
+    return sum;
+  };
+  EXPECT_NEAR(width_at(10), 6.0 * 0.4375, 1.2) << "the picture's edge is an end, too";
+  EXPECT_GT(width_at(30), width_at(50));
+  EXPECT_GT(width_at(50), width_at(58));
+}
+
+TEST(Outline, WobbleStaysWithinItsReach) {
+  OutlinePass pass;
+  pass.width = 2.0, pass.wobble = 5.0;
+  const GuideSet guides = BallGuides(240, 80.0f);
+  const std::vector<double> ink = InkOf(pass, guides);
+  double deviation = 0.0;
+  for (std::size_t i = 0; i < ink.size(); ++i) {
+    if (ink[i] == 0.0) continue;
+    const double radius = glm::length(glm::dvec2(double(i % 240) + 0.5, double(i / 240) + 0.5) - glm::dvec2(120));
+    EXPECT_LT(std::fabs(radius - 80.0), 5.0 * std::numbers::sqrt2 + 2.5);
+    deviation = std::max(deviation, std::fabs(radius - 80.0));
+  }
+  EXPECT_GT(deviation, 3.0);
+}
+
+TEST(Outline, SpeckOfNoiseIsNoLine) {
+  GuideSet guides = FlatGuides(60, 60);
+  guides.Plane(Layer::kObject)[30 * 60 + 30] = 9.0f;
+  EXPECT_EQ(Sum(InkOf({}, guides)), 0.0);
+  for (const int y : {29, 30, 31}) {
+    for (const int x : {29, 30, 31}) guides.Plane(Layer::kObject)[std::size_t(y) * 60 + std::size_t(x)] = 9.0f;
+  }
+  EXPECT_GT(Sum(InkOf({}, guides)), 10.0);
+}
+
+TEST(Outline, InkLiesOverPaintAndRaisesAlphaOutside) {
+  const GuideSet guides = BallGuides(100, 30.0f);
+  Picture picture = PlainPicture(100, 100, 60000, 30000, 10000);
+  for (std::size_t i = 0; i < guides.pixel_count(); ++i)
+    picture.rgba[4 * i + 3] = static_cast<std::uint16_t>(guides.Plane(Layer::kCoverage)[i] * 65535.0f);
+  OutlinePass pass;
+  pass.ink = {0, 0, 0};
+  const Picture drawn = Finished(StepOf(pass), &guides, picture);
+  EXPECT_EQ(drawn.At(50, 50)[0], 60000);
+  EXPECT_LT(drawn.At(50, 20)[0], 3000) << "on the line";
+  EXPECT_GT(drawn.At(50, 19)[3], 40000) << "outside";
+  EXPECT_EQ(drawn.At(50, 10)[3], 0);
+}
+
+TEST(Outline, InkOfThePaintIsItsColourDarkerOrOpposite) {
+  const GuideSet guides = BallGuides(100, 30.0f);
+  const Picture picture = PlainPicture(100, 100, 50000, 20000, 20000);
+  OutlinePass pass;
+  pass.width = 4.0, pass.color = OutlinePass::Color::kPaint;
+  const Picture paint = Finished(StepOf(pass), &guides, picture);
+  EXPECT_GT(paint.At(50, 20)[0], 2 * paint.At(50, 20)[2]);
+  EXPECT_LT(paint.At(50, 20)[0], 25000);
+  pass.color = OutlinePass::Color::kComplement;
+  const Picture complement = Finished(StepOf(pass), &guides, picture);
+  EXPECT_GT(complement.At(50, 20)[2], complement.At(50, 20)[0]);
+}
+
+TEST(Outline, ThreadsAndSeedsMatterNotAndDo) {
+  const GuideSet guides = BallGuides(220, 80.0f);
+  OutlinePass pass;
+  pass.wobble = 3.0, pass.taper = 20.0;
+  const Picture one = Finished(StepOf(pass), &guides, Picture(220, 220), {}, 1);
+  EXPECT_EQ(one.rgba, Finished(StepOf(pass), &guides, Picture(220, 220), {}, 4).rgba);
+  Picture other(220, 220);
+  const FinishStep step = StepOf(pass);
+  ASSERT_TRUE(ApplyFinish(std::span(&step, 1), FinishPass::Stage::kPaint, {&guides, {}, 1.0, 8}, 0, {}, other));
+  EXPECT_NE(one.rgba, other.rgba);
+}
+
+TEST(Outline, OnlyDrawsBordersOfItsPixels) {
+  const GuideSet guides = GuidesOf(240, 120, [](glm::vec2 at) {
+    const SeenPoint left = SeenOnBall(at, {60, 60}, 40.0f, 4.0f, 1.0f);
+    return left.hit ? left : SeenOnBall(at, {180, 60}, 40.0f, 4.0f, 2.0f);
+  });
+  FinishStep step = StepOf(OutlinePass());
+  for (std::size_t i = 0; i < guides.pixel_count(); ++i) step.only.push_back(i % 240 < 120);
+  const Picture drawn = Finished(step, &guides, Picture(240, 120));
+  double left = 0.0, right = 0.0;
+  for (std::size_t i = 0; i < guides.pixel_count(); ++i) (i % 240 < 120 ? left : right) += drawn.rgba[4 * i + 3];
+  EXPECT_GT(left, 0.0);
+  EXPECT_EQ(right, 0.0);
+}
+
+TEST(Outline, SmallestPictures) {
+  EXPECT_EQ(InkOf({}, FlatGuides(1, 1)), std::vector<double>{0.0});
+  EXPECT_EQ(Sum(InkOf({}, BallGuides(3, 0.4f))), 0.0) << "a speck";
+  GuideSet empty(16, 16);
+  for (const Layer layer : {Layer::kCoverage, Layer::kNormal, Layer::kDepth, Layer::kObject}) empty.Add(layer);
+  EXPECT_EQ(Sum(InkOf({}, empty)), 0.0);
+}
+
+}  // namespace
+}  // namespace scumble

@@ -1,0 +1,259 @@
+// Effects that treat every pixel by itself, against their formulas.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <set>
+
+#include "core/filter/oklab_rows.h"
+#include "core/image/color.h"
+#include "core/image/oklab.h"
+#include "tests/finish/finish_fixtures.h"
+
+namespace scumble {
+namespace {
+
+glm::vec3 LabOf(const std::uint16_t* texel) {
+  return OklabFromLinear({Srgb16ToLinear(texel[0]), Srgb16ToLinear(texel[1]), Srgb16ToLinear(texel[2])});
+}
+
+std::uint16_t GreyOf(double lightness) {  // Oklab's lightness of a grey is the cube root of its linear value
+  return Srgb16FromLinear(static_cast<float>(lightness * lightness * lightness));
+}
+
+TEST(OklabRows, AreTheScalarFormulasAndComeBack) {
+  const Picture picture = ColorfulPicture(64, 64);
+  for (int y = 0; y < 64; ++y) {
+    internal::OklabBlock block;
+    internal::OklabFromTexels(picture.At(0, y), 61, block);
+    std::vector<std::uint16_t> texels(picture.At(0, y), picture.At(0, y) + 4 * 64);
+    for (std::size_t x = 0; x < 61; ++x) {
+      const glm::vec3 lab = LabOf(picture.At(int(x), y));
+      EXPECT_NEAR(block.lightness[x], lab.x, 2e-6);
+      EXPECT_NEAR(block.a[x], lab.y, 2e-6);
+      EXPECT_NEAR(block.b[x], lab.z, 2e-6);
+    }
+    internal::TexelsFromOklab(block, 61, texels.data());
+    for (std::size_t i = 0; i < texels.size(); ++i) {
+      EXPECT_LE(std::abs(int(texels[i]) - int(picture.At(0, y)[i])), i < 4 * 61 ? 8 : 0) << i;
+    }
+  }
+}
+
+TEST(OklabRows, ColoursThatDoNotExistLoseChromaAndKeepHue) {
+  internal::OklabBlock block;
+  block.lightness[0] = 0.6f, block.a[0] = 0.5f, block.b[0] = 0.25f;
+  block.lightness[1] = 1.5f, block.a[1] = 0.0f, block.b[1] = 0.0f;
+  std::uint16_t texels[8] = {0, 0, 0, 7, 0, 0, 0, 8};
+  internal::TexelsFromOklab(block, 2, texels);
+  const glm::vec3 lab = LabOf(texels);
+  EXPECT_NEAR(lab.x, 0.6, 1e-3);
+  EXPECT_NEAR(lab.z / lab.y, 0.5, 0.01);
+  EXPECT_EQ(texels[3], 7);
+  EXPECT_THAT(texels, ::testing::Contains(65535).Times(3)) << "white";
+}
+
+TEST(Tones, LevelsAndMiddlesStayAndTheCurveRises) {
+  for (const double sharpness : {0.5, 4.0, 64.0}) {
+    TonesPass pass;
+    pass.bins = 5, pass.sharpness = sharpness;
+    Picture greys(8193, 1);
+    for (int x = 0; x <= 8192; ++x) {
+      std::fill_n(greys.At(x, 0), 3, GreyOf(x / 8192.0));
+      greys.At(x, 0)[3] = 65535;
+    }
+    const Picture made = Finished(StepOf(pass), nullptr, greys);
+    for (int x = 1; x <= 8192; ++x) EXPECT_GE(made.At(x, 0)[0] + 1, made.At(x - 1, 0)[0]) << sharpness << ' ' << x;
+    for (int x = 0; x <= 8192; x += 2048) EXPECT_NEAR(LabOf(made.At(x, 0)).x, x / 8192.0, 2e-4) << sharpness;
+    for (int x = 1024; x <= 8192; x += 2048) {
+      // The hard curve jumps there.
+      const double reach = sharpness < 10.0 ? 2e-3 : 0.2;
+      EXPECT_NEAR(LabOf(made.At(x, 0)).x, x / 8192.0, reach) << sharpness;
+    }
+  }
+}
+
+TEST(Tones, HardStepsAreWhatTheBinsSay) {
+  TonesPass pass;
+  pass.bins = 4, pass.sharpness = 64.0;
+  std::set<int> levels;
+  for (int i = 0; i <= 300; ++i) {
+    if (i % 100 > 45 && i % 100 < 55) continue;  // near a border the curve goes on
+    const Picture made =
+        Finished(StepOf(pass), nullptr, PlainPicture(1, 1, GreyOf(i / 300.0), GreyOf(i / 300.0), GreyOf(i / 300.0)));
+    levels.insert(int(std::lround(LabOf(made.At(0, 0)).x * 300.0)));
+  }
+  EXPECT_THAT(levels, ::testing::ElementsAre(0, 100, 200, 300));
+}
+
+TEST(Tones, NoSharpnessIsTheSameBytes) {
+  TonesPass pass;
+  pass.sharpness = 0.0;
+  const Picture picture = ColorfulPicture(300, 20);
+  const Picture made = Finished(StepOf(pass), nullptr, picture);
+  for (std::size_t i = 0; i < picture.rgba.size(); ++i) EXPECT_LE(std::abs(made.rgba[i] - picture.rgba[i]), 8);
+}
+
+TEST(Shadows, FullLightIsTheSameBytes) {
+  const GuideSet guides = FlatGuides(64, 8);
+  const Picture picture = ColorfulPicture(64, 8);
+  using Mode = ShadowsPass::Mode;
+  for (const Mode mode : {Mode::kBlack, Mode::kDarker, Mode::kColor, Mode::kComplement, Mode::kNegative}) {
+    ShadowsPass pass;
+    pass.mode = mode;
+    EXPECT_EQ(Finished(StepOf(pass), &guides, picture).rgba, picture.rgba) << int(mode);
+  }
+}
+
+TEST(Shadows, FullShadeIsBlack) {
+  GuideSet guides = FlatGuides(64, 8);
+  for (float& value : guides.Plane(Layer::kShadow)) value = 1.0f;
+  ShadowsPass pass;
+  pass.mode = ShadowsPass::Mode::kBlack, pass.source = ShadowsPass::Source::kCast;
+  const Picture made = Finished(StepOf(pass), &guides, ColorfulPicture(64, 8));
+  for (std::size_t i = 0; i < made.rgba.size(); ++i) EXPECT_EQ(made.rgba[i], i % 4 == 3 ? 65535 : 0);
+}
+
+TEST(Shadows, ComplementTwiceIsThePaintAgain) {
+  GuideSet guides = FlatGuides(16, 1);
+  for (float& value : guides.Plane(Layer::kShadow)) value = 1.0f;
+  ShadowsPass pass;
+  pass.mode = ShadowsPass::Mode::kComplement, pass.source = ShadowsPass::Source::kCast;
+  const Picture paint = PlainPicture(16, 1, 38000, 30000, 27000);
+  const Picture once = Finished(StepOf(pass), &guides, paint);
+  const glm::vec3 was = LabOf(paint.At(0, 0)), is = LabOf(once.At(0, 0));
+  EXPECT_NEAR(is.x, was.x, 1e-4);
+  EXPECT_NEAR(is.y, -was.y, 1e-4);
+  EXPECT_NEAR(is.z, -was.z, 1e-4);
+  const Picture twice = Finished(StepOf(pass), &guides, once);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(twice.At(0, 0)[c], paint.At(0, 0)[c], 8);
+}
+
+// Grey has no opposite hue and takes that of the pass.
+TEST(Shadows, ComplementOfGreyHasTheGivenHue) {
+  GuideSet guides = FlatGuides(1, 1);
+  guides.Plane(Layer::kShadow)[0] = 1.0f;
+  ShadowsPass pass;
+  pass.mode = ShadowsPass::Mode::kComplement, pass.color = {0x2020, 0x2020, 0x8080};
+  const Picture made = Finished(StepOf(pass), &guides, PlainPicture(1, 1, 30000, 30000, 30000));
+  EXPECT_GT(made.At(0, 0)[2], made.At(0, 0)[0] + 3000);
+}
+
+TEST(Shadows, MoreShadeIsDarker) {
+  GuideSet guides = FlatGuides(101, 1);
+  for (int x = 0; x <= 100; ++x) guides.Plane(Layer::kShadow)[std::size_t(x)] = x / 100.0f;
+  for (const auto mode : {ShadowsPass::Mode::kBlack, ShadowsPass::Mode::kDarker, ShadowsPass::Mode::kChiaroscuro}) {
+    ShadowsPass pass;
+    pass.mode = mode, pass.source = ShadowsPass::Source::kCast;
+    const Picture made = Finished(StepOf(pass), &guides, PlainPicture(101, 1, 50000, 40000, 30000));
+    for (int x = 1; x <= 100; ++x) EXPECT_LT(made.At(x, 0)[0], made.At(x - 1, 0)[0] + (x > 95)) << x;
+  }
+}
+
+// A ball under light from the viewer's right: with sharp limits form shade begins where it turns from the light.
+TEST(Shadows, FormShadeBeginsAtTheTerminator) {
+  GuideSet guides = BallGuides(200, 90.0f);
+  guides.Add(Layer::kLuminance);
+  for (std::size_t i = 0; i < guides.pixel_count(); ++i)
+    guides.Plane(Layer::kLuminance)[i] = std::max(0.0f, guides.Plane(Layer::kNormal)[i]);
+  ShadowsPass pass;
+  pass.mode = ShadowsPass::Mode::kBlack, pass.source = ShadowsPass::Source::kForm;
+  pass.full = 0.0, pass.none = 0.02;
+  const Picture made = Finished(StepOf(pass), &guides, PlainPicture(200, 200, 60000, 60000, 60000));
+  int border = 0;
+  while (border < 200 && made.At(border, 100)[0] < 30000) ++border;
+  EXPECT_NEAR(std::asin((border - 100) / 90.0) * 57.29578, 0.0, 1.0);
+}
+
+// Guides whose depth rises by 1 m a pixel from 5 m.
+GuideSet Ramp(int width) {
+  GuideSet guides = FlatGuides(width, 1);
+  for (int x = 0; x < width; ++x) guides.Plane(Layer::kDepth)[std::size_t(x)] = 5.0f + static_cast<float>(x);
+  return guides;
+}
+
+TEST(Depth, DesaturatesByTheFormula) {
+  const GuideSet guides = Ramp(41);
+  const Picture paint = PlainPicture(41, 1, 40000, 25000, 20000);
+  const glm::vec3 was = LabOf(paint.At(0, 0));
+  for (const double gamma : {1.0, 2.0, 0.5}) {
+    DepthPass pass;
+    pass.near = 15.0, pass.far = 35.0, pass.gamma = gamma, pass.desaturate = 0.8;
+    const Picture made = Finished(StepOf(pass), &guides, paint);
+    for (int x = 0; x < 41; ++x) {
+      const double u = std::pow(std::clamp(std::fabs(5.0 + x - 15.0) / 20.0, 0.0, 1.0), gamma);
+      const glm::vec3 is = LabOf(made.At(x, 0));
+      EXPECT_NEAR(is.y / was.y, 1.0 - 0.8 * u, 2e-3) << x;
+      EXPECT_NEAR(is.x, was.x, 2e-5) << "lightness stays";
+    }
+    EXPECT_THAT(std::vector(made.At(10, 0), made.At(10, 0) + 4), ::testing::ElementsAreArray(paint.At(10, 0), 4))
+        << "in focus";
+  }
+}
+
+TEST(Depth, LayersAreSoManyValues) {
+  const GuideSet guides = Ramp(200);
+  DepthPass pass;
+  pass.near = 5.0, pass.far = 204.0, pass.layers = 4, pass.desaturate = 1.0;
+  const Picture made = Finished(StepOf(pass), &guides, PlainPicture(200, 1, 40000, 25000, 20000));
+  std::set<std::uint16_t> values;
+  for (int x = 0; x < 200; ++x) values.insert(made.At(x, 0)[0]);
+  EXPECT_EQ(values.size(), 4u);
+}
+
+TEST(Depth, AirFollowsBeerAndLambert) {
+  GuideSet guides = Ramp(41);
+  guides.Plane(Layer::kDepth)[40] = std::numeric_limits<float>::infinity();
+  DepthPass pass;
+  pass.near = 5.0, pass.far = 25.0, pass.desaturate = 0.0, pass.air = 0.75, pass.color = {65535, 65535, 65535};
+  const Picture made = Finished(StepOf(pass), &guides, PlainPicture(41, 1, 0, 0, 0));
+  for (int x = 0; x < 40; ++x) {
+    EXPECT_NEAR(LabOf(made.At(x, 0)).x, 1.0 - std::pow(0.25, x / 20.0), 2e-3) << x;  // lightness goes to white's
+  }
+  EXPECT_EQ(made.At(40, 0)[0], 65535) << "nothing is beyond infinite air";
+}
+
+TEST(Depth, InverseMetricIsEvenInReciprocals) {
+  GuideSet guides = Ramp(3);
+  auto depth = guides.Plane(Layer::kDepth);
+  depth[0] = 1.0f, depth[1] = 4.0f / 3.0f, depth[2] = 2.0f;  // reciprocals 1, 3/4, 1/2
+  DepthPass pass;
+  pass.near = 1.0, pass.far = 2.0, pass.metric = DepthPass::Metric::kInverse, pass.desaturate = 1.0;
+  const Picture paint = PlainPicture(3, 1, 40000, 25000, 20000);
+  const Picture made = Finished(StepOf(pass), &guides, paint);
+  EXPECT_NEAR(LabOf(made.At(1, 0)).y / LabOf(paint.At(0, 0)).y, 0.5, 1e-3);
+}
+
+TEST(Depth, MeasuresStandInForWhatIsNotGiven) {
+  const GuideSet guides = Ramp(101);
+  const FinishMeasures measures = MeasureFinish(guides);
+  EXPECT_EQ(measures.near, 7.0);
+  EXPECT_EQ(measures.middle, 55.0);
+  EXPECT_EQ(measures.far, 103.0);
+  EXPECT_EQ(measures.bright, 1.0);
+  DepthPass pass, given;
+  given.near = 7.0, given.far = 103.0;
+  const Picture paint = ColorfulPicture(101, 1);
+  EXPECT_EQ(Finished(StepOf(pass), &guides, paint, measures).rgba, Finished(StepOf(given), &guides, paint).rgba);
+}
+
+TEST(Grade, ScalesChromaAndLightness) {
+  GradePass pass;
+  pass.saturation = 0.0, pass.contrast = 0.5, pass.lift = 0.1;
+  const Picture paint = PlainPicture(1, 1, 40000, 25000, 20000);
+  const glm::vec3 was = LabOf(paint.At(0, 0)), is = LabOf(Finished(StepOf(pass), nullptr, paint).At(0, 0));
+  EXPECT_NEAR(is.x, 0.5 + 0.5 * (was.x - 0.5) + 0.1, 1e-3);
+  EXPECT_NEAR(is.y, 0.0, 1e-3);
+}
+
+TEST(Fill, IsItsColour) {
+  FillPass pass;
+  pass.color = {0x2424, 0x4848, 0x7f7f};
+  const Picture made = Finished(StepOf(pass), nullptr, ColorfulPicture(9, 9));
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(made.At(4, 4)[c], pass.color[std::size_t(c)], 8);
+}
+
+}  // namespace
+}  // namespace scumble
