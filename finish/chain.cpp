@@ -105,12 +105,19 @@ Status Apply(std::span<const FinishStep* const> steps, const FinishFrame& frame,
 
 }  // namespace
 
-Status CheckFinishLayers(std::span<const FinishStep> steps, const GuideSet* guides) {
+Status CheckFinish(std::span<const FinishStep> steps, const GuideSet* guides) {
   for (const FinishStep& step : steps) {
     const LayerSet needed = RequiredLayers(step.pass), held = guides ? guides->layers() : LayerSet();
     LayerSet lacking;
     for (const LayerInfo& info : AllLayers()) {
       if (needed.Has(info.layer) && !held.Has(info.layer)) lacking.Add(info.layer);
+    }
+    const auto* outline = std::get_if<OutlinePass>(&step.pass.effect);
+    if (outline && outline->thin > 0.0 && guides && guides->camera && guides->camera->IsOrthographic()) {
+      return InputError("finish " + step.pass.name +
+                        ": thin makes distant lines thinner, and in an orthographic view nothing gets smaller: set "
+                        "finish." +
+                        step.pass.name + ".thin to 0");
     }
     if (lacking.empty()) continue;
     return InputError("finish " + step.pass.name + " needs " + lacking.ToString() + "; " +
@@ -122,7 +129,7 @@ Status CheckFinishLayers(std::span<const FinishStep> steps, const GuideSet* guid
 
 Status ApplyFinish(std::span<const FinishStep> steps, FinishPass::Stage stage, const FinishFrame& frame, int threads,
                    const Progress& progress, Picture& picture) {
-  SCUMBLE_RETURN_IF_ERROR(CheckFinishLayers(steps, frame.guides));
+  SCUMBLE_RETURN_IF_ERROR(CheckFinish(steps, frame.guides));
   std::vector<const FinishStep*> chosen;
   for (const FinishStep& step : steps) {
     if (step.pass.at == stage && step.pass.strength > 0.0) chosen.push_back(&step);

@@ -43,8 +43,9 @@ struct FinishFrame {
   std::uint64_t seed = 0;  // of all that is left to chance
 };
 
-// The layers that the steps read and the guides lack, with the name of the first pass that asks; Ok if there is none.
-Status CheckFinishLayers(std::span<const FinishStep> steps, const GuideSet* guides);
+// kInput where the guides lack a layer that a step reads, or where a width is to follow the depth of an orthographic
+// view, which has no sizes. The message names the pass.
+Status CheckFinish(std::span<const FinishStep> steps, const GuideSet* guides);
 
 // Applies the steps of that stage to a picture with straight alpha. Pixels of alpha 0 stay so, but where lines run. A
 // step of strength 0 changes nothing. The bytes depend on the arguments alone, not on threads (0: all) or machine.

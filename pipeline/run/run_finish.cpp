@@ -107,7 +107,7 @@ Status CheckLayers(const FinishRequest& request, const FinishState& state) {
   if (state.required.empty() || !request.guides.empty()) return Ok();
   std::vector<FinishStep> steps;
   for (const FinishPass& pass : state.passes) steps.push_back({pass, {}});
-  return CheckFinishLayers(steps, nullptr);
+  return CheckFinish(steps, nullptr);
 }
 
 }  // namespace

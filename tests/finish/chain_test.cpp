@@ -88,7 +88,7 @@ TEST_P(EveryEffect, TakesWhatBackgroundAndEdgesHold) {
 TEST_P(EveryEffect, NamesTheLayersThatAreMissing) {
   const FinishStep step = Step();
   if (RequiredLayers(step.pass).empty()) {
-    EXPECT_TRUE(CheckFinishLayers(std::span(&step, 1), nullptr));
+    EXPECT_TRUE(CheckFinish(std::span(&step, 1), nullptr));
     return;
   }
   Picture picture = picture_;

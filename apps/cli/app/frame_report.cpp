@@ -37,20 +37,22 @@ Json StyleToJson(const StyleInReport& style) {
   return json;
 }
 
-// Facts about a style outside "styles" are the default style's.
+// Facts about a style outside "styles" are the default style's; a picture that is only finished has none.
 void PictureToJson(const PictureReport& picture, const std::vector<PlanItem>& plan, Json& json) {
-  const StyleInReport& first = picture.styles.front();
   json["output"] = picture.output;
-  json["style"] = first.name;
+  if (!picture.styles.empty()) json["style"] = picture.styles.front().name;
   json["width"] = picture.width;
   json["height"] = picture.height;
   json["upsample"] = picture.upsample;
   json["upscale"] = picture.upscale;
-  json["exemplar_size"] = first.exemplar_size;
-  json["exemplar_width"] = first.exemplar_width;
-  json["exemplar_height"] = first.exemplar_height;
-  json["levels"] = first.levels;
-  json["blend_radius"] = first.blend_radius;
+  if (!picture.styles.empty()) {
+    const StyleInReport& first = picture.styles.front();
+    json["exemplar_size"] = first.exemplar_size;
+    json["exemplar_width"] = first.exemplar_width;
+    json["exemplar_height"] = first.exemplar_height;
+    json["levels"] = first.levels;
+    json["blend_radius"] = first.blend_radius;
+  }
   for (const StyleInReport& style : picture.styles) json["styles"].push_back(StyleToJson(style));
   if (picture.chunks) {
     json["covered_pixels"] = picture.chunks->covered_pixels;

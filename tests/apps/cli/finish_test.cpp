@@ -1,0 +1,182 @@
+// Finishing effects from the command line: with a transfer, after one, and on pictures of any renderer.
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tests/support/cli_harness.h"
+
+namespace scumble {
+namespace {
+
+constexpr const char* kBall = SCUMBLE_SOURCE_DIR "/scenes/ball.glb";
+constexpr const char* kToys = SCUMBLE_SOURCE_DIR "/scenes/toys.glb";
+
+class CliFinish : public CliTest {
+ protected:
+  // A style of one colour without paper.
+  void WriteStyle(const std::string& folder, const std::string& more = "") {
+    Picture picture(32, 32);
+    for (int i = 0; i < 32 * 32; ++i) {
+      std::uint16_t* const texel = picture.At(i % 32, i / 32);
+      texel[0] = 60000, texel[1] = 40000, texel[2] = 20000, texel[3] = 65535;
+    }
+    std::filesystem::create_directories(At(folder));
+    ASSERT_TRUE(WritePicture(At(folder + "/lit.png"), picture));
+    WriteText(folder + "/style.toml", "[[exemplar]]\nimage = \"lit.png\"\nfills = true\n" + more);
+  }
+  Picture Read(const std::string& name) {
+    const Expected<Picture> picture = ReadPicture(At(name));
+    EXPECT_TRUE(picture) << name;
+    return picture ? *picture : Picture();
+  }
+};
+
+TEST_F(CliFinish, AfterTheTransferIsWithTheTransfer) {
+  WriteStyle("plain");
+  const Arguments scene{"--size", "96x64", "--aa", "2"};
+  const auto with = [&](Arguments arguments, const Arguments& more) {
+    arguments.insert(arguments.end(), scene.begin(), scene.end());
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  };
+  RunOk(with({"stylize", kToys}, {"--style", "plain", "--bits", "16", "-o", "plain.png"}));
+  RunOk(with({"stylize", kToys}, {"--style", "plain", "--bits", "16", "--finish", "comic", "-o", "whole.png"}));
+  RunOk(with({"guidegen", kToys}, {"--layers", "luminance,shadow", "-o", "g.exr"}));
+  RunOk({"finish", "plain.png", "g.exr", "--finish", "comic", "--bits", "16", "-o", "steps.png"});
+  EXPECT_NE(Read("whole.png").rgba, Read("plain.png").rgba);
+  EXPECT_EQ(Read("steps.png").rgba, Read("whole.png").rgba);
+  RunOk({"transfer", "g.exr", "--style", "plain", "--finish", "comic", "--bits", "16", "-o", "transfer.png"});
+  EXPECT_EQ(Read("transfer.png").rgba, Read("whole.png").rgba);
+}
+
+TEST_F(CliFinish, CastsOnlyWhatItReads) {
+  WriteStyle("plain", "[transfer]\nedge_aware = false\n");
+  const auto plan = [&](const std::string& finish) {
+    return RunOk({"stylize", kBall, "--style", "plain", "--finish", finish, "--explain"}).out;
+  };
+  EXPECT_TRUE(Contains(plan("noir"), "shadow"));
+  EXPECT_FALSE(Contains(plan("tones"), "luminance"));
+  EXPECT_FALSE(Contains(plan("outline"), "luminance"));
+}
+
+TEST_F(CliFinish, StylesHaveTheirOwnAndNoneDropsIt) {
+  WriteStyle("plain");
+  WriteStyle("inked", "[[finish]]\neffect = \"outline\"\nname = \"ink\"\n");
+  const auto paint = [&](const std::string& style, const Arguments& more, const std::string& name) {
+    Arguments arguments{"stylize", kBall, "--size", "64", "--style", style, "-o", name};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    RunOk(arguments);
+    return Read(name).rgba;
+  };
+  const auto plain = paint("plain", {}, "a.png"), inked = paint("inked", {}, "b.png");
+  EXPECT_NE(plain, inked);
+  EXPECT_EQ(paint("inked", {"--finish", "none"}, "c.png"), plain);
+  EXPECT_EQ(paint("plain", {"--finish", "outline"}, "d.png"), inked);
+  EXPECT_EQ(paint("inked", {"--set", "finish.ink.strength=0"}, "e.png"), plain);
+  EXPECT_NE(paint("inked", {"--set", "finish.ink.width=6"}, "f.png"), inked);
+  EXPECT_NE(paint("inked", {"--set", "inked:finish.ink.width=6"}, "g.png"), inked);
+}
+
+TEST_F(CliFinish, OfAStyleTouchesItsOwnPixels) {
+  WriteStyle("plain");
+  WriteStyle("white", "[[finish]]\neffect = \"fill\"\ncolor = \"#ffffff\"\n");
+  const auto paint = [&](const Arguments& more, const std::string& name) {
+    Arguments arguments{"stylize", kToys, "--size", "96x64", "--style", "plain", "-o", name};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    RunOk(arguments);
+    return Read(name);
+  };
+  const Picture picture = paint({"--assign", "Ball*=white"}, "two.png");
+  std::size_t white = 0, other = 0;
+  for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
+    if (picture.rgba[i + 3] != 65535) continue;
+    (picture.rgba[i + 2] > 65000 ? white : other)++;
+  }
+  EXPECT_GT(white, 20u);
+  EXPECT_GT(other, 200u);
+  WriteText("ball.toml", "[[finish]]\neffect = \"fill\"\ncolor = \"#ffffff\"\nobjects = \"Ball*\"\n");
+  EXPECT_EQ(paint({"--finish", "ball.toml"}, "named.png").rgba, picture.rgba);
+  WriteText("none.toml", "[[finish]]\neffect = \"fill\"\nobjects = \"Balloon\"\n");
+  const CommandResult none =
+      RunOk({"stylize", kToys, "--size", "96x64", "--style", "plain", "--finish", "none.toml", "-o", "none.png"});
+  EXPECT_TRUE(Contains(none.err, "no object has the name Balloon")) << none.err;
+}
+
+TEST_F(CliFinish, LiesUnderThePaperOrOverIt) {
+  WriteStyle("paper", "[transfer]\npaper = \"#0000ff\"\n");
+  WriteText("paint.toml", "[[finish]]\neffect = \"fill\"\ncolor = \"#ff0000\"\n");
+  WriteText("sheet.toml", "[[finish]]\neffect = \"fill\"\ncolor = \"#ff0000\"\nat = \"sheet\"\n");
+  for (const std::string name : {"paint", "sheet"}) {
+    RunOk({"stylize", kToys, "--size", "64", "--style", "paper", "--finish", name + ".toml", "-o", name + ".png"});
+  }
+  EXPECT_GT(Read("paint.png").At(0, 0)[2], 65000);
+  EXPECT_GT(Read("paint.png").At(32, 32)[0], 65000);
+  EXPECT_GT(Read("sheet.png").At(0, 0)[0], 65000);
+}
+
+TEST_F(CliFinish, SequencesAreOfOneMeasureAndResume) {
+  WriteStyle("plain");
+  RunOk(
+      {"stylize", kToys, "--frames", "1-3", "--size", "64x48", "--style", "plain", "-o", "p.####.png", "--bits", "16"});
+  RunOk({"guidegen", kToys, "--frames", "1-3", "--size", "64x48", "--layers", "luminance,shadow", "-o", "g.####.exr"});
+  RunOk({"finish", "p.####.png", "g.####.exr", "--frames", "1-3", "--finish", "storybook", "-o", "f.####.png"});
+  RunOk({"finish", "p.0002.png", "g.0002.exr", "--finish", "storybook", "-o", "one.png"});
+  EXPECT_NE(Read("one.png").rgba, Read("f.0002.png").rgba) << "alone it is measured on itself";
+  const auto before = Read("f.0003.png").rgba;
+  std::filesystem::remove(At("f.0003.png"));
+  const CommandResult again = RunOk({"finish", "p.####.png", "g.####.exr", "--frames", "1-3", "--finish", "storybook",
+                                     "-o", "f.####.png", "--resume", "--json"});
+  EXPECT_TRUE(Contains(again.out, "\"kept\": 2")) << again.out;
+  EXPECT_EQ(Read("f.0003.png").rgba, before);
+  const CommandResult other = RunOk({"finish", "p.####.png", "g.####.exr", "--frames", "1-3", "--finish", "storybook",
+                                     "--set", "finish.ink.width=5", "-o", "f.####.png", "--resume", "--json"});
+  EXPECT_TRUE(Contains(other.out, "\"kept\": 0")) << other.out;
+}
+
+TEST_F(CliFinish, ListsEffectsKeysAndPresets) {
+  const std::string all = RunOk({"finish", "--list"}).out;
+  for (const char* name : {"comic", "ligne-claire", "noir", "chiaroscuro", "impression", "charcoal-lines", "storybook",
+                           "blueprint", "outline", "shadows", "tones", "depth", "grade", "fill", "strength"}) {
+    EXPECT_TRUE(Contains(all, name)) << name;
+  }
+  EXPECT_TRUE(Contains(RunOk({"finish", "--list", "--finish", "outline"}).out, "crease_angle"));
+  EXPECT_TRUE(Contains(RunOk({"finish", "--list", "--finish", "noir"}).out, "mode=\"black\""));
+  const nlohmann::json json = RunOk({"finish", "--list", "--json"}).Json();
+  EXPECT_GE(json["presets"].size(), 8u);
+  EXPECT_EQ(json["effects"][0]["name"], "tones");
+}
+
+TEST_F(CliFinish, SaysWhatIsWrong) {
+  ASSERT_TRUE(WritePicture(At("p.png"), Picture(32, 32)));
+  ExpectError({"finish", "p.png", "-o", "o.png"}, 2, {"--finish NAME is required"});
+  ExpectError({"finish", "p.png", "--finish", "tones"}, 2, {"-o FILE is required"});
+  ExpectError({"finish"}, 2, {"name a picture"});
+  ExpectError({"finish", "p.png", "--finish", "comix", "-o", "o.png"}, 3, {"--finish comix", "did you mean comic?"});
+  ExpectError({"finish", "p.png", "--finish", "outline", "-o", "o.png"}, 3,
+              {"finish outline needs", "depth", "name a guide file"});
+  ExpectError({"finish", "p.png", "--finish", "tones", "--set", "finish.tones.bin=3", "-o", "o.png"}, 2,
+              {"has no key 'bin'", "did you mean bins?"});
+  ExpectError({"finish", "p.png", "--finish", "tones", "--set", "finish.ink.width=3", "-o", "o.png"}, 2,
+              {"no finish has that name", "there are tones"});
+  ExpectError({"finish", "p.png", "--finish", "tones", "-o", "p.png"}, 2, {"p.png"});
+  RunOk({"guidegen", kBall, "--size", "40", "-o", "g.exr"});
+  ExpectError({"finish", "p.png", "g.exr", "--finish", "outline", "-o", "o.png"}, 3, {"32×32", "40×40"});
+  ExpectError({"finish", "p.png", "g.exr", "--finish", "noir", "-o", "o.png"}, 3, {"g.exr", "luminance"});
+  WriteStyle("plain");
+  ExpectError({"stylize", kBall, "--style", "plain", "--set", "finish.ink.width=3", "-o", "o.png"}, 2,
+              {"no finish has that name", "--finish"});
+  EXPECT_FALSE(std::filesystem::exists(At("o.png")));
+}
+
+// In an orthographic view nothing gets smaller with distance.
+TEST_F(CliFinish, RefusesThinLinesWithoutPerspective) {
+  RunOk({"sphere", "--size", "64", "-o", "kit"});
+  ASSERT_TRUE(WritePicture(At("p.png"), Picture(64, 64)));
+  ExpectError(
+      {"finish", "p.png", "kit/guides.exr", "--finish", "outline", "--set", "finish.outline.thin=1", "-o", "o.png"}, 3,
+      {"finish outline", "orthographic", "thin to 0"});
+}
+
+}  // namespace
+}  // namespace scumble

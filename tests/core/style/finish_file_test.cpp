@@ -1,0 +1,169 @@
+// [[finish]] in styles and presets, its keys, and what is said of mistakes.
+#include "core/style/finish_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <set>
+
+#include "core/io/picture_file.h"
+#include "core/style/finish_keys.h"
+#include "core/style/style_file.h"
+#include "tests/support/temporary_folder.h"
+
+namespace scumble {
+namespace {
+
+using ::testing::HasSubstr;
+
+class FinishFile : public ::testing::Test {
+ protected:
+  std::filesystem::path Write(const std::string& text) {
+    std::ofstream(folder_ / "look.toml") << text;
+    return folder_ / "look.toml";
+  }
+  std::string ErrorOf(const std::string& text) {
+    const auto preset = LoadFinishPreset(Write(text));
+    if (preset) return "none";
+    EXPECT_EQ(preset.error().kind, ErrorKind::kInput);
+    return preset.error().message;
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(FinishFile, HoldsPassesInOrder) {
+  const auto preset =
+      LoadFinishPreset(Write("help = \"a look\"\n[[finish]]\neffect = \"tones\"\nbins = 3\nstrength = 0.5\n"
+                             "[[finish]]\neffect = \"outline\"\nname = \"ink\"\nwidth = 4\nink = \"#ff8000\"\nside = "
+                             "\"inside\"\nat = \"sheet\"\n"
+                             "objects = [\"Tree*\", \"House\"]\nmaterials = \"Glass\"\n"));
+  ASSERT_TRUE(preset) << preset.error().message;
+  EXPECT_EQ(preset->name, "look");
+  EXPECT_EQ(preset->help, "a look");
+  ASSERT_EQ(preset->passes.size(), 2u);
+  const FinishPass &tones = preset->passes[0], &ink = preset->passes[1];
+  EXPECT_EQ(tones.name, "tones");
+  EXPECT_EQ(std::get<TonesPass>(tones.effect).bins, 3);
+  EXPECT_EQ(tones.strength, 0.5);
+  EXPECT_EQ(ink.name, "ink");
+  EXPECT_EQ(ink.at, FinishPass::Stage::kSheet);
+  const auto& outline = std::get<OutlinePass>(ink.effect);
+  EXPECT_EQ(outline.width, 4.0);
+  EXPECT_EQ(outline.ink, (Rgb16{65535, 128 * 257, 0}));
+  EXPECT_EQ(outline.side, OutlinePass::Side::kInside);
+  EXPECT_THAT(ink.objects, ::testing::ElementsAre("Tree*", "House"));
+  EXPECT_THAT(ink.materials, ::testing::ElementsAre("Glass"));
+}
+
+TEST_F(FinishFile, MistakesNameFileLineAndRemedy) {
+  EXPECT_THAT(ErrorOf("[[finish]]\neffect = \"outlines\"\n"),
+              ::testing::AllOf(HasSubstr("look.toml:2"), HasSubstr("there is no effect 'outlines'"),
+                               HasSubstr("did you mean outline?")));
+  EXPECT_THAT(
+      ErrorOf("[[finish]]\neffect = \"outline\"\n\nwidht = 3\n"),
+      ::testing::AllOf(HasSubstr("look.toml:4"), HasSubstr("has no key 'widht'"), HasSubstr("did you mean width?")));
+  EXPECT_THAT(ErrorOf("[[finish]]\neffect = \"outline\"\nwidth = 65\n"), HasSubstr("expected a number, 0 to 64"));
+  EXPECT_THAT(ErrorOf("[[finish]]\neffect = \"outline\"\nwidth = nan\n"), HasSubstr("expected a number, 0 to 64"));
+  EXPECT_THAT(ErrorOf("[[finish]]\neffect = \"outline\"\nink = \"black\"\n"), HasSubstr("a colour is #"));
+  EXPECT_THAT(ErrorOf("[[finish]]\neffect = \"outline\"\nside = \"left\"\n"),
+              HasSubstr("expected \"centre\", \"inside\" or \"outside\""));
+  EXPECT_THAT(ErrorOf("[[finish]]\neffect = \"tones\"\nbins = 2.5\n"), HasSubstr("expected a whole number, 2 to 64"));
+  EXPECT_THAT(ErrorOf("[[finish]]\neffect = \"tones\"\nobjects = [1]\n"), HasSubstr("expected names in quotes"));
+  EXPECT_THAT(ErrorOf("[[finish]]\neffect = \"tones\"\nname = \"a.b\"\n"), HasSubstr("without dots"));
+  EXPECT_THAT(ErrorOf("[[finish]]\nwidth = 3\n"), HasSubstr("has no effect"));
+  EXPECT_THAT(ErrorOf("[finish]\neffect = \"tones\"\n"), HasSubstr("two brackets"));
+  EXPECT_THAT(ErrorOf("help = \"nothing\"\n"), HasSubstr("has no [[finish]]"));
+  EXPECT_THAT(ErrorOf("width = 3\n"), HasSubstr("unknown key width"));
+  EXPECT_THAT(ErrorOf("[[finish]\n"), HasSubstr("not valid TOML"));
+}
+
+TEST_F(FinishFile, EveryKeyTakesItsDefaultAndSaysIt) {
+  for (const FinishEffect& effect : FinishEffects()) {
+    FinishPass pass = *MakeFinishPass(effect.name);
+    EXPECT_EQ(FinishText(pass), effect.name) << "defaults are left out";
+    std::set<std::string> names;
+    for (const auto keys : {std::span<const FinishKey>(effect.keys), CommonFinishKeys()}) {
+      for (const FinishKey& key : keys) {
+        EXPECT_TRUE(names.insert(key.name).second) << key.name;
+        EXPECT_NE(key.help, "") << key.name;
+        const KeyValue value = key.get(pass);
+        EXPECT_EQ(ToText(value), key.default_value) << key.name;
+        EXPECT_TRUE(SetFinishKey(pass, key.name, value)) << key.name;
+        if (key.kind == KeyKind::kNumber || key.kind == KeyKind::kWhole) {
+          const auto as_value = [&](double number) {
+            return key.kind == KeyKind::kWhole ? KeyValue(std::int64_t(number)) : KeyValue(number);
+          };
+          EXPECT_FALSE(SetFinishKey(pass, key.name, as_value(key.most + 1.0))) << key.name;
+          EXPECT_FALSE(SetFinishKey(pass, key.name, as_value(key.least - 1.0))) << key.name;
+          EXPECT_TRUE(SetFinishKey(pass, key.name, as_value(key.most))) << key.name;
+          if (ToText(as_value(key.most)) != key.default_value) {
+            EXPECT_THAT(FinishText(pass), HasSubstr(key.name + "=")) << "another value is another text";
+          }
+          EXPECT_TRUE(SetFinishKey(pass, key.name, value));
+        }
+        EXPECT_FALSE(SetFinishKey(pass, key.name, KeyValue(true))) << key.name;
+      }
+    }
+  }
+}
+
+TEST_F(FinishFile, OverridesGoToPassesByName) {
+  std::vector<FinishPass> passes{*MakeFinishPass("outline"), *MakeFinishPass("tones"), *MakeFinishPass("outline")};
+  passes[2].name = "ink";
+  const auto one = OverrideFinish(passes, "finish.ink.width=7.5");
+  ASSERT_TRUE(one) << one.error().message;
+  EXPECT_EQ(*one, 1u);
+  EXPECT_EQ(std::get<OutlinePass>(passes[2].effect).width, 7.5);
+  EXPECT_EQ(std::get<OutlinePass>(passes[0].effect).width, OutlinePass().width);
+  EXPECT_EQ(*OverrideFinish(passes, "finish.ink.ink=#102030"), 1u) << "quotes may be left off";
+  EXPECT_EQ(*OverrideFinish(passes, "finish.pen.width=3"), 0u);
+  EXPECT_THAT(NoSuchFinish("finish.pen.width=3", passes).message, HasSubstr("there are outline, tones, ink"));
+  EXPECT_FALSE(OverrideFinish(passes, "finish.width=3"));
+  EXPECT_FALSE(OverrideFinish(passes, "finish.ink.width=wide"));
+}
+
+TEST_F(FinishFile, StyleHasItsOwn) {
+  ASSERT_TRUE(WritePicture(folder_ / "lit.png", Picture(32, 32)));
+  std::ofstream(folder_ / "style.toml")
+      << "[[exemplar]]\nimage = \"lit.png\"\nfills = true\n[[finish]]\neffect = \"outline\"\nmaterial = 1\nthin = 1\n";
+  const auto style = LoadStyle(folder_ / "style.toml", {"finish.outline.width=3"});
+  ASSERT_TRUE(style) << style.error().message;
+  ASSERT_EQ(style->finish.size(), 1u);
+  EXPECT_EQ(std::get<OutlinePass>(style->finish[0].effect).width, 3.0);
+  EXPECT_TRUE(RequiredLayers(*style).Has(Layer::kMaterial));
+  EXPECT_FALSE(RequiredLayers(*style).Has(Layer::kShadow));
+  const auto wrong = LoadStyle(folder_ / "style.toml", {"finish.ink.width=3"});
+  ASSERT_FALSE(wrong);
+  EXPECT_THAT(wrong.error().message, HasSubstr("there are outline"));
+}
+
+TEST_F(FinishFile, BundledPresetsAreRead) {
+  const auto files = FindFinishPresets(std::filesystem::path(SCUMBLE_SOURCE_DIR) / "finish" / "presets");
+  EXPECT_GE(files.size(), 8u);
+  for (const auto& file : files) {
+    const auto preset = LoadFinishPreset(file);
+    ASSERT_TRUE(preset) << preset.error().message;
+    EXPECT_NE(preset->help, "") << file;
+  }
+}
+
+TEST(FinishLayers, AreThoseThatItReads) {
+  FinishPass pass = *MakeFinishPass("outline");
+  EXPECT_EQ(RequiredLayers(pass), (LayerSet{Layer::kCoverage, Layer::kNormal, Layer::kDepth, Layer::kObject}));
+  auto& outline = std::get<OutlinePass>(pass.effect);
+  outline.light = 1.0, outline.of_class[std::size_t(LineClass::kTexture)] = 1.0;
+  EXPECT_TRUE(RequiredLayers(pass).Contains({Layer::kLuminance, Layer::kAlbedo}));
+  pass.strength = 0.0;
+  EXPECT_TRUE(RequiredLayers(pass).empty()) << "what changes nothing reads nothing";
+  FinishPass shadows = *MakeFinishPass("shadows");
+  ASSERT_TRUE(SetFinishKey(shadows, "source", KeyValue(std::string("cast"))));
+  EXPECT_EQ(RequiredLayers(shadows), LayerSet{Layer::kShadow});
+  FinishPass tones = *MakeFinishPass("tones");
+  EXPECT_TRUE(RequiredLayers(tones).empty());
+  tones.objects = {"Ball"};
+  EXPECT_EQ(RequiredLayers(tones), LayerSet{Layer::kObject});
+}
+
+}  // namespace
+}  // namespace scumble
