@@ -29,6 +29,8 @@ std::optional<PointEffect> PointEffectOf(const FinishPass& pass, const FinishFra
   struct {
     const FinishFrame& frame;
     std::optional<PointEffect> operator()(const OutlinePass&) { return std::nullopt; }
+    std::optional<PointEffect> operator()(const ToonPass& one) { return internal::MakeToon(one, frame); }
+    std::optional<PointEffect> operator()(const RenderPass& one) { return internal::MakeRender(one, frame); }
     std::optional<PointEffect> operator()(const TonesPass& one) { return internal::MakeTones(one); }
     std::optional<PointEffect> operator()(const ShadowsPass& one) { return internal::MakeShadows(one, frame); }
     std::optional<PointEffect> operator()(const DepthPass& one) { return internal::MakeDepth(one, frame); }

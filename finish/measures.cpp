@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "core/image/color.h"
 #include "finish/finish.h"
 
 namespace scumble {
@@ -25,6 +26,8 @@ std::vector<float> CoveredValues(const GuideSet& guides, Layer layer) {
 
 bool Looks(const OutlinePass& pass) { return (pass.thin != 0.0 && pass.thin_at == 0.0) || pass.light != 0.0; }
 bool Looks(const ShadowsPass& pass) { return pass.source != ShadowsPass::Source::kCast; }
+bool Looks(const ToonPass&) { return true; }
+bool Looks(const RenderPass&) { return true; }
 bool Looks(const DepthPass& pass) { return pass.near == 0.0 || pass.far == 0.0; }
 bool Looks(const TonesPass&) { return false; }
 bool Looks(const GradePass&) { return false; }
@@ -47,6 +50,16 @@ FinishMeasures MeasureFinish(const GuideSet& guides) {
   if (std::vector<float> light = CoveredValues(guides, Layer::kLuminance); !light.empty()) {
     const double bright = Percentile(light, 0.9);
     if (bright > 0.0) measures.bright = bright;
+  }
+  if (guides.Has(Layer::kLpeFull)) {
+    std::vector<float> full;
+    const auto coverage = guides.Plane(Layer::kCoverage);
+    for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
+      const glm::vec3 color = guides.Vec3(Layer::kLpeFull, i);
+      if (coverage[i] > 0.0f) full.push_back(Luminance(color.r, color.g, color.b));
+    }
+    const double bright = full.empty() ? 0.0 : Percentile(full, 0.9);
+    if (bright > 0.0) measures.full = bright;
   }
   return measures;
 }

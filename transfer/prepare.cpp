@@ -205,7 +205,7 @@ Expected<PreparedStyle> PrepareInArena(const Style& style, int output_height, co
   }
   PreparedStyle prepared;
   prepared.settings = settings;
-  prepared.required = RequiredLayers(style);
+  prepared.required = TransferLayers(style);
   prepared.output_height = output_height;
   prepared.levels = ScaledLevels(settings.levels, settings.reference_height, output_height);
   prepared.blend_radius = ScaledRadius(settings.blend_radius, settings.reference_height, output_height);

@@ -20,6 +20,13 @@ LayerSet Of(const ShadowsPass& pass) {
   return layers;
 }
 
+LayerSet Of(const ToonPass& pass) {
+  LayerSet layers{Layer::kCoverage, Layer::kObject, Layer::kLuminance};
+  if (pass.from == ToonPass::Color::kAlbedo) layers.Add(Layer::kAlbedo);
+  return layers;
+}
+
+LayerSet Of(const RenderPass&) { return {Layer::kLpeFull}; }
 LayerSet Of(const DepthPass&) { return {Layer::kDepth}; }
 LayerSet Of(const TonesPass&) { return {}; }
 LayerSet Of(const GradePass&) { return {}; }

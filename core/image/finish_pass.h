@@ -47,6 +47,23 @@ struct OutlinePass {
   Side side = Side::kCentre;
 };
 
+// Flat bands of light instead of the paint.
+struct ToonPass {
+  enum class Color { kAlbedo, kPaint };  // of the brightest band: the scene's base colour, or the paint's own
+  int bands = 3;                         // 1 … 64; 1: flat
+  double softness = 0.75;                // 0 … 16 pixels at the reference height: half the width of a band's border
+  double shade = 0.45;                   // 0 … 1: the darkest band's lightness, as a share of the brightest's
+  double tint = 0.3;                     // 0 … 1: how much of the hue of `color` the darkest band takes on
+  Rgb16 color = {0x3838, 0x4444, 0x8080};
+  Color from = Color::kAlbedo;
+};
+
+// The light of the scene itself (layer lpe.full) instead of the paint, by an extended Reinhard curve.
+struct RenderPass {
+  double exposure = 0.0;  // -16 … 16 stops; at 0 the brightest tenth of the first picture is at 0.8
+  double white = 4.0;     // 1 … 100: the linear value that becomes white
+};
+
 // Lightness in steps (Winnemöller, Olsen, Gooch 2006, made to keep black, white and the middle of every step).
 struct TonesPass {
   int bins = 8;            // 2 … 64
@@ -91,7 +108,8 @@ struct FillPass {
 
 struct FinishPass {
   enum class Stage { kPaint, kSheet };  // before the paper is put behind, or after
-  using Effect = std::variant<OutlinePass, TonesPass, ShadowsPass, DepthPass, GradePass, FillPass>;
+  using Effect =
+      std::variant<OutlinePass, ToonPass, RenderPass, TonesPass, ShadowsPass, DepthPass, GradePass, FillPass>;
   std::string name;  // for --set finish.NAME.KEY; the effect's if the user gives none
   Effect effect;
   Stage at = Stage::kPaint;

@@ -30,7 +30,7 @@ bool GuideWeights::IsRadiance(Layer layer) {
   }
 }
 
-LayerSet RequiredLayers(const Style& style) {
+LayerSet TransferLayers(const Style& style) {
   const TransferSettings& settings = style.transfer;
   LayerSet layers{Layer::kCoverage, Layer::kNormal};
   const bool votes_stop_at_edges = settings.edge_aware && settings.blend_radius > 0;
@@ -44,6 +44,11 @@ LayerSet RequiredLayers(const Style& style) {
   if (settings.shadow == ShadowMode::kPaint) layers.Add(Layer::kShadow);
   if (settings.edge == EdgeMode::kExemplar) layers.Add(Layer::kObject).Add(Layer::kDepth);
   if (settings.colorize > 0.0) layers.Add(Layer::kAlbedo);
+  return layers;
+}
+
+LayerSet RequiredLayers(const Style& style) {
+  LayerSet layers = TransferLayers(style);
   for (const FinishPass& pass : style.finish) layers.Add(RequiredLayers(pass));
   return layers;
 }

@@ -188,11 +188,17 @@ struct Style {
   std::vector<Exemplar> exemplars;  // one, or up to kMaxExemplars lighting conditions of the same style
   Paper paper;                      // neither set: transparent
   std::vector<FinishPass> finish;   // in order
+  // Of the methods "toon" and "render": the finishing effect that makes the picture. It is the first of `finish`, and
+  // the exemplar is a plain grey sphere. Empty: paint makes it.
+  std::string unpainted;
   std::vector<StyleTrack> tracks;
   PictureReader read_picture;  // of files that keys name; null: ReadPicture
 };
 
-// The layers that a transfer with this style and its finish read: `guidegen` makes these and no more.
+// The layers that a transfer with this style reads, without its finish.
+LayerSet TransferLayers(const Style& style);
+
+// TransferLayers, and what the style's finish reads: `guidegen` makes these and no more.
 LayerSet RequiredLayers(const Style& style);
 
 // Whether the exposure of the scene's light matters: in styles of several exemplars, and in those that weigh radiance.

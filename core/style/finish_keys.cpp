@@ -148,6 +148,23 @@ std::vector<FinishKey> OutlineKeys() {
       PassChoice("side", &P::side, {"centre", "inside", "outside"}, "of the nearer surface's border")};
 }
 
+std::vector<FinishKey> ToonKeys() {
+  using P = ToonPass;
+  return {
+      PassWhole("bands", &P::bands, 1, 64, "bands of light"),
+      PassNumber("softness", &P::softness, 0.0, 16.0, "half the width of a band's border, pixels"),
+      PassNumber("shade", &P::shade, 0.0, 1.0, "lightness of the darkest band, as a share of the brightest's"),
+      PassNumber("tint", &P::tint, 0.0, 1.0, "how much of the colour's hue the darkest band takes on"),
+      PassColor("color", &P::color, "of tint"),
+      PassChoice("from", &P::from, {"albedo", "paint"}, "what the bands shade: the scene's base colour, or the paint")};
+}
+
+std::vector<FinishKey> RenderKeys() {
+  using P = RenderPass;
+  return {PassNumber("exposure", &P::exposure, -16.0, 16.0, "stops; 0: the first picture's brightest tenth is at 0.8"),
+          PassNumber("white", &P::white, 1.0, 100.0, "the linear value that becomes white")};
+}
+
 std::vector<FinishKey> TonesKeys() {
   using P = TonesPass;
   return {PassWhole("bins", &P::bins, 2, 64, "steps of lightness"),
@@ -201,6 +218,8 @@ std::vector<FinishKey> MakeCommonKeys() {
 
 std::vector<FinishEffect> MakeEffects() {
   std::vector<FinishEffect> effects = {
+      {"render", "the light of the scene itself instead of the paint", RenderPass(), RenderKeys()},
+      {"toon", "flat bands of light instead of the paint, or over it", ToonPass(), ToonKeys()},
       {"tones", "lightness in steps", TonesPass(), TonesKeys()},
       {"shadows", "what is in shade: darker, black, in another colour", ShadowsPass(), ShadowsKeys()},
       {"depth", "what is far: paler, tinted, in haze, in layers", DepthPass(), DepthKeys()},

@@ -10,6 +10,7 @@
 #include "core/io/guide_file.h"
 #include "core/io/picture_file.h"
 #include "core/style/finish_file.h"
+#include "core/style/finish_keys.h"
 #include "core/style/finish_tables.h"
 #include "core/style/kit/sphere_template.h"
 #include "core/style/place_sphere.h"
@@ -320,7 +321,7 @@ Expected<Style> ReadStyleFile(const fs::path& path, const StyleReading& reading)
       SCUMBLE_RETURN_IF_ERROR(SetKeyInFile(style, name, node, path));
     }
   }
-  if (style.exemplars.empty()) {
+  if (style.exemplars.empty() && style.unpainted.empty()) {
     return InputError(file + " has no [[exemplar]]; add [[exemplar]] and image = \"lit.png\" under it");
   }
   return style;
@@ -381,6 +382,40 @@ Status ApplyOverride(Style& style, const std::string& text) {
   }
   if (name.rfind("exemplar.", 0) == 0) return SetExemplarKey(style, name, *table.get("value"));
   return SetKey(style, name, *table.get("value"), "--set", fs::path());
+}
+
+// Of a method without a painting: the effect that makes the picture, over plain paint that asks for nothing.
+Status MakeUnpainted(Style& style) {
+  if (style.unpainted.empty()) return Ok();
+  const auto is_it = [&](const FinishPass& pass) { return EffectOf(pass).name == style.unpainted; };
+  if (std::none_of(style.finish.begin(), style.finish.end(), is_it)) {
+    SCUMBLE_ASSIGN(FinishPass pass, MakeFinishPass(style.unpainted));
+    style.finish.insert(style.finish.begin(), std::move(pass));
+  }
+  const int reference_height = style.transfer.reference_height;
+  style.transfer = TransferSettings();
+  style.transfer.method = Method::kLitSphere, style.transfer.reference_height = reference_height;
+  style.transfer.edge_aware = false, style.transfer.blend_radius = 0;
+  Exemplar grey;
+  grey.name = style.unpainted, grey.fills = true;
+  grey.picture = Picture(16, 16);
+  for (std::size_t i = 0; i < grey.picture.rgba.size(); ++i) grey.picture.rgba[i] = i % 4 == 3 ? 65535 : 32896;
+  style.exemplars.assign(1, std::move(grey));
+  std::erase_if(style.tracks, [](const StyleTrack& track) { return track.name != "transfer.paper"; });
+  return Ok();
+}
+
+// Keys of finishing effects last: the method brings one.
+Status ApplyOverrides(Style& style, const std::vector<std::string>& overrides) {
+  const auto is_of_finish = [](const std::string& text) { return text.rfind(kFinishKeys, 0) == 0; };
+  for (const std::string& text : overrides) {
+    if (!is_of_finish(text)) SCUMBLE_RETURN_IF_ERROR(ApplyOverride(style, text));
+  }
+  SCUMBLE_RETURN_IF_ERROR(MakeUnpainted(style));
+  for (const std::string& text : overrides) {
+    if (is_of_finish(text)) SCUMBLE_RETURN_IF_ERROR(ApplyOverride(style, text));
+  }
+  return Ok();
 }
 
 // A picture named as a style. If the picture belongs to a style, that style is used: a painted template by itself would
@@ -466,9 +501,12 @@ Expected<Style> LoadStyle(const fs::path& path, const std::vector<std::string>& 
                           const StyleReading& reading) {
   std::error_code failed;
   const fs::file_status kind = fs::status(path, failed);
-  if (!fs::exists(kind)) return InputError("cannot read style " + path.string() + ": there is no such file or folder");
   Style style;
-  if (fs::is_directory(kind)) {
+  if (!fs::exists(kind)) {
+    if (!IsUnpainted(path.string()))
+      return InputError("cannot read style " + path.string() + ": there is no such file or folder");
+    style.name = style.unpainted = path.string();
+  } else if (fs::is_directory(kind)) {
     if (!Exists(path / "style.toml")) return InputError("style folder " + path.string() + " holds no style.toml");
     SCUMBLE_ASSIGN(style, ReadStyleFile(path / "style.toml", reading));
   } else if (path.extension() == ".toml") {
@@ -477,7 +515,7 @@ Expected<Style> LoadStyle(const fs::path& path, const std::vector<std::string>& 
     SCUMBLE_ASSIGN(style, ReadPictureStyle(path, reading));
   }
   if (style.name.empty()) style.name = NameFor(path, fs::is_directory(kind));
-  for (const std::string& text : overrides) SCUMBLE_RETURN_IF_ERROR(ApplyOverride(style, text));
+  SCUMBLE_RETURN_IF_ERROR(ApplyOverrides(style, overrides));
   SCUMBLE_RETURN_IF_ERROR(ReadWeighedGuides(style, reading.room));
   for (Exemplar& exemplar : style.exemplars) {
     SCUMBLE_RETURN_IF_ERROR(PlaceSphere(exemplar));

@@ -27,7 +27,7 @@ struct StyleReading {
   PictureReader read_picture;  // null: ReadPicture
 };
 
-// Reads a style and its pictures. `overrides` are "key=value" texts with the keys of style.toml and values as TOML
+// Reads a style and its pictures. The names "toon" and "render", where no file has them, are styles of these methods. `overrides` are "key=value" texts with the keys of style.toml and values as TOML
 // writes them (quotes may be left off: transfer.method=litsphere); they win over the file. Of [[exemplar]] the
 // luminance and fills can be overridden, by number from 1: exemplar.2.luminance=0.1. Every key is applied, or refused
 // by name: unknown ones with the list of known ones, missing features as kUnavailable.

@@ -109,8 +109,17 @@ KeyForm MethodChoice() {
   form.set = [known = form.set](Style& style, const KeyValue& value, const std::filesystem::path& folder) -> Status {
     const auto* text = std::get_if<std::string>(&value);
     if (text && *text == "stylit") return UnavailableError("method stylit is not built into this version");
-    return known(style, value, folder);
+    style.unpainted.clear();
+    if (text && IsUnpainted(*text)) {
+      style.unpainted = *text;
+      style.transfer.method = Method::kLitSphere;
+      return Ok();
+    }
+    Status done = known(style, value, folder);
+    if (!done) done = UsageError(done.error().message + "; \"toon\" and \"render\" need no painting");
+    return done;
   };
+  for (const char* name : {"toon", "render"}) form.choices.push_back(name);
   return form;
 }
 
@@ -175,8 +184,8 @@ std::vector<StyleKey> MakeKeys() {
   std::vector<StyleKey> keys = {
       {Text(&Style::name), "name", "\"\"", "what the style is called", true, "Style", false},
       {Text(&Style::licence), "licence", "\"\"", "SPDX name of the licence", true, "Style", false},
-      {MethodChoice(), "transfer.method", "\"styleblit\"", "litsphere, styleblit or bruteforce", true, "Matching",
-       true},
+      {MethodChoice(), "transfer.method", "\"styleblit\"",
+       "litsphere, styleblit or bruteforce; toon or render: without a painting", true, "Matching", true},
       {Choice<NearestSearch>(&T::nearest, {{"auto", NearestSearch::kAuto},
                                            {"analytic", NearestSearch::kAnalytic},
                                            {"table", NearestSearch::kTable},
@@ -282,6 +291,8 @@ std::optional<double> AsNumber(const KeyValue& value) {
   if (const auto* whole = std::get_if<std::int64_t>(&value)) return static_cast<double>(*whole);
   return std::nullopt;
 }
+
+bool IsUnpainted(const std::string& method) { return method == "toon" || method == "render"; }
 
 std::span<const StyleKey> StyleKeys() {
   static const std::vector<StyleKey> keys = MakeKeys();

@@ -52,6 +52,9 @@ struct StyleKey : KeyForm {
   KeyValue Default() const;  // default_value by its kind
 };
 
+// Whether a method makes pictures without an exemplar: "toon", "render". See Style::unpainted.
+bool IsUnpainted(const std::string& method);
+
 // All keys but those of [[exemplar]], in the order of the documentation.
 std::span<const StyleKey> StyleKeys();
 

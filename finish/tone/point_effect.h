@@ -13,6 +13,8 @@ namespace scumble::internal {
 using PointEffect = std::function<void(std::size_t first, std::size_t count, OklabBlock& block)>;
 
 // Each keeps references to the frame and its guides, which must hold the pass's layers.
+PointEffect MakeToon(const ToonPass& pass, const FinishFrame& frame);
+PointEffect MakeRender(const RenderPass& pass, const FinishFrame& frame);
 PointEffect MakeTones(const TonesPass& pass);
 PointEffect MakeShadows(const ShadowsPass& pass, const FinishFrame& frame);
 PointEffect MakeDepth(const DepthPass& pass, const FinishFrame& frame);

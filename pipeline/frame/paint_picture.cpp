@@ -215,7 +215,7 @@ Status PrepareFrame(StyleSet& styles, const GuideSet& guides, const PictureReque
     if (all || changed.empty() || i >= state.prepared.size()) continue;
     if (std::all_of(changed.begin(), changed.end(), IsReadEachFrame)) {
       state.prepared[i].settings = styles.styles[i].transfer;
-      state.prepared[i].required = RequiredLayers(styles.styles[i]);
+      state.prepared[i].required = TransferLayers(styles.styles[i]);
       continue;
     }
     Expected<PreparedStyle> one = PrepareAndWarn(styles.styles[i], height, context);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/style/kit/sphere_template.h"
+#include "finish/finish.h"
 #include "guidegen/light/path_layers.h"
 #include "transfer/exemplar/prepared_exemplar.h"
 
@@ -253,6 +254,9 @@ void AddPicture(const PictureWork& work, const PictureRequest& options, MemoryNe
   for (const Style& style : work.styles) AddStyle(style, size.height, need);
   need.Take("picture", kPaint * pixels);
   AddSources(work, size, need);
+  std::vector<FinishPass> passes(work.finish.begin(), work.finish.end());
+  for (const Style& style : work.styles) passes.insert(passes.end(), style.finish.begin(), style.finish.end());
+  AddFinish(passes, work.has_map, size, need);
   if (options.show)
     need.TakeTransient("explaining", kExplained * pixels);
   else if (work.keeps_field)
@@ -262,6 +266,28 @@ void AddPicture(const PictureWork& work, const PictureRequest& options, MemoryNe
   if (larger > 1) need.Take("scaled picture", kPaint * pixels * larger);
   if (larger > 1) need.TakeTransient("scaling it", kPaint * pixels * Bytes(options.PictureFactor()));
   need.TakeTransient("picture file", encoded * pixels * larger);
+}
+
+void AddFinish(std::span<const FinishPass> passes, bool has_map, const Size& size, MemoryNeed& need) {
+  // Borders by pixel, the share that strokes cover, and lines: a tenth of the pixels have a border, and each is a point
+  // of 40 bytes and a piece of a stroke of 28, in lists that grow.
+  constexpr Bytes kOutline = 2 + kFloat + (40 + 2 * 28 + 24) / 10;
+  Bytes masks = 0, transient = 0;
+  for (const FinishPass& pass : passes) {
+    if (!(pass.strength > 0.0)) continue;
+    const bool has_names = !pass.objects.empty() || !pass.materials.empty();
+    masks += (has_map ? 1 : 0) + (has_names ? 2 : 0);
+    const auto* outline = std::get_if<OutlinePass>(&pass.effect);
+    if (!outline) continue;
+    Bytes of_pixel = kOutline;
+    if (outline->color != OutlinePass::Color::kInk) of_pixel += 4 + kPaint;
+    if (outline->of_class[std::size_t(LineClass::kTexture)] > 0.0) of_pixel += 3 * kFloat;
+    transient = std::max(transient, of_pixel);
+  }
+  const bool measures = LooksAtMeasures(passes);
+  if (masks > 0) need.Take("finish", masks * PixelsOf(size));
+  if (measures) transient = std::max(transient, Bytes(2 * kFloat));  // a copy of a plane that grows
+  if (transient > 0) need.TakeTransient("lines", transient * PixelsOf(size));
 }
 
 void AddKit(int size, std::size_t lights, const LayerSet& layers, bool has_layers_file, MemoryNeed& need) {

@@ -47,9 +47,13 @@ struct PictureWork {
   bool is_sequence = false;  // one picture is written while the next is made
   bool keeps_field = false;  // PictureRequest::KeepsField
   int threads = 0;
-  std::size_t fragments = 0;  // of the guides
+  std::size_t fragments = 0;                // of the guides
+  std::span<const FinishPass> finish = {};  // of the run
 };
 void AddPicture(const PictureWork& work, const PictureRequest& options, MemoryNeed& need);
+
+// What finishing passes take over a picture: the pixels that they are for, and their work.
+void AddFinish(std::span<const FinishPass> passes, bool has_map, const Size& size, MemoryNeed& need);
 
 // The artist's kit of `scumble sphere`: `lights` of N × N guides with these layers and their template files.
 void AddKit(int size, std::size_t lights, const LayerSet& layers, bool has_layers_file, MemoryNeed& need);

@@ -53,8 +53,29 @@ struct FrameFiles {
   std::string picture, guides, camera, output;
 };
 
+// Before any of it is taken. Files that cannot be read take nothing; reading them is an error later.
+Status CheckFinishMemory(const FinishRequest& request, const FrameFiles& files, const FinishState& state,
+                         const RunContext& context) {
+  MemoryNeed need;
+  AddProgram(context.threads, need);
+  const auto header = InspectPicture(files.picture);
+  if (!header) return Ok();
+  const Size size{header->width, header->height};
+  const std::uint64_t pixels = std::uint64_t(size.width) * std::uint64_t(size.height);
+  need.Take("picture", 8 * pixels);
+  need.TakeTransient("reading it", 16 * pixels);
+  if (const auto info =
+          files.guides.empty() ? Expected<GuideFileInfo>(InputError("none")) : InspectGuides(files.guides)) {
+    AddGuidesRead(*info, ReadOptions(request, state.required, files.camera), need);
+  }
+  AddFinish(state.passes, false, size, need);
+  need.TakeTransient("picture file", 16 * pixels);
+  return CheckMemory(need, context, "take smaller pictures");
+}
+
 Expected<FrameWrite> Finish(const FinishRequest& request, const FrameFiles& files, const RunContext& context,
                             const Progress& progress, FinishState& state) {
+  SCUMBLE_RETURN_IF_ERROR(CheckFinishMemory(request, files, state, context));
   StepTimes times;
   Stopwatch watch;
   const auto picture = std::make_shared<Picture>();

@@ -27,11 +27,6 @@ FrameReport ReportOf(const GuidegenRequest& request, const std::string& output, 
   return {std::move(report), made.plan, made.memory, made.cost, 0, 0.0};
 }
 
-void NameStylesInPlan(std::vector<PlanItem>& plan, const std::optional<StyleSet>& styles) {
-  if (!styles) return;
-  for (const Style& style : styles->styles) NameStyleInPlan(plan, style);
-}
-
 Expected<RunReport> GuidegenSequence(const GuidegenRequest& request, const Sequence& sequence,
                                      const LayersFor& layers_for, bool motion, const std::optional<StyleSet>& styles,
                                      const SequenceListener& listener, const RunContext& context) {
@@ -57,7 +52,7 @@ Expected<RunReport> GuidegenSequence(const GuidegenRequest& request, const Seque
     report.times = guides->times, report.plan = guides->plan, report.cost = guides->cost;
     report.memory = guides->memory;
     report.samples = guides->samples, report.noise = guides->noise;
-    NameStylesInPlan(report.plan, styles);
+    if (styles) NameStylesInPlan(report.plan, *styles);
     return FrameWrite([&request, output, kept = scene.Keep(),
                        rest = std::make_shared<SceneGuides>(std::move(report))]() -> Expected<FrameReport> {
       Stopwatch watch;
@@ -136,7 +131,7 @@ Expected<RunReport> RunGuidegen(GuidegenRequest request, const SequenceListener&
     if (timeless) scene.animation.clear();
     SCUMBLE_ASSIGN(made, MakeStaticGuides(scene, layers_for, motion && !timeless, context, progress, plan_only));
   }
-  NameStylesInPlan(made.plan, styles);
+  if (styles) NameStylesInPlan(made.plan, *styles);
   if (!plan_only) {
     Stopwatch watch;
     SCUMBLE_RETURN_IF_ERROR(WriteGuides(request.output, made.guides, request.write));

@@ -51,7 +51,7 @@ Expected<RunReport> StylizeSequence(const StylizeRequest& request, const Sequenc
   const auto source = [&](const SceneGuides& made) -> FrameGuides {
     GuideSource from{request.scene.scene, made.times, request.explain ? made.plan : std::vector<PlanItem>(), made.cost,
                      made.memory};
-    for (const Style& style : styles.styles) NameStyleInPlan(from.plan, style);
+    NameStylesInPlan(from.plan, styles);
     return {&made.guides, std::move(from)};
   };
   const GuidesAt guides_at = [&](int frame, const Progress& progress) -> Expected<FrameGuides> {
@@ -101,7 +101,7 @@ Expected<RunReport> PlanOf(const StylizeRequest& request, StyleSet& styles, cons
   scene.blender.frame = request.picture.frame;
   SCUMBLE_ASSIGN(SceneGuides made, MakeStaticGuides(scene, RequiredOfScene(styles, scene.scene, Ok), false, context,
                                                     context.StartProgress("stylize"), true));
-  for (const Style& style : styles.styles) NameStyleInPlan(made.plan, style);
+  NameStylesInPlan(made.plan, styles);
   RunReport report;
   report.plan = std::move(made.plan);
   report.memory = std::move(made.memory);
@@ -172,7 +172,7 @@ Expected<RunReport> RunStylize(StylizeRequest request, const SequenceListener& l
                      : MakeStaticGuides(scene, layers_for, false, context, progress, false));
   SCUMBLE_RETURN_IF_ERROR(made.guides.Validate(request.scene.scene));
   made.times.insert(made.times.begin(), {"style", style_ms});
-  for (const Style& style : styles.styles) NameStyleInPlan(made.plan, style);
+  NameStylesInPlan(made.plan, styles);
   if (!request.explain) made.plan.clear();
   const GuideSource source{request.scene.scene, std::move(made.times), std::move(made.plan), made.cost, made.memory};
   SCUMBLE_ASSIGN(RunReport report,

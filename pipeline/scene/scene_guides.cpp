@@ -225,13 +225,27 @@ Expected<SceneGuides> CastScene(Scene& scene, const Camera& camera, const NextFr
   return result;
 }
 
-void NameStyleInPlan(std::vector<PlanItem>& plan, const Style& style) {
-  const LayerSet read = RequiredLayers(style);
+namespace {
+
+void NameReaderInPlan(std::vector<PlanItem>& plan, const LayerSet& read, const std::string& who) {
   for (PlanItem& item : plan) {
     for (const LayerInfo& info : AllLayers()) {
-      if (read.Has(info.layer) && item.layer == info.name) item.reason += ", read by style " + style.name;
+      if (read.Has(info.layer) && item.layer == info.name) item.reason += ", read by " + who;
     }
   }
+}
+
+}  // namespace
+
+void NameStylesInPlan(std::vector<PlanItem>& plan, const StyleSet& styles) {
+  const auto name_passes = [&](const std::vector<FinishPass>& passes) {
+    for (const FinishPass& pass : passes) NameReaderInPlan(plan, RequiredLayers(pass), "finish " + pass.name);
+  };
+  for (const Style& style : styles.styles) {
+    NameReaderInPlan(plan, TransferLayers(style), "style " + style.name);
+    name_passes(style.finish);
+  }
+  name_passes(styles.finish);
 }
 
 }  // namespace scumble

@@ -14,6 +14,7 @@
 #include "pipeline/memory/memory_limit.h"
 #include "pipeline/requests.h"
 #include "pipeline/run_context.h"
+#include "pipeline/style/style_set.h"
 #include "pipeline/scene/blender_scene.h"
 
 namespace scumble {
@@ -98,7 +99,7 @@ Expected<SceneGuides> CastScene(Scene& scene, const Camera& camera, const NextFr
 Expected<SceneGuides> MakeGuidesOf(Scene& scene, const SceneRequest& options, const LayerSet& layers,
                                    const RunContext& context, const Progress& progress, bool plan_only);
 
-// Adds to the plan which layers the style reads.
-void NameStyleInPlan(std::vector<PlanItem>& plan, const Style& style);
+// Adds to the plan which layers the styles and the finishing effects read.
+void NameStylesInPlan(std::vector<PlanItem>& plan, const StyleSet& styles);
 
 }  // namespace scumble

@@ -3,6 +3,7 @@
 #include <system_error>
 
 #include "core/style/style_file.h"
+#include "core/style/style_keys.h"
 
 namespace scumble {
 
@@ -18,6 +19,7 @@ Expected<Style> OpenStyle(const StyleRequest& request, const RunContext& context
 Expected<fs::path> FindStyle(const std::string& name, const RunContext& context, const fs::path& base) {
   std::error_code failed;
   if (fs::exists(base / name, failed)) return base / name;
+  if (IsUnpainted(name)) return fs::path(name);
   std::string bundled;
   for (const fs::path& root : StyleFolders(context)) {
     for (const fs::path& style : FindStyles(root)) {
@@ -26,8 +28,9 @@ Expected<fs::path> FindStyle(const std::string& name, const RunContext& context,
     }
   }
   return InputError("there is no style '" + name + "': expected a file, a folder, or " +
-                    (bundled.empty() ? "a bundled style, of which none are found beside this program"
-                                     : "one of the bundled styles " + bundled));
+                    (bundled.empty()
+                         ? "a bundled style, of which none are found beside this program"
+                         : "one of the bundled styles " + bundled + ", or toon or render, which need no painting"));
 }
 
 }  // namespace scumble

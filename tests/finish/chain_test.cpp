@@ -14,7 +14,8 @@ namespace {
 // Guides with every layer that some effect reads.
 GuideSet AllGuides(int size) {
   GuideSet guides = BallGuides(size, 0.4f * static_cast<float>(size));
-  for (const Layer layer : {Layer::kMaterial, Layer::kAlbedo, Layer::kLuminance, Layer::kShadow}) guides.Add(layer);
+  for (const Layer layer : {Layer::kMaterial, Layer::kAlbedo, Layer::kLuminance, Layer::kShadow, Layer::kLpeFull})
+    guides.Add(layer);
   for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
     guides.Plane(Layer::kLuminance)[i] = std::max(0.0f, guides.Plane(Layer::kNormal)[i]);
     guides.Plane(Layer::kShadow)[i] = static_cast<float>(i % 7) / 6.0f;

@@ -155,6 +155,7 @@ void AddFinishVerb(CLI::App& app, Globals& globals, Action& chosen) {
       ->capture_default_str();
   AddSequenceOptions(*sub, verb->sequence);
   AddTimingOption(*sub, globals);
+  AddMemoryOption(*sub, globals);
   AddGlobalOptions(*sub, globals);
   sub->callback([verb, &globals, &chosen] { chosen = [verb, &globals] { return RunFinishVerb(*verb, globals); }; });
 }

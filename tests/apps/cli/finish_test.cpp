@@ -103,6 +103,35 @@ TEST_F(CliFinish, OfAStyleTouchesItsOwnPixels) {
   EXPECT_TRUE(Contains(none.err, "no object has the name Balloon")) << none.err;
 }
 
+// Methods that need no painting, alone and for some objects.
+TEST_F(CliFinish, ToonAndRenderAreStylesWithoutAPainting) {
+  RunOk({"stylize", kToys, "--size", "96x64", "--style", "toon", "-o", "toon.png"});
+  RunOk({"stylize", kToys, "--size", "96x64", "--style", "toon", "--set", "finish.toon.bands=1", "-o", "flat.png"});
+  RunOk({"stylize", kToys, "--size", "96x64", "--style", "render", "--samples", "4", "-o", "render.png"});
+  const Picture toon = Read("toon.png"), flat = Read("flat.png"), render = Read("render.png");
+  EXPECT_NE(toon.rgba, flat.rgba);
+  EXPECT_NE(toon.rgba, render.rgba);
+  WriteStyle("plain");
+  RunOk({"stylize", kToys, "--size", "96x64", "--style", "plain", "--assign", "Ball*=toon", "-o", "both.png"});
+  RunOk({"stylize", kToys, "--size", "96x64", "--style", "plain", "-o", "plain.png"});
+  const Picture both = Read("both.png"), plain = Read("plain.png");
+  std::size_t of_toon = 0, of_plain = 0, of_none = 0;
+  for (std::size_t i = 0; i < both.rgba.size(); i += 4) {
+    const auto same = [&](const Picture& other) {
+      return std::equal(&both.rgba[i], &both.rgba[i] + 4, &other.rgba[i]);
+    };
+    (same(plain) ? of_plain : same(toon) ? of_toon : of_none)++;
+  }
+  EXPECT_GT(of_toon, 50u);
+  EXPECT_GT(of_plain, 500u);
+  EXPECT_EQ(of_none, 0u);
+  std::filesystem::create_directories(At("bare"));
+  WriteText("bare/style.toml", "[transfer]\nmethod = \"toon\"\n[[finish]]\neffect = \"toon\"\nbands = 1\n");
+  RunOk({"stylize", kToys, "--size", "96x64", "--style", "bare", "-o", "bare.png"});
+  EXPECT_EQ(Read("bare.png").rgba, flat.rgba);
+  EXPECT_TRUE(Contains(RunOk({"stylize", kToys, "--style", "toon", "--explain"}).out, "read by finish toon"));
+}
+
 TEST_F(CliFinish, LiesUnderThePaperOrOverIt) {
   WriteStyle("paper", "[transfer]\npaper = \"#0000ff\"\n");
   WriteText("paint.toml", "[[finish]]\neffect = \"fill\"\ncolor = \"#ff0000\"\n");
@@ -144,7 +173,7 @@ TEST_F(CliFinish, ListsEffectsKeysAndPresets) {
   EXPECT_TRUE(Contains(RunOk({"finish", "--list", "--finish", "noir"}).out, "mode=\"black\""));
   const nlohmann::json json = RunOk({"finish", "--list", "--json"}).Json();
   EXPECT_GE(json["presets"].size(), 8u);
-  EXPECT_EQ(json["effects"][0]["name"], "tones");
+  EXPECT_EQ(json["effects"][0]["name"], "render");
 }
 
 TEST_F(CliFinish, SaysWhatIsWrong) {
