@@ -9,6 +9,7 @@
 #include "core/filter/oklab_rows.h"
 #include "core/filter/parallel.h"
 #include "core/image/check.h"
+#include "finish/area/area_effects.h"
 #include "finish/finish.h"
 #include "finish/outline/outline.h"
 #include "finish/tone/point_effect.h"
@@ -29,6 +30,8 @@ std::optional<PointEffect> PointEffectOf(const FinishPass& pass, const FinishFra
   struct {
     const FinishFrame& frame;
     std::optional<PointEffect> operator()(const OutlinePass&) { return std::nullopt; }
+    std::optional<PointEffect> operator()(const SmoothPass&) { return std::nullopt; }
+    std::optional<PointEffect> operator()(const EdgesPass&) { return std::nullopt; }
     std::optional<PointEffect> operator()(const ToonPass& one) { return internal::MakeToon(one, frame); }
     std::optional<PointEffect> operator()(const RenderPass& one) { return internal::MakeRender(one, frame); }
     std::optional<PointEffect> operator()(const TonesPass& one) { return internal::MakeTones(one); }
@@ -82,6 +85,18 @@ bool PaintPoints(std::span<const PointStep> steps, internal::RowProgress& progre
   });
 }
 
+// An effect that looks at more than the pixel itself.
+void ApplyToAll(const FinishStep& step, const FinishFrame& frame, Picture& picture) {
+  const FinishPass& pass = step.pass;
+  if (const auto* outline = std::get_if<OutlinePass>(&pass.effect)) {
+    internal::DrawOutline(*outline, pass.strength, step.only, frame, picture);
+  } else if (const auto* smooth = std::get_if<SmoothPass>(&pass.effect)) {
+    internal::Smooth(*smooth, pass.strength, step.only, frame, picture);
+  } else if (const auto* edges = std::get_if<EdgesPass>(&pass.effect)) {
+    internal::DrawEdges(*edges, pass.strength, step.only, frame, picture);
+  }
+}
+
 Status Apply(std::span<const FinishStep* const> steps, const FinishFrame& frame, const Progress& progress,
              Picture& picture) {
   const double share = 1.0 / static_cast<double>(steps.size());
@@ -99,7 +114,7 @@ Status Apply(std::span<const FinishStep* const> steps, const FinishFrame& frame,
       continue;
     }
     const FinishStep& step = *steps[i++];
-    internal::DrawOutline(std::get<OutlinePass>(step.pass.effect), step.pass.strength, step.only, frame, picture);
+    ApplyToAll(step, frame, picture);
     if (progress && !progress(share * double(i))) return CancelledError();
   }
   return Ok();

@@ -4,7 +4,8 @@
 //   ApplyFinish(steps, stage, frame, …) applies the passes of one stage, in order, in place
 //
 // A pass (core/image/finish_pass.h) looks at guides and changes the picture. Neighbouring passes that treat each pixel
-// by itself (tone/) run as one loop in Oklab. Lines (outline/) are traced along the borders of the guides and stroked.
+// by itself (tone/) run as one loop in Oklab. Filters (area/) look at the pixels around. Lines (outline/) are traced
+// along the borders of the guides and stroked.
 #pragma once
 
 #include <cstdint>

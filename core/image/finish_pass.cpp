@@ -26,6 +26,20 @@ LayerSet Of(const ToonPass& pass) {
   return layers;
 }
 
+LayerSet Of(const SmoothPass& pass) { return pass.borders ? LayerSet{Layer::kObject} : LayerSet(); }
+
+LayerSet Of(const EdgesPass& pass) {
+  switch (pass.tone) {
+    case EdgesPass::Tone::kPaint:
+      return {};
+    case EdgesPass::Tone::kLight:
+      return {Layer::kLuminance};
+    case EdgesPass::Tone::kAlbedo:
+      return {Layer::kAlbedo};
+  }
+  return {};
+}
+
 LayerSet Of(const RenderPass&) { return {Layer::kLpeFull}; }
 LayerSet Of(const DepthPass&) { return {Layer::kDepth}; }
 LayerSet Of(const TonesPass&) { return {}; }

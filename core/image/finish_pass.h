@@ -95,6 +95,29 @@ struct DepthPass {
   Rgb16 color = {0xb4b4, 0xc6c6, 0xdcdc};
 };
 
+// Detail below a contrast is evened out; edges stay. A bilateral filter by rows, then by columns, several times.
+struct SmoothPass {
+  double radius = 4.0;  // 0.5 … 32 pixels at the reference height: sigma of the filter in space
+  double range = 0.08;  // 0.001 … 1: the Oklab distance whose share is halved
+  int passes = 2;       // 1 … 8
+  bool borders = true;  // nothing is mixed between objects
+};
+
+// Lines where the tone changes: the extended difference of Gaussians (Winnemöller, Kyprianidis, Olsen 2012).
+struct EdgesPass {
+  enum class Tone { kPaint, kLight, kAlbedo };  // lightness of the paint, of the light, of base colours
+  enum class Draw { kInk, kPaint };             // ink on the paint, or the paint on `paper`
+  double width = 2.0;                           // 0.5 … 32 pixels at the reference height, of a line along a step
+  double sharpness = 20.0;                      // 0 … 200: how faint a step still makes a line
+  double threshold = 0.7;                       // 0 … 1: the tone below which ink begins
+  double slope = 10.0;                          // 0.1 … 100: how fast ink gets dense below it
+  double fill = 0.0;                            // 0 … 1: 1 fills what is dark, 0 draws lines alone
+  Tone tone = Tone::kLight;
+  Draw draw = Draw::kInk;
+  Rgb16 ink = {0x1c1c, 0x1a1a, 0x1919};
+  Rgb16 paper = {0xf4f4, 0xefef, 0xe6e6};
+};
+
 struct GradePass {
   double saturation = 1.0;  // 0 … 4, of chroma
   double contrast = 1.0;    // 0 … 4, around the middle of lightness
@@ -108,8 +131,8 @@ struct FillPass {
 
 struct FinishPass {
   enum class Stage { kPaint, kSheet };  // before the paper is put behind, or after
-  using Effect =
-      std::variant<OutlinePass, ToonPass, RenderPass, TonesPass, ShadowsPass, DepthPass, GradePass, FillPass>;
+  using Effect = std::variant<OutlinePass, SmoothPass, EdgesPass, ToonPass, RenderPass, TonesPass, ShadowsPass,
+                              DepthPass, GradePass, FillPass>;
   std::string name;  // for --set finish.NAME.KEY; the effect's if the user gives none
   Effect effect;
   Stage at = Stage::kPaint;

@@ -115,6 +115,19 @@ FinishKey PassColor(const char* name, Rgb16 Pass::*field, const char* help) {
   return key;
 }
 
+template <class Pass>
+FinishKey PassFlag(const char* name, bool Pass::*field, const char* help) {
+  FinishKey key{name, KeyKind::kFlag, 0.0, 0.0, {}, "", help, {}, {}};
+  key.set = [=](FinishPass& pass, const KeyValue& value) -> Status {
+    const auto* flag = std::get_if<bool>(&value);
+    if (!flag) return UsageError("expected true or false");
+    PassMember(pass, field) = *flag;
+    return Ok();
+  };
+  key.get = [=](const FinishPass& pass) -> KeyValue { return PassMember(pass, field); };
+  return key;
+}
+
 FinishKey LineWidth(const char* name, LineClass line, const char* help) {
   const auto field = [=](FinishPass& pass) -> double& {
     return std::get<OutlinePass>(pass.effect).of_class[std::size_t(line)];
@@ -157,6 +170,29 @@ std::vector<FinishKey> ToonKeys() {
       PassNumber("tint", &P::tint, 0.0, 1.0, "how much of the colour's hue the darkest band takes on"),
       PassColor("color", &P::color, "of tint"),
       PassChoice("from", &P::from, {"albedo", "paint"}, "what the bands shade: the scene's base colour, or the paint")};
+}
+
+std::vector<FinishKey> SmoothKeys() {
+  using P = SmoothPass;
+  return {PassNumber("radius", &P::radius, 0.5, 32.0, "of the filter, sigma in pixels"),
+          PassNumber("range", &P::range, 0.001, 1.0, "difference of colours that counts half, in Oklab"),
+          PassWhole("passes", &P::passes, 1, 8, "times it is applied"),
+          PassFlag("borders", &P::borders, "objects are not mixed")};
+}
+
+std::vector<FinishKey> EdgesKeys() {
+  using P = EdgesPass;
+  return {PassNumber("width", &P::width, 0.5, 32.0, "of a line along a step of the tone, pixels"),
+          PassNumber("sharpness", &P::sharpness, 0.0, 200.0, "higher: fainter steps make lines"),
+          PassNumber("threshold", &P::threshold, 0.0, 1.0, "tone below which ink begins"),
+          PassNumber("slope", &P::slope, 0.1, 100.0, "how fast it gets dense below that"),
+          PassNumber("fill", &P::fill, 0.0, 1.0, "1 fills what is dark with ink, 0 draws lines alone"),
+          PassChoice("tone", &P::tone, {"paint", "light", "albedo"},
+                     "what is looked at: the paint, the light or base colours"),
+          PassChoice("draw", &P::draw, {"ink", "paint"},
+                     "ink over the paint, or the paint itself on paper where lines are"),
+          PassColor("ink", &P::ink, "the colour of ink"),
+          PassColor("paper", &P::paper, "behind draw = paint")};
 }
 
 std::vector<FinishKey> RenderKeys() {
@@ -220,11 +256,13 @@ std::vector<FinishEffect> MakeEffects() {
   std::vector<FinishEffect> effects = {
       {"render", "the light of the scene itself instead of the paint", RenderPass(), RenderKeys()},
       {"toon", "flat bands of light instead of the paint, or over it", ToonPass(), ToonKeys()},
+      {"smooth", "even colour, sharp edges", SmoothPass(), SmoothKeys()},
       {"tones", "lightness in steps", TonesPass(), TonesKeys()},
       {"shadows", "what is in shade: darker, black, in another colour", ShadowsPass(), ShadowsKeys()},
       {"depth", "what is far: paler, tinted, in haze, in layers", DepthPass(), DepthKeys()},
       {"grade", "saturation, contrast and lightness", GradePass(), GradeKeys()},
       {"fill", "one colour instead of the paint", FillPass(), {PassColor("color", &FillPass::color, "of everything")}},
+      {"edges", "lines where the tone changes", EdgesPass(), EdgesKeys()},
       {"outline", "ink lines along silhouettes, objects, creases, shadows", OutlinePass(), OutlineKeys()}};
   for (FinishEffect& effect : effects) {
     const FinishPass defaults{"", effect.defaults, FinishPass::Stage::kPaint, 1.0, {}, {}};

@@ -144,6 +144,7 @@ void Draw(const StrokePiece& piece, int y0, int y1, int width, StrokeCover& cove
     const float dy = static_cast<float>(y) + 0.5f - piece.from.y;
     float* const row = cover.share.data() + std::size_t(y) * std::size_t(width);
     for (int x = left; x <= right; ++x) {
+      if (row[x] >= 1.0f) continue;
       const float dx = static_cast<float>(x) + 0.5f - piece.from.x;
       const float t = std::min(std::max((dx * along.x + dy * along.y) * per_squared, 0.0f), 1.0f);
       const float off_x = dx - along.x * t, off_y = dy - along.y * t;

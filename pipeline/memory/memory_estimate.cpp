@@ -272,11 +272,14 @@ void AddFinish(std::span<const FinishPass> passes, bool has_map, const Size& siz
   // Borders by pixel, the share that strokes cover, and lines: a tenth of the pixels have a border, and each is a point
   // of 40 bytes and a piece of a stroke of 28, in lists that grow.
   constexpr Bytes kOutline = 2 + kFloat + (40 + 2 * 28 + 24) / 10;
+  constexpr Bytes kLab = 3 * kFloat;
   Bytes masks = 0, transient = 0;
   for (const FinishPass& pass : passes) {
     if (!(pass.strength > 0.0)) continue;
     const bool has_names = !pass.objects.empty() || !pass.materials.empty();
     masks += (has_map ? 1 : 0) + (has_names ? 2 : 0);
+    if (std::holds_alternative<SmoothPass>(pass.effect)) transient = std::max(transient, 3 * kLab + 1);
+    if (std::holds_alternative<EdgesPass>(pass.effect)) transient = std::max(transient, 2 * kLab + 5 * kFloat);
     const auto* outline = std::get_if<OutlinePass>(&pass.effect);
     if (!outline) continue;
     Bytes of_pixel = kOutline;
@@ -287,7 +290,7 @@ void AddFinish(std::span<const FinishPass> passes, bool has_map, const Size& siz
   const bool measures = LooksAtMeasures(passes);
   if (masks > 0) need.Take("finish", masks * PixelsOf(size));
   if (measures) transient = std::max(transient, Bytes(2 * kFloat));  // a copy of a plane that grows
-  if (transient > 0) need.TakeTransient("lines", transient * PixelsOf(size));
+  if (transient > 0) need.TakeTransient("finishing", transient * PixelsOf(size));
 }
 
 void AddKit(int size, std::size_t lights, const LayerSet& layers, bool has_layers_file, MemoryNeed& need) {

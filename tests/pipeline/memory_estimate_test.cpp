@@ -58,7 +58,7 @@ TEST_F(MemoryNeedTest, NothingTakesMoreThanItSays) {
   ExpectHonest(With(stylize, {"-o", "p.png", "--set", "transfer.coherent=true"}));
   ExpectHonest(With(stylize, {"-o", "p.png", "--set", "transfer.match_step=2", "--set", "transfer.hybrid=3"}));
   ExpectHonest(With(stylize, {"-o", "p.png", "--set", "transfer.blend_radius=20", "--show", "error"}));
-  ExpectHonest(With(stylize, {"-o", "p.png", "--finish", "storybook", "--finish", "ligne-claire"}));
+  ExpectHonest(With(stylize, {"-o", "p.png", "--finish", "storybook", "--finish", "smooth", "--finish", "edges"}));
   ExpectHonest({"guidegen", Scene("snail.glb"), "--size", "800", "--layers", "luminance,shadow", "-o", "s.exr"});
   ExpectHonest({"transfer", "s.exr", "--style", "style", "--finish", "charcoal-lines", "-o", "p.png"});
   ExpectHonest({"sphere", "--size", "500", "-o", "kit"});
