@@ -23,6 +23,20 @@ void DecodeHere(const std::uint16_t* texels, std::size_t count, OklabBlock& bloc
   }
 }
 
+void FromLinearHere(const OklabBlock& linear, std::size_t count, OklabBlock& block) {
+  const auto load = [](const std::array<float, kOklabBlock>& plane, std::size_t i) HWY_ATTR {
+    const Lane value = hn::Load(Floats(), plane.data() + i);
+    return Select(Less(0.0f, value), Min(value, 1.0f), 0.0f);
+  };
+  for (std::size_t i = 0; i < count; i += hn::Lanes(Floats())) {
+    const LaneColor cones = ConesFromLinear({load(linear.lightness, i), load(linear.a, i), load(linear.b, i)});
+    const LaneColor lab = OklabFromRoots(Each(CubeRoot, cones));
+    hn::Store(lab.r.v, Floats(), block.lightness.data() + i);
+    hn::Store(lab.g.v, Floats(), block.a.data() + i);
+    hn::Store(lab.b.v, Floats(), block.b.data() + i);
+  }
+}
+
 HWY_INLINE LaneColor LinearOf(Lane lightness, Lane a, Lane b, Lane chroma) {
   return LinearFromRoots(RootsFromOklab({lightness, a * chroma, b * chroma}));
 }
@@ -60,6 +74,7 @@ HWY_AFTER_NAMESPACE();
 namespace scumble::internal {
 
 HWY_EXPORT(DecodeHere);
+HWY_EXPORT(FromLinearHere);
 HWY_EXPORT(EncodeHere);
 
 // Vectors may reach beyond the last texel, so the texels go through a whole block.
@@ -68,6 +83,14 @@ void OklabFromTexels(const std::uint16_t* texels, std::size_t count, OklabBlock&
   std::copy_n(texels, 4 * count, whole);
   std::fill(whole + 4 * count, whole + std::min(4 * kOklabBlock, 4 * count + 64), std::uint16_t{0});
   HWY_DYNAMIC_DISPATCH(DecodeHere)(whole, count, block);
+}
+
+void OklabFromPlanes(const std::array<const float*, 3>& planes, std::size_t count, OklabBlock& block) {
+  OklabBlock linear{};
+  std::copy_n(planes[0], count, linear.lightness.begin());
+  std::copy_n(planes[1], count, linear.a.begin());
+  std::copy_n(planes[2], count, linear.b.begin());
+  HWY_DYNAMIC_DISPATCH(FromLinearHere)(linear, count, block);
 }
 
 void TexelsFromOklab(const OklabBlock& block, std::size_t count, std::uint16_t* texels) {

@@ -2,11 +2,12 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
+#include "core/filter/oklab_rows.h"
 #include "core/image/exact_math.h"
-#include "core/image/oklab.h"
 #include "finish/area/area_effects.h"
 #include "finish/area/lab_planes.h"
 #include "finish/tone/point_effect.h"
@@ -69,16 +70,25 @@ std::vector<float> Blurred(const std::vector<float>& plane, int width, int heigh
 
 std::vector<float> ToneOf(const EdgesPass& pass, const FinishFrame& frame, const LabPlanes& paint) {
   if (pass.tone == EdgesPass::Tone::kPaint) return paint.lightness;
-  std::vector<float> tone(paint.lightness.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tone.size(), 1 << 14), [&](const auto& part) {
-    for (std::size_t i = part.begin(); i != part.end(); ++i) {
-      if (pass.tone == EdgesPass::Tone::kAlbedo) {
-        tone[i] = OklabFromLinear(glm::clamp(frame.guides->Vec3(Layer::kAlbedo, i), 0.0f, 1.0f)).x;
-      } else {
-        const float light = frame.guides->Plane(Layer::kLuminance)[i] / static_cast<float>(frame.measures.bright);
-        tone[i] = OklabFromLinear(glm::vec3(std::clamp(light, 0.0f, 1.0f))).x;
-      }
-    }
+  const bool of_light = pass.tone == EdgesPass::Tone::kLight;
+  const std::size_t pixels = paint.lightness.size();
+  std::array<const float*, 3> planes{};
+  std::vector<float> light;
+  if (of_light) {
+    const auto plane = frame.guides->Plane(Layer::kLuminance);
+    const auto per_bright = static_cast<float>(1.0 / frame.measures.bright);
+    light.resize(pixels);
+    for (std::size_t i = 0; i < pixels; ++i) light[i] = plane[i] * per_bright;
+    planes.fill(light.data());
+  } else {
+    for (int c = 0; c < 3; ++c) planes[std::size_t(c)] = frame.guides->Plane(Layer::kAlbedo, c).data();
+  }
+  std::vector<float> tone(pixels);
+  tbb::parallel_for(std::size_t(0), (pixels + kOklabBlock - 1) / kOklabBlock, [&](std::size_t one) {
+    const std::size_t first = one * kOklabBlock, count = std::min(kOklabBlock, pixels - first);
+    OklabBlock block;
+    OklabFromPlanes({planes[0] + first, planes[1] + first, planes[2] + first}, count, block);
+    std::copy_n(block.lightness.begin(), count, tone.begin() + std::ptrdiff_t(first));
   });
   return tone;
 }

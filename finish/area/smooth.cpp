@@ -32,8 +32,8 @@ struct FilterWeights {
 };
 
 // Filters `run` pixels from `first` on, which are one after the other in memory and each at `at` of its line.
-void FilterRun(const Source& source, const FilterWeights& weights, const Direction& along, std::size_t at, std::size_t first,
-               std::size_t run, LabPlanes& out) {
+void FilterRun(const Source& source, const FilterWeights& weights, const Direction& along, std::size_t at,
+               std::size_t first, std::size_t run, LabPlanes& out) {
   constexpr std::size_t kRun = 128;
   float sum[kRun], sum_l[kRun], sum_a[kRun], sum_b[kRun];
   const auto& [l, a, b] = source.colors;

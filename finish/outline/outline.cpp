@@ -6,7 +6,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "core/filter/oklab_rows.h"
+#include "core/image/color.h"
+#include "core/image/oklab.h"
 #include "finish/outline/border_map.h"
 #include "finish/outline/line_chains.h"
 #include "finish/outline/strokes.h"
@@ -17,14 +18,14 @@ namespace {
 // Lines of fewer borders that meet no other are noise of the guides, at the reference height.
 constexpr double kShortest = 4.0;
 
-// Ink from the paint beside a line: a third as light, of its own or of the opposite hue. `texel` keeps its alpha.
+// Ink from the paint beside a line: a third as light and half as colourful, of its own or of the opposite hue. `texel`
+// keeps its alpha.
 void InkFromPaint(bool is_complement, std::uint16_t* texel) {
-  OklabBlock block;
-  OklabFromTexels(texel, 1, block);
-  block.lightness[0] *= 1.0f / 3.0f;
-  const float chroma = is_complement ? -1.0f : 1.0f;
-  block.a[0] *= chroma, block.b[0] *= chroma;
-  TexelsFromOklab(block, 1, texel);
+  glm::vec3 lab = OklabFromLinear({Srgb16ToLinear(texel[0]), Srgb16ToLinear(texel[1]), Srgb16ToLinear(texel[2])});
+  const float chroma = is_complement ? -0.5f : 0.5f;
+  lab = {lab.x / 3.0f, lab.y * chroma, lab.z * chroma};
+  const glm::vec3 linear = LinearFromOklab(lab);
+  for (int c = 0; c < 3; ++c) texel[c] = Srgb16FromLinear(linear[c]);
 }
 
 // Porter and Duff's "over" with straight alpha, on sRGB codes, as drawing programs do it: a line between two pixels

@@ -1,12 +1,38 @@
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <memory>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "core/image/exact_math.h"
 #include "finish/tone/point_effect.h"
 
 namespace scumble::internal {
 namespace {
+
+// A function of 0 … `most` from a table, by straight lines between 4096 cells; beyond, and in the lowest 64, where
+// powers bend most, it is computed.
+class Curve {
+ public:
+  Curve() = default;
+  Curve(double most, std::function<double(double)> function) : most_(most), function_(std::move(function)) {
+    for (int i = 0; i <= kCells + 1; ++i) values_.push_back(function_(most * i / kCells));
+  }
+  double At(double x) const {
+    const double at = x / most_ * kCells;
+    if (!(at >= 64.0 && at < kCells)) return function_(x);
+    const auto cell = static_cast<std::size_t>(at);
+    return values_[cell] + (values_[cell + 1] - values_[cell]) * (at - static_cast<double>(cell));
+  }
+
+ private:
+  static constexpr int kCells = 4096;
+  double most_ = 1.0;
+  std::function<double(double)> function_;
+  std::vector<double> values_;
+};
 
 // Depth as a share of the way from near to far.
 class DepthScale {
@@ -19,6 +45,8 @@ class DepthScale {
     per_span_ = span != 0.0 ? 1.0 / span : 0.0;
     focus_ = pass.focus > 0.0 ? Of(pass.focus) : near_;
     gamma_ = pass.gamma;
+    if (gamma_ != 1.0)
+      power_ = Curve(1.0, [gamma = pass.gamma](double u) { return u > 0.0 ? Exp2(gamma * Log2(u)) : 0.0; });
     layers_ = pass.layers;
   }
   // Depth above 0, infinity allowed. Unclamped: 0 near, 1 far.
@@ -27,7 +55,7 @@ class DepthScale {
   double Share(float depth) const {
     double u = std::min(std::fabs(Of(depth) - focus_) * std::fabs(per_span_), 1.0);
     if (!(u >= 0.0)) u = 1.0;
-    if (gamma_ != 1.0 && u > 0.0) u = Exp2(gamma_ * Log2(u));
+    if (gamma_ != 1.0) u = power_.At(u);
     if (layers_ > 1) u = std::min(std::floor(u * layers_), layers_ - 1.0) / (layers_ - 1);
     return u;
   }
@@ -38,27 +66,34 @@ class DepthScale {
   bool inverse_;
   double near_ = 0.0, per_span_ = 0.0, focus_ = 0.0, gamma_ = 1.0;
   int layers_ = 0;
+  Curve power_;
 };
 
 // Of the air between near and a distance, by Beer and Lambert's law: `air` at 1.
 class Air {
  public:
-  explicit Air(double air) : air_(air), rate_(air < 1.0 ? Log2(1.0 - air) : 0.0) {}
+  explicit Air(double air) : air_(air) {
+    if (air > 0.0 && air < 1.0)
+      share_ = Curve(8.0, [rate = Log2(1.0 - air)](double distance) { return 1.0 - Exp2(rate * distance); });
+  }
   double Share(double distance) const {
     if (!(distance > 0.0)) return 0.0;
-    if (air_ >= 1.0 || std::isinf(distance)) return air_ > 0.0 ? 1.0 : 0.0;
-    return 1.0 - Exp2(rate_ * distance);
+    if (!(air_ > 0.0)) return 0.0;
+    if (air_ >= 1.0 || std::isinf(distance)) return 1.0;
+    return share_.At(distance);
   }
 
  private:
-  double air_, rate_;
+  double air_;
+  Curve share_;
 };
 
 }  // namespace
 
 PointEffect MakeDepth(const DepthPass& pass, const FinishFrame& frame) {
-  const DepthScale scale(pass, frame.measures);
-  const Air air(pass.air);
+  // Copies of the effect share their tables.
+  const auto scale = std::make_shared<const DepthScale>(pass, frame.measures);
+  const auto air = std::make_shared<const Air>(pass.air);
   const std::span<const float> depth = frame.guides->Plane(Layer::kDepth);
   const LabColor color = ToOklab(pass.color);
   const bool has_air = pass.air > 0.0;
@@ -66,7 +101,7 @@ PointEffect MakeDepth(const DepthPass& pass, const FinishFrame& frame) {
   return [=](std::size_t first, std::size_t count, OklabBlock& block) {
     for (std::size_t i = 0; i < count; ++i) {
       const float at = depth[first + i];
-      const auto u = static_cast<float>(scale.Share(at));
+      const auto u = static_cast<float>(scale->Share(at));
       float &lightness = block.lightness[i], &a = block.a[i], &b = block.b[i];
       if (u > 0.0f) {
         const float kept = 1.0f - desaturate * u, taken = tint * u;
@@ -74,7 +109,7 @@ PointEffect MakeDepth(const DepthPass& pass, const FinishFrame& frame) {
         a += (color.a - a) * taken, b += (color.b - b) * taken;
       }
       if (!has_air) continue;
-      const auto share = static_cast<float>(air.Share(scale.Distance(at)));
+      const auto share = static_cast<float>(air->Share(scale->Distance(at)));
       if (!(share > 0.0f)) continue;
       lightness += (color.lightness - lightness) * share;
       a += (color.a - a) * share, b += (color.b - b) * share;

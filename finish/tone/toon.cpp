@@ -1,9 +1,9 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 #include <utility>
 
-#include "core/image/oklab.h"
 #include "finish/tone/point_effect.h"
 
 namespace scumble::internal {
@@ -74,19 +74,20 @@ PointEffect MakeToon(const ToonPass& pass, const FinishFrame& frame) {
   const LabColor color = ToOklab(pass.color);
   const float darkest = static_cast<float>(pass.shade), tint = static_cast<float>(pass.tint);
   const float per_band = pass.bands > 1 ? 1.0f / static_cast<float>(pass.bands - 1) : 0.0f;
-  return [=, &guides](std::size_t first, std::size_t count, OklabBlock& block) {
+  std::array<const float*, 3> albedo{};
+  if (from_albedo) {
+    for (int c = 0; c < 3; ++c) albedo[std::size_t(c)] = guides.Plane(Layer::kAlbedo, c).data();
+  }
+  const int bands = pass.bands;
+  return [=](std::size_t first, std::size_t count, OklabBlock& block) {
+    if (from_albedo) OklabFromPlanes({albedo[0] + first, albedo[1] + first, albedo[2] + first}, count, block);
     for (std::size_t i = 0; i < count; ++i) {
-      const float light = pass.bands > 1 ? band_of.At(first + i) * per_band : 1.0f;
-      glm::vec3 base(block.lightness[i], block.a[i], block.b[i]);
-      if (from_albedo) {
-        const glm::vec3 albedo = guides.Vec3(Layer::kAlbedo, first + i);
-        base = OklabFromLinear(glm::clamp(albedo, 0.0f, 1.0f));
-      }
+      const float light = bands > 1 ? band_of.At(first + i) * per_band : 1.0f;
       // Scaling all of Oklab scales linear colours by the cube: the hue and the saturation stay.
       const float factor = darkest + (1.0f - darkest) * light, share = tint * (1.0f - light);
-      block.lightness[i] = base.x * factor;
-      block.a[i] = base.y * factor + (color.a - base.y * factor) * share;
-      block.b[i] = base.z * factor + (color.b - base.z * factor) * share;
+      const float a = block.a[i] * factor, b = block.b[i] * factor;
+      block.lightness[i] *= factor;
+      block.a[i] = a + (color.a - a) * share, block.b[i] = b + (color.b - b) * share;
     }
   };
 }

@@ -1,0 +1,90 @@
+// The time of each finishing effect at 1080p, as a ratio to a copy of the picture's bytes in the same run. Prints the
+// table of docs/finish.md.
+//   finish_bench [RUNS]
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/image/stopwatch.h"
+#include "core/style/finish_file.h"
+#include "core/style/finish_keys.h"
+#include "finish/finish.h"
+#include "pipeline/guide_layers.h"
+#include "scumble/stylizer.h"
+
+namespace scumble {
+namespace {
+
+struct Spread {
+  double median = 0, least = 0, most = 0;
+};
+
+template <class Work>
+Spread Timed(int runs, const Work& work) {
+  std::vector<double> ms;
+  for (int i = 0; i < runs; ++i) {
+    Stopwatch watch;
+    work();
+    ms.push_back(watch.Lap());
+  }
+  std::sort(ms.begin(), ms.end());
+  return {ms[ms.size() / 2], ms.front(), ms.back()};
+}
+
+int Run(int runs) {
+  Stylizer stylizer;
+  SceneSettings scene;
+  scene.file = SCUMBLE_SOURCE_DIR "/scenes/stilllife.glb", scene.width = 1920, scene.height = 1080;
+  const auto layers = stylizer.Guides(scene, {Layer::kLuminance, Layer::kShadow, Layer::kAlbedo});
+  const auto painted = stylizer.Paint(scene, {.style = SCUMBLE_SOURCE_DIR "/exemplars/oil"});
+  if (!layers || !painted) {
+    return std::fprintf(stderr, "%s\n", (layers ? painted.error() : layers.error()).message.c_str()), 3;
+  }
+  const GuideSet& guides = *layers->state()->guides;
+  const FinishFrame frame{&guides, MeasureFinish(guides), 1.0, 0};
+
+  std::vector<std::uint16_t> copy(painted->rgba.size());
+  const Spread plain = Timed(runs, [&] { std::memcpy(copy.data(), painted->rgba.data(), 2 * copy.size()); });
+  std::printf("%-34s %7s %16s %8s\n", "work", "ms", "spread", "copies");
+  const auto print = [&](const std::string& name, const Spread& spread) {
+    std::printf("%-34s %7.1f %7.1f … %6.1f %8.1f\n", name.c_str(), spread.median, spread.least, spread.most,
+                spread.median / plain.median);
+  };
+  print("copy of the picture, one thread", plain);
+  const auto measure = [&](const std::string& name, const std::vector<FinishPass>& passes) {
+    std::vector<FinishStep> steps;
+    for (const FinishPass& pass : passes) steps.push_back({pass, {}});
+    Picture picture = *painted;
+    print(name, Timed(runs, [&] {
+            picture.rgba = painted->rgba;
+            for (const auto stage : {FinishPass::Stage::kPaint, FinishPass::Stage::kSheet}) {
+              if (const Status done = ApplyFinish(steps, stage, frame, 0, {}, picture); !done)
+                std::fprintf(stderr, "%s: %s\n", name.c_str(), done.error().message.c_str()), std::exit(3);
+            }
+          }));
+  };
+  for (const FinishEffect& effect : FinishEffects()) {
+    if (effect.name != "render") measure(effect.name, {*MakeFinishPass(effect.name)});  // needs light paths
+  }
+  measure("tones, shadows, depth, grade",
+          {*MakeFinishPass("tones"), *MakeFinishPass("shadows"), *MakeFinishPass("depth"), *MakeFinishPass("grade")});
+  for (const double width : {2.0, 8.0, 32.0}) {
+    FinishPass outline = *MakeFinishPass("outline");
+    std::get<OutlinePass>(outline.effect).width = width;
+    measure("outline, width " + std::to_string(int(width)), {outline});
+  }
+  for (const auto& file : FindFinishPresets(SCUMBLE_SOURCE_DIR "/finish/presets")) {
+    const auto preset = LoadFinishPreset(file);
+    if (preset) measure("preset " + preset->name, preset->passes);
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace scumble
+
+int main(int count, char** arguments) { return scumble::Run(count > 1 ? std::max(1, std::atoi(arguments[1])) : 9); }
