@@ -105,13 +105,20 @@ std::vector<std::filesystem::path> FindFinishPresets(const std::filesystem::path
   return files;
 }
 
+bool IsOfFinish(const std::string& set) { return set.rfind(kFinishKeys, 0) == 0 || set.rfind(kDialKeys, 0) == 0; }
+
 Expected<std::size_t> OverrideFinish(std::span<FinishPass> passes, const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos) return UsageError("--set " + text + ": expected KEY=VALUE");
   const std::string value_text = text.substr(equals + 1);
   const auto parsed = internal::ParseToml("value = " + value_text, "--set");
   const auto value = parsed && parsed->size() == 1 ? internal::ValueOf(*parsed->get("value")) : std::nullopt;
-  Expected<std::size_t> count = SetFinishKeys(passes, text.substr(0, equals), value ? *value : KeyValue(value_text));
+  const std::string key = text.substr(0, equals);
+  if (key.rfind(kDialKeys, 0) == 0) {
+    const Status turned = TurnFinishDial(passes, key, value ? *value : KeyValue(value_text));
+    return turned ? Expected<std::size_t>(passes.size()) : UsageError("--set " + text + ": " + turned.error().message);
+  }
+  Expected<std::size_t> count = SetFinishKeys(passes, key, value ? *value : KeyValue(value_text));
   if (!count) return UsageError("--set " + text + ": " + count.error().message);
   return count;
 }

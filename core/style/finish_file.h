@@ -24,8 +24,11 @@ Expected<FinishPreset> LoadFinishPreset(const std::filesystem::path& file);
 // The presets in a folder, by name.
 std::vector<std::filesystem::path> FindFinishPresets(const std::filesystem::path& folder);
 
-// "finish.NAME.KEY=VALUE": sets the key in every pass of that name; returns how many there are. Values are TOML's;
-// quotes may be left off. Mistakes are kUsage.
+// Whether a --set is one of OverrideFinish.
+bool IsOfFinish(const std::string& set);
+
+// "finish.NAME.KEY=VALUE": sets the key in every pass of that name; returns how many there are. "dial.NAME=VALUE" turns
+// a dial of all passes, and returns how many they are. Values are TOML's; quotes may be left off. Mistakes are kUsage.
 Expected<std::size_t> OverrideFinish(std::span<FinishPass> passes, const std::string& text);
 
 // The error where OverrideFinish sets nothing: which names there are.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdio>
+#include <iterator>
+#include <string_view>
 #include <utility>
 
 #include "core/style/nearest_name.h"
@@ -360,6 +362,37 @@ Expected<std::size_t> SetFinishKeys(std::span<FinishPass> passes, const std::str
     ++count;
   }
   return count;
+}
+
+Status TurnFinishDial(std::span<FinishPass> passes, const std::string& key, const KeyValue& value) {
+  const std::string name = key.substr(std::string_view(kDialKeys).size());
+  const std::vector<std::string> names(std::begin(kDials), std::end(kDials));
+  if (std::find(names.begin(), names.end(), name) == names.end()) {
+    return UsageError("there is no dial '" + name + "'; there are " + Listed(names) + DidYouMean(name, names));
+  }
+  const auto number = AsNumber(value);
+  if (!number || !(*number >= 0.0 && *number <= 1.0)) return UsageError("expected a number, 0 to 1");
+  const double factor = 2.0 * *number;
+  for (FinishPass& pass : passes) {
+    const auto strengthen = [&](double by) { pass.strength = std::min(1.0, pass.strength * by); };
+    auto* const outline = std::get_if<OutlinePass>(&pass.effect);
+    auto* const edges = std::get_if<EdgesPass>(&pass.effect);
+    const bool evens =
+        std::holds_alternative<SmoothPass>(pass.effect) || std::holds_alternative<TonesPass>(pass.effect);
+    const bool of_light =
+        std::holds_alternative<ShadowsPass>(pass.effect) || std::holds_alternative<ToonPass>(pass.effect);
+    if (name == "lines" && outline) outline->width = std::min(64.0, outline->width * factor);
+    if (name == "lines" && edges) {
+      if (factor > 0.0)
+        edges->width = std::clamp(edges->width * factor, 0.5, 32.0);
+      else
+        pass.strength = 0.0;
+    }
+    if (name == "detail" && evens) strengthen(2.0 - factor);
+    if (name == "light" && of_light) strengthen(factor);
+    if (name == "depth" && std::holds_alternative<DepthPass>(pass.effect)) strengthen(factor);
+  }
+  return Ok();
 }
 
 std::string FinishText(const FinishPass& pass) {

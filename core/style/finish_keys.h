@@ -61,6 +61,17 @@ Status SetFinishKey(FinishPass& pass, const std::string& key, const KeyValue& va
 // "finish.NAME.KEY": sets the key in every pass of that name. Returns how many there are; 0 is no error.
 Expected<std::size_t> SetFinishKeys(std::span<FinishPass> passes, const std::string& key, const KeyValue& value);
 
+// Dials: four numbers for a whole chain, 0 … 1; at 0.5 the passes are as they are, at 0 their effect is gone.
+//   lines    the width of outlines and edges, up to twice
+//   detail   the strength of smoothing and of steps of tone, the other way round
+//   light    the strength of what depends on light: shadows, toon
+//   depth    the strength of what depends on depth
+inline constexpr const char* kDialKeys = "dial.";
+inline constexpr const char* kDials[] = {"lines", "detail", "light", "depth"};
+
+// "dial.NAME": turns a dial of the passes. kUsage where there is no such dial, or the value is not 0 … 1.
+Status TurnFinishDial(std::span<FinishPass> passes, const std::string& key, const KeyValue& value);
+
 // The effect and what is not its default, as text: equal texts, equal passes. The name is left out.
 std::string FinishText(const FinishPass& pass);
 

@@ -376,7 +376,7 @@ Status ApplyOverride(Style& style, const std::string& text) {
     table.clear();
     table.insert("value", value_text);
   }
-  if (name.rfind(kFinishKeys, 0) == 0) {
+  if (IsOfFinish(name)) {
     SCUMBLE_ASSIGN(const std::size_t count, OverrideFinish(style.finish, text));
     return count > 0 ? Ok() : Status(NoSuchFinish(text, style.finish));
   }
@@ -407,13 +407,12 @@ Status MakeUnpainted(Style& style) {
 
 // Keys of finishing effects last: the method brings one.
 Status ApplyOverrides(Style& style, const std::vector<std::string>& overrides) {
-  const auto is_of_finish = [](const std::string& text) { return text.rfind(kFinishKeys, 0) == 0; };
   for (const std::string& text : overrides) {
-    if (!is_of_finish(text)) SCUMBLE_RETURN_IF_ERROR(ApplyOverride(style, text));
+    if (!IsOfFinish(text)) SCUMBLE_RETURN_IF_ERROR(ApplyOverride(style, text));
   }
   SCUMBLE_RETURN_IF_ERROR(MakeUnpainted(style));
   for (const std::string& text : overrides) {
-    if (is_of_finish(text)) SCUMBLE_RETURN_IF_ERROR(ApplyOverride(style, text));
+    if (IsOfFinish(text)) SCUMBLE_RETURN_IF_ERROR(ApplyOverride(style, text));
   }
   return Ok();
 }

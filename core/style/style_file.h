@@ -27,10 +27,11 @@ struct StyleReading {
   PictureReader read_picture;  // null: ReadPicture
 };
 
-// Reads a style and its pictures. The names "toon" and "render", where no file has them, are styles of these methods. `overrides` are "key=value" texts with the keys of style.toml and values as TOML
-// writes them (quotes may be left off: transfer.method=litsphere); they win over the file. Of [[exemplar]] the
-// luminance and fills can be overridden, by number from 1: exemplar.2.luminance=0.1. Every key is applied, or refused
-// by name: unknown ones with the list of known ones, missing features as kUnavailable.
+// Reads a style and its pictures. The names "toon" and "render", where no file has them, are styles of these methods.
+// `overrides` are "key=value" texts with the keys of style.toml and values as TOML writes them (quotes may be left off:
+// transfer.method=litsphere); they win over the file. Of [[exemplar]] the luminance and fills can be overridden, by
+// number from 1: exemplar.2.luminance=0.1. Every key is applied, or refused by name: unknown ones with the list of
+// known ones, missing features as kUnavailable.
 //
 // A key of [transfer] may also have one value for each of several frames: threshold = [[1, 0.1], [24, 0.3]]; see
 // style_keyframes.h. The style that is returned is that of frame 0.

@@ -6,7 +6,7 @@
 #include <system_error>
 #include <utility>
 
-#include "core/style/finish_keys.h"
+#include "core/style/finish_file.h"
 #include "core/style/style_file.h"
 #include "core/style/style_keyframes.h"
 #include "core/style/style_keys.h"
@@ -29,8 +29,6 @@ bool PaintsShadows(const Style& style) {
   const Expected<LayerSet> layers = LayersOverTime(style);
   return layers && layers->Has(Layer::kShadow);
 }
-
-bool IsOfFinish(const std::string& set) { return set.rfind(kFinishKeys, 0) == 0; }
 
 // The place of a style in the set, which is opened if it is new.
 Expected<std::uint16_t> PlaceOf(StyleSet& set, const std::string& name, const std::filesystem::path& base) {
@@ -177,7 +175,7 @@ bool HasKeyAt(const std::string& text, std::size_t begin) {
   const std::size_t equals = text.find('=', begin);
   if (equals == std::string::npos) return false;
   const std::string key = text.substr(begin, equals - begin);
-  const bool is_of_list = key.rfind("exemplar.", 0) == 0 || key.rfind(kFinishKeys, 0) == 0;
+  const bool is_of_list = key.rfind("exemplar.", 0) == 0 || IsOfFinish(key);
   return FindStyleKey(key) || (is_of_list && key.find(':') == std::string::npos);
 }
 

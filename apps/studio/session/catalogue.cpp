@@ -6,8 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "core/style/finish_keys.h"
 #include "core/style/style_file.h"
 #include "pipeline/scene/scene_guides.h"
+#include "pipeline/style/finish_set.h"
 #include "pipeline/style/style_locations.h"
 
 namespace scumble {
@@ -109,6 +111,9 @@ Expected<Catalogue> MakeCatalogue(const std::string& scene, const std::vector<st
   }
   std::sort(files.begin(), files.end());
   for (const fs::path& file : files) all.AddScene(file.string(), true);
+  SCUMBLE_ASSIGN(const std::vector<FinishPreset> presets, FinishPresets(context));
+  for (const FinishPreset& preset : presets) all.finishes.push_back({preset.name, preset.help});
+  for (const FinishEffect& effect : FinishEffects()) all.finishes.push_back({effect.name, effect.help});
   return all;
 }
 

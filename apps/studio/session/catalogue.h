@@ -28,9 +28,15 @@ struct StyleEntry {
   bool IsWritable() const;
 };
 
+// A preset of finishing effects, or one effect, as --finish names it.
+struct FinishEntry {
+  std::string name, help;
+};
+
 struct Catalogue {
   std::vector<SceneEntry> scenes;
   std::vector<StyleEntry> styles;
+  std::vector<FinishEntry> finishes;  // presets first
 
   const SceneEntry* FindScene(const std::string& id) const;
   const StyleEntry* FindStyle(const std::string& id) const;

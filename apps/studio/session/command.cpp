@@ -57,6 +57,7 @@ std::string CommandOf(const PictureJob& job, const std::vector<std::string>& cho
   line.Option("--style", job.style.style);
   for (const std::string& set : job.style.sets) line.Option("--set", set);
   for (const std::string& assigned : job.style.assigned) line.Option("--assign", assigned);
+  for (const std::string& finish : job.style.finishes) line.Option("--finish", finish);
   AddScene(job.scene, line);
   if (job.picture.frame) line.Option("--frame", fmt::format("{}", *job.picture.frame));
   if (job.picture.fps) line.Option("--fps", FrameRateToText(*job.picture.fps));

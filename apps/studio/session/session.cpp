@@ -179,7 +179,7 @@ nlohmann::json Session::State::StateJson() {
   json["revision"] = moment.revision;
   json["first"] = {{"scene", first_scene}, {"style", first_style}};
   const Catalogue known = KnownCatalogue();
-  json["scenes"] = json["styles"] = json["exemplars"] = nlohmann::json::array();
+  json["scenes"] = json["styles"] = json["finishes"] = json["exemplars"] = nlohmann::json::array();
   for (const SceneEntry& scene : known.scenes) {
     json["scenes"].push_back({{"id", scene.id}, {"name", scene.id}, {"bundled", scene.bundled}});
   }
@@ -190,6 +190,8 @@ nlohmann::json Session::State::StateJson() {
                               {"writable", style.IsWritable()},
                               {"save_as", true}});
   }
+  for (const FinishEntry& finish : known.finishes)
+    json["finishes"].push_back({{"name", finish.name}, {"help", finish.help}});
   std::optional<Error> found;
   int index = 0;
   json["file_keys"] = nlohmann::json::object();

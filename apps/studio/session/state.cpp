@@ -1,9 +1,11 @@
 #include "apps/studio/session/state.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
 
+#include "core/style/finish_keys.h"
 #include "core/style/style_edit.h"
 
 namespace scumble {
@@ -136,6 +138,22 @@ Status PatchLight(StudioState& state, const json& value, const Catalogue&) {
   return Ok();
 }
 
+Status PatchFinish(StudioState& state, const json& value, const Catalogue& catalogue) {
+  if (value.is_null()) return state.finish.reset(), Ok();
+  if (!value.is_object() || !value.contains("name")) return WrongField("finish", "an object with name, or null");
+  StudioFinish finish;
+  SCUMBLE_ASSIGN(finish.name, TextOf(value["name"], "finish.name"));
+  const auto is_it = [&](const FinishEntry& entry) { return entry.name == finish.name; };
+  if (std::none_of(catalogue.finishes.begin(), catalogue.finishes.end(), is_it))
+    return InputError("there is no finish '" + finish.name + "' in the list of finishes");
+  for (const char* dial : kDials) {
+    SCUMBLE_ASSIGN(const double turned, MemberOf(value, "finish", dial, 0.0, 1.0, 0.5));
+    if (turned != 0.5) finish.dials[dial] = turned;
+  }
+  state.finish = std::move(finish);
+  return Ok();
+}
+
 Status PatchSize(StudioState& state, const json& value, const Catalogue&) {
   if (!value.is_array() || value.size() != 2 || !value[0].is_number_integer() || !value[1].is_number_integer()) {
     return WrongField("size", "[width, height] in pixels");
@@ -182,9 +200,9 @@ Status PatchCamera(StudioState& state, const json& value, const Catalogue&) {
 using PatchField = Status (*)(StudioState&, const json&, const Catalogue&);
 // In this order: a scene and a style reset what depends on them before the rest is set.
 constexpr std::pair<const char*, PatchField> kFields[] = {
-    {"scene", PatchScene},     {"style", PatchStyle}, {"keys", PatchKeys},   {"assignments", PatchAssignments},
-    {"camera", PatchCamera},   {"view", PatchView},   {"light", PatchLight}, {"size", PatchSize},
-    {"quality", PatchQuality},
+    {"scene", PatchScene},   {"style", PatchStyle},     {"keys", PatchKeys},   {"assignments", PatchAssignments},
+    {"camera", PatchCamera}, {"view", PatchView},       {"light", PatchLight}, {"finish", PatchFinish},
+    {"size", PatchSize},     {"quality", PatchQuality},
 };
 constexpr const char* kNumberFields[] = {"frame", "seed", "budget_ms"};
 
@@ -205,7 +223,8 @@ Expected<StudioState> Patched(StudioState state, const json& changes, const Cata
   }
   if (known == changes.size()) return state;
   return UsageError(
-      "expected the fields scene, style, keys, assignments, camera, view, light, frame, size, seed, quality, budget_ms "
+      "expected the fields scene, style, keys, assignments, camera, view, light, finish, frame, size, seed, quality, "
+      "budget_ms "
       "alone");
 }
 
@@ -226,6 +245,14 @@ json ToJson(const StudioState& state) {
   }
   json light = nullptr;
   if (state.light) light = {{"azimuth", state.light->azimuth}, {"elevation", state.light->elevation}};
+  json finish = nullptr;
+  if (state.finish) {
+    finish = {{"name", state.finish->name}};
+    for (const char* dial : kDials) {
+      const auto turned = state.finish->dials.find(dial);
+      finish[dial] = turned != state.finish->dials.end() ? turned->second : 0.5;
+    }
+  }
   return {{"scene", state.scene},
           {"style", state.style},
           {"keys", keys},
@@ -233,6 +260,7 @@ json ToJson(const StudioState& state) {
           {"camera", state.camera},
           {"view", state.view ? ToJson(*state.view) : json()},
           {"light", light},
+          {"finish", finish},
           {"frame", state.frame ? json(*state.frame) : json()},
           {"size", {state.size.width, state.size.height}},
           {"seed", state.seed},
@@ -256,6 +284,11 @@ PictureJob JobOf(const StudioState& state, const Catalogue& catalogue, const Sce
     if (const StyleEntry* entry = catalogue.FindStyle(one.style)) {
       job.style.assigned.push_back(one.name + "=" + entry->given);
     }
+  }
+  if (state.finish) {
+    job.style.finishes.push_back(state.finish->name);
+    for (const auto& [dial, turned] : state.finish->dials)
+      job.style.sets.push_back(kDialKeys + dial + "=" + TomlText(KeyValue(turned)));
   }
   job.picture.frame = state.frame, job.picture.seed = state.seed, job.picture.fps = scene.fps;
   job.budget.quality = state.quality, job.budget.budget_ms = state.budget_ms;

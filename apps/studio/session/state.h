@@ -21,6 +21,12 @@ struct StudioAssignment {
   std::string style;  // id
 };
 
+// Finishing effects over the styles' own.
+struct StudioFinish {
+  std::string name;                     // of a FinishEntry
+  std::map<std::string, double> dials;  // that are not at 0.5, by the names of kDials
+};
+
 struct StudioState {
   std::string scene, style;              // ids; empty: none is chosen
   std::map<std::string, KeyValue> keys;  // that differ from the first style's file
@@ -28,6 +34,7 @@ struct StudioState {
   std::string camera;
   std::optional<ViewAngles> view;
   std::optional<LightAngles> light;
+  std::optional<StudioFinish> finish;
   std::optional<int> frame;
   Size size{1280, 720};
   std::uint64_t seed = 0;

@@ -11,16 +11,19 @@
  * @typedef {{index: number, style: number, style_id: string, file: string, width: number, height: number,
  *   luminance: number | null}} Exemplar
  * @typedef {{kind: string, message: string}} Problem
+ * @typedef {{name: string, lines: number, detail: number, light: number, depth: number}} Finish
  * @typedef {{revision: number, scene: string, style: string,
  *   scenes: {id: string, name: string, bundled: boolean}[],
  *   styles: {id: string, name: string, bundled: boolean, writable: boolean, save_as: boolean}[],
  *   cameras: string[], objects: string[], materials: string[],
  *   animation: {first: number, last: number, fps: number} | null, lights: number, exemplars: Exemplar[],
  *   first: {scene: string, style: string}, keys: Record<string, KeyValue>, file_keys: Record<string, KeyValue>, assignments: Assignment[],
- *   camera: string, view: Orbit | null, light: Light | null, eye: Orbit, frame: number | null,
+ *   camera: string, view: Orbit | null, light: Light | null, finish: Finish | null,
+ *   finishes: {name: string, help: string}[], eye: Orbit, frame: number | null,
  *   size: [number, number], seed: number, quality: string, budget_ms: number, problem: Problem | null}} State
  * @typedef {{scene?: string, style?: string, keys?: Record<string, KeyValue | null>, assignments?: Assignment[],
- *   camera?: string, view?: Orbit | null, light?: Light | null, frame?: number | null, size?: [number, number],
+ *   camera?: string, view?: Orbit | null, light?: Light | null, finish?: Finish | null,
+ *   frame?: number | null, size?: [number, number],
  *   seed?: number, quality?: string, budget_ms?: number}} Changes
  * @typedef {{covered: boolean, object?: string, material?: string, style?: number, style_id?: string,
  *   exemplar?: number, source?: [number, number], level?: number, normal?: [number, number, number],

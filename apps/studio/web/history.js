@@ -22,6 +22,7 @@ export function describe(state) {
   const keys = Object.entries(state.keys).map(([name, value]) => `${labelOf(name).toLowerCase()} ${value}`);
   const words = [state.style, ...keys.slice(0, 2)];
   if (keys.length > 2) words.push(`${keys.length - 2} more keys`);
+  if (state.finish) words.push(state.finish.name);
   if (state.budget_ms) words.push(`${state.budget_ms} ms`);
   else if (state.quality !== 'final') words.push(state.quality);
   for (const {name, style} of state.assignments.slice(0, 1)) words.push(`${name} in ${style}`);

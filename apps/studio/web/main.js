@@ -26,6 +26,7 @@ import {History} from './history.js';
 import {Keeper} from './keep.js';
 import {KeysPanel} from './keys.js';
 import {showLibrary} from './library.js';
+import {FinishPanel} from './finish.js';
 import {LightPanel} from './light.js';
 import {keepSteps, keptSteps} from './memory.js';
 import {announce, announceSoon, showBusy, showError, showGone, showProblem} from './messages.js';
@@ -114,6 +115,7 @@ const brush = new BrushPanel(exemplar, {
 exemplar.onShown = () => void brush.follow();
 new OutputPanel(store);
 new LightPanel(store);
+new FinishPanel(store);
 showLibrary(store);
 followTheme();
 

@@ -68,9 +68,10 @@ export function inverse(state, changes) {
  * @returns {Changes}
  */
 export function settingsOf(state) {
-  const {scene, style, keys, assignments, camera, view, light, frame, size, seed, quality, budget_ms} = state;
+  const {scene, style, keys, assignments, camera, view, light, finish, frame, size, seed, quality, budget_ms} =
+      state;
   /** @type {Changes} */
-  const settings = {scene, style, keys: {...keys}, assignments, camera, view, light, frame, size, seed};
+  const settings = {scene, style, keys: {...keys}, assignments, camera, view, light, finish, frame, size, seed};
   if (budget_ms) settings.budget_ms = budget_ms;
   else settings.quality = quality;
   return settings;

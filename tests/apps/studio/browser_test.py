@@ -19,6 +19,7 @@ import unittest
 from selenium.webdriver import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
+from selenium.webdriver.support.ui import Select
 
 from chromium import chromium
 
@@ -201,6 +202,26 @@ class Pictures(Page):
         self.assertNotEqual(self.state()["view"]["azimuth"], eye["azimuth"])
         self.find("#undo").click()
         self.until(lambda: self.state()["view"] is None, "the undo")
+        self.settled()
+        self.assertEqual(self.pixels(), before)
+
+    def test_a_finish_and_its_dials(self):
+        before = self.pixels()
+        Select(self.find("#finish-name")).select_by_value("comic")
+        self.until(lambda: self.state()["finish"], "a finish")
+        self.settled()
+        comic = self.pixels()
+        self.assertNotEqual(comic, before)
+        self.find("#dial-lines").send_keys(Keys.HOME)
+        self.until(lambda: self.state()["finish"]["lines"] == 0, "no lines")
+        self.settled()
+        self.assertNotEqual(self.pixels(), comic)
+        self.find("#undo").click()
+        self.until(lambda: self.state()["finish"]["lines"] == 0.5, "the undo")
+        self.settled()
+        self.assertEqual(self.pixels(), comic)
+        Select(self.find("#finish-name")).select_by_value("")
+        self.until(lambda: self.state()["finish"] is None, "no finish")
         self.settled()
         self.assertEqual(self.pixels(), before)
 

@@ -34,7 +34,8 @@ TEST_F(SessionTest, FinalsAreWhatTheCommandMakes) {
                  {{"view", {{"azimuth", 33.25}, {"elevation", -10}, {"right", 0.1}, {"up", 0.05}}},
                   {"keys", {{"transfer.threshold", 0.3}}},
                   {"assignments", json::array({{{"name", State()["objects"][0]}, {"style", "ink"}}})},
-                  {"light", {{"azimuth", 20}, {"elevation", 30}}}})
+                  {"light", {{"azimuth", 20}, {"elevation", 30}}},
+                  {"finish", {{"name", "comic"}, {"lines", 0.8}}}})
                 .status,
             200);
   const HttpResponse exported = Call("POST", "/api/export", {{"what", "picture"}, {"format", "png"}});
@@ -46,6 +47,27 @@ TEST_F(SessionTest, FinalsAreWhatTheCommandMakes) {
   ASSERT_EQ(std::system((command + " --quiet > /dev/null").c_str()), 0) << command;
   EXPECT_EQ(exported.body, TextOf(file));
   EXPECT_EQ(PictureOf(Frame().body).rgba, ReadPicture(file)->rgba);
+}
+
+TEST_F(SessionTest, FinishIsChosenAndItsDialsAreTurned) {
+  const std::string before = Frame().body;
+  bool is_listed = false;
+  const json finishes = State()["finishes"];
+  for (const json& finish : finishes) is_listed = is_listed || finish["name"] == "comic";
+  EXPECT_TRUE(is_listed);
+  EXPECT_EQ(State()["finish"], nullptr);
+  ASSERT_EQ(Call("PATCH", "/api/state", {{"finish", {{"name", "outline"}}}}).status, 200);
+  EXPECT_EQ(State()["finish"],
+            json({{"name", "outline"}, {"lines", 0.5}, {"detail", 0.5}, {"light", 0.5}, {"depth", 0.5}}));
+  const std::string lines = Frame().body;
+  EXPECT_NE(lines, before);
+  ASSERT_EQ(Call("PATCH", "/api/state", {{"finish", {{"name", "outline"}, {"lines", 0}}}}).status, 200);
+  EXPECT_EQ(PictureOf(Frame().body).rgba, PictureOf(before).rgba);
+  EXPECT_EQ(Call("PATCH", "/api/state", {{"finish", {{"name", "no such"}}}}).status, 404);
+  EXPECT_EQ(Call("PATCH", "/api/state", {{"finish", "outline"}}).status, 400);
+  EXPECT_EQ(Call("PATCH", "/api/state", {{"finish", {{"name", "outline"}, {"lines", 2}}}}).status, 400);
+  ASSERT_EQ(Call("PATCH", "/api/state", {{"finish", nullptr}}).status, 200);
+  EXPECT_EQ(State()["finish"], nullptr);
 }
 
 TEST_F(SessionTest, AKnownPictureIsNotSentAgain) {

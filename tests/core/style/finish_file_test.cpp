@@ -123,6 +123,43 @@ TEST_F(FinishFile, OverridesGoToPassesByName) {
   EXPECT_FALSE(OverrideFinish(passes, "finish.ink.width=wide"));
 }
 
+TEST_F(FinishFile, DialsTurnTheWholeChain) {
+  const auto chain = [] {
+    std::vector<FinishPass> passes;
+    for (const char* name : {"outline", "edges", "smooth", "tones", "shadows", "toon", "depth", "grade"})
+      passes.push_back(*MakeFinishPass(name));
+    for (FinishPass& pass : passes) pass.strength = 0.4;
+    return passes;
+  };
+  const auto text = [](const std::vector<FinishPass>& passes) {
+    std::string all;
+    for (const FinishPass& pass : passes) all += FinishText(pass) + "\n";
+    return all;
+  };
+  for (const char* name : kDials) {
+    auto passes = chain();
+    ASSERT_TRUE(OverrideFinish(passes, "dial." + std::string(name) + "=0.5"));
+    EXPECT_EQ(text(passes), text(chain())) << name << " at rest";
+  }
+  auto passes = chain();
+  ASSERT_TRUE(OverrideFinish(passes, "dial.lines=0"));
+  EXPECT_EQ(std::get<OutlinePass>(passes[0].effect).width, 0.0);
+  EXPECT_EQ(passes[1].strength, 0.0);
+  ASSERT_TRUE(OverrideFinish(passes, "dial.detail=1"));
+  EXPECT_EQ(passes[2].strength, 0.0);
+  EXPECT_EQ(passes[3].strength, 0.0);
+  ASSERT_TRUE(OverrideFinish(passes, "dial.light=1"));
+  EXPECT_EQ(passes[4].strength, 0.8);
+  EXPECT_EQ(passes[5].strength, 0.8);
+  ASSERT_TRUE(OverrideFinish(passes, "dial.depth=0.25"));
+  EXPECT_EQ(passes[6].strength, 0.2);
+  EXPECT_EQ(passes[7].strength, 0.4) << "no dial turns it";
+  const auto wrong = OverrideFinish(passes, "dial.line=0.5");
+  ASSERT_FALSE(wrong);
+  EXPECT_THAT(wrong.error().message, HasSubstr("did you mean lines?"));
+  EXPECT_FALSE(OverrideFinish(passes, "dial.lines=1.5"));
+}
+
 TEST_F(FinishFile, StyleHasItsOwn) {
   ASSERT_TRUE(WritePicture(folder_ / "lit.png", Picture(32, 32)));
   std::ofstream(folder_ / "style.toml")
