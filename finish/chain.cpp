@@ -32,6 +32,7 @@ std::optional<PointEffect> PointEffectOf(const FinishPass& pass, const FinishFra
     std::optional<PointEffect> operator()(const OutlinePass&) { return std::nullopt; }
     std::optional<PointEffect> operator()(const SmoothPass&) { return std::nullopt; }
     std::optional<PointEffect> operator()(const EdgesPass&) { return std::nullopt; }
+    std::optional<PointEffect> operator()(const HatchPass&) { return std::nullopt; }
     std::optional<PointEffect> operator()(const ToonPass& one) { return internal::MakeToon(one, frame); }
     std::optional<PointEffect> operator()(const RenderPass& one) { return internal::MakeRender(one, frame); }
     std::optional<PointEffect> operator()(const TonesPass& one) { return internal::MakeTones(one); }
@@ -94,6 +95,8 @@ void ApplyToAll(const FinishStep& step, const FinishFrame& frame, Picture& pictu
     internal::Smooth(*smooth, pass.strength, step.only, frame, picture);
   } else if (const auto* edges = std::get_if<EdgesPass>(&pass.effect)) {
     internal::DrawEdges(*edges, pass.strength, step.only, frame, picture);
+  } else if (const auto* hatch = std::get_if<HatchPass>(&pass.effect)) {
+    internal::DrawHatch(*hatch, pass.strength, step.only, frame, picture);
   }
 }
 

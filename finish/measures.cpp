@@ -28,6 +28,7 @@ bool Looks(const OutlinePass& pass) { return (pass.thin != 0.0 && pass.thin_at =
 bool Looks(const ShadowsPass& pass) { return pass.source != ShadowsPass::Source::kCast; }
 bool Looks(const SmoothPass&) { return false; }
 bool Looks(const EdgesPass& pass) { return pass.tone == EdgesPass::Tone::kLight; }
+bool Looks(const HatchPass& pass) { return pass.tone == HatchPass::Tone::kLight; }
 bool Looks(const ToonPass&) { return true; }
 bool Looks(const RenderPass&) { return true; }
 bool Looks(const DepthPass& pass) { return pass.near == 0.0 || pass.far == 0.0; }

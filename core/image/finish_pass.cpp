@@ -40,6 +40,13 @@ LayerSet Of(const EdgesPass& pass) {
   return {};
 }
 
+LayerSet Of(const HatchPass& pass) {
+  LayerSet layers;
+  if (pass.along != HatchPass::Along::kFixed) layers.Add({Layer::kCoverage, Layer::kObject, Layer::kNormal});
+  if (pass.tone == HatchPass::Tone::kLight) layers.Add(Layer::kLuminance);
+  return layers;
+}
+
 LayerSet Of(const RenderPass&) { return {Layer::kLpeFull}; }
 LayerSet Of(const DepthPass&) { return {Layer::kDepth}; }
 LayerSet Of(const TonesPass&) { return {}; }

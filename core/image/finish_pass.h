@@ -118,6 +118,23 @@ struct EdgesPass {
   Rgb16 paper = {0xf4f4, 0xefef, 0xe6e6};
 };
 
+// Strokes of ink, denser where it is darker, in patches that follow the surfaces.
+struct HatchPass {
+  enum class Tone { kLight, kPaint };            // what is looked at
+  enum class Along { kAround, kAlong, kFixed };  // in the direction in which the surface bends most; across; `angle`
+  double spacing = 7.0;                          // 2 … 128 pixels at the reference height, from stroke to stroke
+  double patch = 64.0;                           // 8 … 1024 pixels: size of a patch of one direction
+  double angle = 45.0;   // -180 … 180 degrees, 0 along a row: where the surface has no direction, and of kFixed
+  double cross = 60.0;   // 0 … 90 degrees from one layer of strokes to the next
+  int layers = 2;        // 1 … 4
+  double fullest = 0.6;  // 0.05 … 1: share of ink at which a layer is full, and the next begins
+  double from = 1.0;     // 0 … 1: tone from which on nothing is hatched
+  double wobble = 0.6;   // 0 … 16 pixels: how far strokes stray
+  Tone tone = Tone::kLight;
+  Along along = Along::kAround;
+  Rgb16 ink = {0x1c1c, 0x1a1a, 0x1919};
+};
+
 struct GradePass {
   double saturation = 1.0;  // 0 … 4, of chroma
   double contrast = 1.0;    // 0 … 4, around the middle of lightness
@@ -131,8 +148,8 @@ struct FillPass {
 
 struct FinishPass {
   enum class Stage { kPaint, kSheet };  // before the paper is put behind, or after
-  using Effect = std::variant<OutlinePass, SmoothPass, EdgesPass, ToonPass, RenderPass, TonesPass, ShadowsPass,
-                              DepthPass, GradePass, FillPass>;
+  using Effect = std::variant<OutlinePass, SmoothPass, EdgesPass, HatchPass, ToonPass, RenderPass, TonesPass,
+                              ShadowsPass, DepthPass, GradePass, FillPass>;
   std::string name;  // for --set finish.NAME.KEY; the effect's if the user gives none
   Effect effect;
   Stage at = Stage::kPaint;

@@ -197,6 +197,22 @@ std::vector<FinishKey> EdgesKeys() {
           PassColor("paper", &P::paper, "behind draw = paint")};
 }
 
+std::vector<FinishKey> HatchKeys() {
+  using P = HatchPass;
+  return {PassNumber("spacing", &P::spacing, 2.0, 128.0, "from stroke to stroke, pixels"),
+          PassNumber("patch", &P::patch, 8.0, 1024.0, "size of patches of one direction, pixels"),
+          PassChoice("along", &P::along, {"around", "along", "fixed"},
+                     "around forms, along them, or in the fixed direction `angle`"),
+          PassNumber("angle", &P::angle, -180.0, 180.0, "where a surface has no direction, degrees, 0 along a row"),
+          PassNumber("cross", &P::cross, 0.0, 90.0, "from one layer of strokes to the next, degrees"),
+          PassWhole("layers", &P::layers, 1, 4, "layers of strokes"),
+          PassNumber("fullest", &P::fullest, 0.05, 1.0, "share of ink at which the next layer begins"),
+          PassNumber("from", &P::from, 0.0, 1.0, "tone from which on nothing is hatched"),
+          PassNumber("wobble", &P::wobble, 0.0, 16.0, "how far strokes stray, pixels"),
+          PassChoice("tone", &P::tone, {"light", "paint"}, "what is looked at: the light or the paint"),
+          PassColor("ink", &P::ink, "the colour of ink")};
+}
+
 std::vector<FinishKey> RenderKeys() {
   using P = RenderPass;
   return {PassNumber("exposure", &P::exposure, -16.0, 16.0, "stops; 0: the first picture's brightest tenth is at 0.8"),
@@ -265,6 +281,7 @@ std::vector<FinishEffect> MakeEffects() {
       {"grade", "saturation, contrast and lightness", GradePass(), GradeKeys()},
       {"fill", "one colour instead of the paint", FillPass(), {PassColor("color", &FillPass::color, "of everything")}},
       {"edges", "lines where the tone changes", EdgesPass(), EdgesKeys()},
+      {"hatch", "strokes of ink in the shade, around the forms", HatchPass(), HatchKeys()},
       {"outline", "ink lines along silhouettes, objects, creases, shadows", OutlinePass(), OutlineKeys()}};
   for (FinishEffect& effect : effects) {
     const FinishPass defaults{"", effect.defaults, FinishPass::Stage::kPaint, 1.0, {}, {}};
@@ -377,6 +394,7 @@ Status TurnFinishDial(std::span<FinishPass> passes, const std::string& key, cons
     const auto strengthen = [&](double by) { pass.strength = std::min(1.0, pass.strength * by); };
     auto* const outline = std::get_if<OutlinePass>(&pass.effect);
     auto* const edges = std::get_if<EdgesPass>(&pass.effect);
+    const bool is_hatch = std::holds_alternative<HatchPass>(pass.effect);
     const bool evens =
         std::holds_alternative<SmoothPass>(pass.effect) || std::holds_alternative<TonesPass>(pass.effect);
     const bool of_light =
@@ -388,6 +406,7 @@ Status TurnFinishDial(std::span<FinishPass> passes, const std::string& key, cons
       else
         pass.strength = 0.0;
     }
+    if (name == "lines" && is_hatch) strengthen(factor);
     if (name == "detail" && evens) strengthen(2.0 - factor);
     if (name == "light" && of_light) strengthen(factor);
     if (name == "depth" && std::holds_alternative<DepthPass>(pass.effect)) strengthen(factor);

@@ -62,7 +62,7 @@ Status SetFinishKey(FinishPass& pass, const std::string& key, const KeyValue& va
 Expected<std::size_t> SetFinishKeys(std::span<FinishPass> passes, const std::string& key, const KeyValue& value);
 
 // Dials: four numbers for a whole chain, 0 … 1; at 0.5 the passes are as they are, at 0 their effect is gone.
-//   lines    the width of outlines and edges, up to twice
+//   lines    the width of outlines and edges, the strength of hatching, up to twice
 //   detail   the strength of smoothing and of steps of tone, the other way round
 //   light    the strength of what depends on light: shadows, toon
 //   depth    the strength of what depends on depth

@@ -8,6 +8,7 @@
 
 #include "core/image/color.h"
 #include "core/image/oklab.h"
+#include "finish/area/ink.h"
 #include "finish/outline/border_map.h"
 #include "finish/outline/line_chains.h"
 #include "finish/outline/strokes.h"
@@ -26,18 +27,6 @@ void InkFromPaint(bool is_complement, std::uint16_t* texel) {
   lab = {lab.x / 3.0f, lab.y * chroma, lab.z * chroma};
   const glm::vec3 linear = LinearFromOklab(lab);
   for (int c = 0; c < 3; ++c) texel[c] = Srgb16FromLinear(linear[c]);
-}
-
-// Porter and Duff's "over" with straight alpha, on sRGB codes, as drawing programs do it: a line between two pixels
-// then looks as dark as one that lies on a pixel.
-void LayInk(const std::uint16_t* ink, std::uint16_t* pixel) {
-  const float share = static_cast<float>(ink[3]) / 65535.0f;
-  const float below = static_cast<float>(pixel[3]) / 65535.0f * (1.0f - share), alpha = share + below;
-  for (int c = 0; c < 3; ++c) {
-    const float code = (static_cast<float>(ink[c]) * share + static_cast<float>(pixel[c]) * below) / alpha;
-    pixel[c] = static_cast<std::uint16_t>(code + 0.5f);
-  }
-  pixel[3] = static_cast<std::uint16_t>(std::min(65535.0f, alpha * 65535.0f + 0.5f));
 }
 
 }  // namespace

@@ -279,6 +279,7 @@ void AddFinish(std::span<const FinishPass> passes, bool has_map, const Size& siz
     const bool has_names = !pass.objects.empty() || !pass.materials.empty();
     masks += (has_map ? 1 : 0) + (has_names ? 2 : 0);
     if (std::holds_alternative<SmoothPass>(pass.effect)) transient = std::max(transient, 3 * kLab + 1);
+    if (std::holds_alternative<HatchPass>(pass.effect)) transient = std::max(transient, kFloat);
     if (std::holds_alternative<EdgesPass>(pass.effect)) transient = std::max(transient, 2 * kLab + 5 * kFloat);
     const auto* outline = std::get_if<OutlinePass>(&pass.effect);
     if (!outline) continue;

@@ -87,7 +87,8 @@ Expected<RunReport> RunOnePicture(StyleSet& styles, const GuideSet& guides, cons
 PictureWork WorkOf(const StyleSet& styles, const PictureRequest& picture, const Size& guides, const LayerSet& layers,
                    std::size_t fragments, bool is_sequence, const RunContext& context) {
   const bool has_map = styles.styles.size() > 1 || !styles.assigned.empty();
-  return {styles.styles, has_map, guides, layers, is_sequence, picture.KeepsField(), context.threads, fragments, styles.finish};
+  return {styles.styles,        has_map,         guides,    layers,       is_sequence,
+          picture.KeepsField(), context.threads, fragments, styles.finish};
 }
 
 Status CheckFiles(RunInputs& files, const PictureRequest& picture, const std::optional<Sequence>& sequence,

@@ -14,8 +14,8 @@
 #include "pipeline/memory/memory_limit.h"
 #include "pipeline/requests.h"
 #include "pipeline/run_context.h"
-#include "pipeline/style/style_set.h"
 #include "pipeline/scene/blender_scene.h"
+#include "pipeline/style/style_set.h"
 
 namespace scumble {
 

@@ -165,8 +165,9 @@ TEST_F(CliFinish, SequencesAreOfOneMeasureAndResume) {
 
 TEST_F(CliFinish, ListsEffectsKeysAndPresets) {
   const std::string all = RunOk({"finish", "--list"}).out;
-  for (const char* name : {"comic", "ligne-claire", "noir", "chiaroscuro", "impression", "charcoal-lines", "storybook",
-                           "blueprint", "outline", "shadows", "tones", "depth", "grade", "fill", "strength"}) {
+  for (const char* name :
+       {"comic", "ligne-claire", "noir", "chiaroscuro", "impression", "charcoal-lines", "storybook", "engraving",
+        "blueprint", "outline", "shadows", "tones", "depth", "grade", "fill", "strength"}) {
     EXPECT_TRUE(Contains(all, name)) << name;
   }
   EXPECT_TRUE(Contains(RunOk({"finish", "--list", "--finish", "outline"}).out, "crease_angle"));

@@ -335,7 +335,8 @@ TEST_F(CliVerbs, BundledStylesByName) {
     const CommandResult unknown = Run({"info", "gamma"}, installed);
     EXPECT_EQ(unknown.code, 3);
     EXPECT_EQ(unknown.Error(),
-              "there is no style 'gamma': expected a file, a folder, or one of the bundled styles alpha, beta");
+              "there is no style 'gamma': expected a file, a folder, or one of the bundled styles alpha, beta, or toon "
+              "or render, which need no painting");
     // One style that is broken is named, and does not hide the others.
     fs::remove(At(styles + "/alpha/lit.png"));
     const CommandResult broken = Run({"styles"}, installed);

@@ -1,0 +1,238 @@
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "core/image/color.h"
+#include "core/image/exact_math.h"
+#include "core/image/hash.h"
+#include "core/image/oklab.h"
+#include "finish/area/area_effects.h"
+#include "finish/area/ink.h"
+#include "finish/area/noise.h"
+
+namespace scumble::internal {
+namespace {
+
+constexpr int kMostLayers = 4;
+
+// A direction of strokes: a unit vector along them. Its sign does not matter.
+using Axis = glm::vec2;
+
+Axis AxisAt(double degrees) {
+  // Rows count downwards.
+  return {static_cast<float>(CosDegrees(degrees)), static_cast<float>(-SinDegrees(degrees))};
+}
+
+// Sums of a structure tensor.
+struct Tensor {
+  float xx = 0.0f, xy = 0.0f, yy = 0.0f;
+};
+
+// What bends less than a degree a pixel over a patch, or in no direction more than in others, has no axis.
+constexpr float kLeastBend = 1e-5f, kLeastCoherence = 0.15f;
+
+// The axis in which the tensor is largest: half the angle of (xx - yy, 2 xy). False: there is none.
+bool MainAxis(const Tensor& sum, float pixels, Axis& axis) {
+  const float difference = sum.xx - sum.yy, twice = 2.0f * sum.xy, trace = sum.xx + sum.yy;
+  const float length = std::sqrt(difference * difference + twice * twice);
+  if (!(trace > kLeastBend * pixels) || !(length > kLeastCoherence * trace)) return false;
+  // Half angles without a trigonometric function: cos = sqrt((1 + c) / 2), and so on.
+  const float c = difference / length;
+  axis.x = std::sqrt(std::max(0.0f, 0.5f * (1.0f + c)));
+  axis.y = std::sqrt(std::max(0.0f, 0.5f * (1.0f - c)));
+  if (twice < 0.0f) axis.y = -axis.y;
+  return true;
+}
+
+// The patches of a picture.
+class Patches {
+ public:
+  Patches(const HatchPass& pass, const FinishFrame& frame, int width, int height)
+      : width_(width),
+        cell_(static_cast<float>(pass.patch * frame.scale)),
+        columns_(static_cast<int>(static_cast<float>(width) / cell_) + 3),
+        rows_(static_cast<int>(static_cast<float>(height) / cell_) + 3),
+        seed_(frame.seed) {
+    const Axis fixed = AxisAt(pass.angle);
+    if (pass.along == HatchPass::Along::kFixed) {
+      axis_of_all_ = fixed;
+      return;
+    }
+    const GuideSet& guides = *frame.guides;
+    object_ = guides.Plane(Layer::kObject);
+    patch_.resize(guides.pixel_count());
+    tbb::parallel_for(0, height, [&](int y) {
+      for (int x = 0; x < width; ++x) patch_[guides.Index(x, y)] = NearestPoint(x, y);
+    });
+    Sum(guides, height);
+    for (auto& patch : of_cell_) {
+      for (Part& part : patch) {
+        if (!MainAxis(part.tensor, part.pixels, part.axis)) {
+          part.axis = fixed;
+        } else if (pass.along == HatchPass::Along::kAlong) {
+          part.axis = {-part.axis.y, part.axis.x};
+        }
+      }
+    }
+  }
+
+  Axis At(std::size_t pixel) const {
+    if (patch_.empty()) return axis_of_all_;
+    for (const Part& part : of_cell_[std::size_t(patch_[pixel])]) {
+      if (part.object == object_[pixel]) return part.axis;
+    }
+    return axis_of_all_;
+  }
+
+ private:
+  // One object's share of a patch.
+  struct Part {
+    float object = 0.0f, pixels = 0.0f;
+    Tensor tensor;
+    Axis axis{1.0f, 0.0f};
+  };
+
+  // The grid point's place, in cells.
+  glm::vec2 PointOf(int column, int row) const {
+    const std::uint64_t hash = Hash(seed_, 3, column, row);
+    return {static_cast<float>(column) + UnitFloat(hash), static_cast<float>(row) + UnitFloat(Mix64(hash))};
+  }
+
+  int NearestPoint(int x, int y) const {
+    const glm::vec2 at((static_cast<float>(x) + 0.5f) / cell_, (static_cast<float>(y) + 0.5f) / cell_);
+    const int column = static_cast<int>(at.x), row = static_cast<int>(at.y);
+    int nearest = 0;
+    float least = 1e9f;
+    for (int v = row - 1; v <= row + 1; ++v) {
+      for (int u = column - 1; u <= column + 1; ++u) {
+        const glm::vec2 off = PointOf(u, v) - at;
+        const float distance = off.x * off.x + off.y * off.y;
+        if (distance < least) least = distance, nearest = (v + 1) * columns_ + (u + 1);
+      }
+    }
+    return nearest;
+  }
+
+  // In one fixed order, since sums of floats depend on it.
+  void Sum(const GuideSet& guides, int height) {
+    of_cell_.resize(std::size_t(columns_) * std::size_t(rows_ + 1));
+    const auto coverage = guides.Plane(Layer::kCoverage);
+    for (int y = 0; y + 1 < height; ++y) {
+      for (int x = 0; x + 1 < width_; ++x) {
+        const std::size_t p = guides.Index(x, y), right = p + 1, below = p + std::size_t(width_);
+        if (!(coverage[p] > 0.0f)) continue;
+        Part& part = PartOf(patch_[p], object_[p]);
+        part.pixels += 1.0f;
+        if (object_[right] != object_[p] || object_[below] != object_[p]) continue;
+        const glm::vec3 n = guides.Vec3(Layer::kNormal, p);
+        const glm::vec3 dx = guides.Vec3(Layer::kNormal, right) - n, dy = guides.Vec3(Layer::kNormal, below) - n;
+        part.tensor.xx += dx.x * dx.x + dx.y * dx.y + dx.z * dx.z;
+        part.tensor.xy += dx.x * dy.x + dx.y * dy.y + dx.z * dy.z;
+        part.tensor.yy += dy.x * dy.x + dy.y * dy.y + dy.z * dy.z;
+      }
+    }
+  }
+  Part& PartOf(int patch, float object) {
+    std::vector<Part>& parts = of_cell_[std::size_t(patch)];
+    for (Part& part : parts) {
+      if (part.object == object) return part;
+    }
+    parts.push_back({object, 0.0f, {}, {}});
+    return parts.back();
+  }
+
+  int width_;
+  float cell_;
+  int columns_, rows_;
+  std::uint64_t seed_;
+  Axis axis_of_all_{1.0f, 0.0f};
+  std::span<const float> object_;
+  std::vector<int> patch_;  // by pixel; empty: all strokes have one direction
+  std::vector<std::vector<Part>> of_cell_;
+};
+
+// The tone of a pixel, 0 … 1, as lightness.
+class Tones {
+ public:
+  Tones(const HatchPass& pass, const FinishFrame& frame, const Picture& picture)
+      : picture_(picture), per_bright_(static_cast<float>(1.0 / frame.measures.bright)) {
+    if (pass.tone == HatchPass::Tone::kLight) light_ = frame.guides->Plane(Layer::kLuminance);
+  }
+  float At(std::size_t pixel) const {
+    if (!light_.empty()) return OklabFromLinear(glm::vec3(std::clamp(light_[pixel] * per_bright_, 0.0f, 1.0f))).x;
+    const std::uint16_t* const texel = picture_.rgba.data() + 4 * pixel;
+    return OklabFromLinear({Srgb16ToLinear(texel[0]), Srgb16ToLinear(texel[1]), Srgb16ToLinear(texel[2])}).x;
+  }
+
+ private:
+  const Picture& picture_;
+  std::span<const float> light_;
+  float per_bright_;
+};
+
+// How much of a pixel strokes of this share of ink cover: lines `spacing` apart and share · spacing wide, across a
+// pixel of width 1.
+float LineCover(float across, float spacing, float share) {
+  const float from_middle = std::fabs(across / spacing - std::floor(across / spacing) - 0.5f) * spacing;
+  // Both the line and the gap may be thinner than a pixel.
+  const float half = 0.5f * share * spacing;
+  const float low = std::max(from_middle - 0.5f, -half), high = std::min(from_middle + 0.5f, half);
+  const float next_low = std::max(from_middle - 0.5f, spacing - half),
+              next_high = std::min(from_middle + 0.5f, spacing + half);
+  return std::clamp(std::max(0.0f, high - low) + std::max(0.0f, next_high - next_low), 0.0f, 1.0f);
+}
+
+}  // namespace
+
+void DrawHatch(const HatchPass& pass, double strength, std::span<const std::uint8_t> only, const FinishFrame& frame,
+               Picture& picture) {
+  const Patches patches(pass, frame, picture.width, picture.height);
+  const Tones tones(pass, frame, picture);
+  const auto spacing = static_cast<float>(std::max(2.0, pass.spacing * frame.scale));
+  const auto wobble = static_cast<float>(pass.wobble * frame.scale);
+  const auto fullest = static_cast<float>(pass.fullest), from = static_cast<float>(pass.from);
+  const float per_wave = 1.0f / (6.0f * spacing);
+  std::array<glm::vec2, kMostLayers> turns;  // the cosine and sine of each layer's turn
+  for (int k = 0; k < kMostLayers; ++k) turns[std::size_t(k)] = AxisAt(k * pass.cross);
+  const auto width = static_cast<std::size_t>(picture.width);
+  tbb::parallel_for(tbb::blocked_range<int>(0, picture.height, 8), [&](const auto& rows) {
+    for (int y = rows.begin(); y != rows.end(); ++y) {
+      for (std::size_t x = 0; x < width; ++x) {
+        const std::size_t p = std::size_t(y) * width + x;
+        std::uint16_t* const pixel = picture.rgba.data() + 4 * p;
+        if (pixel[3] == 0 || (!only.empty() && !only[p])) continue;
+        float left = from > 0.0f ? std::min(1.0f, tones.At(p) / from) : 1.0f;  // of the tone, after the layers so far
+        if (left >= 1.0f) continue;
+        const Axis axis = patches.At(p);
+        const glm::vec2 at(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
+        float bare = 1.0f;
+        for (int k = 0; k < pass.layers && left < 1.0f; ++k) {
+          const float most = k + 1 < pass.layers ? fullest : 1.0f;
+          const float share = std::min(1.0f - left, most);
+          const glm::vec2 turn = turns[std::size_t(k)];
+          const Axis along(axis.x * turn.x - axis.y * turn.y, axis.x * turn.y + axis.y * turn.x);
+          float across = at.y * along.x - at.x * along.y;
+          if (wobble > 0.0f) across += wobble * Noise(Hash(frame.seed, 4, k), at * per_wave);
+          // Layers of one spacing would meet in a pattern.
+          const float apart = spacing * (1.0f + 0.137f * static_cast<float>(k));
+          bare *= 1.0f - LineCover(across, apart, share);
+          left = share < 1.0f ? left / (1.0f - share) : 1.0f;
+        }
+        std::uint16_t ink[4] = {pass.ink[0], pass.ink[1], pass.ink[2], 0};
+        ink[3] = static_cast<std::uint16_t>((1.0f - bare) * static_cast<float>(strength) * 65535.0f + 0.5f);
+        if (ink[3] == 0) continue;
+        const std::uint16_t kept = pixel[3];
+        LayInk(ink, pixel);
+        pixel[3] = kept;  // strokes stay inside
+      }
+    }
+  });
+}
+
+}  // namespace scumble::internal

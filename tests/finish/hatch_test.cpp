@@ -1,0 +1,142 @@
+// Hatching: how much ink there is, which way strokes run, and what they leave alone.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/image/color.h"
+#include "tests/finish/finish_fixtures.h"
+
+namespace scumble {
+namespace {
+
+// White paper with black ink: the share of ink by pixel.
+std::vector<double> HatchOf(HatchPass pass, const GuideSet& guides, int threads = 0) {
+  pass.ink = {0, 0, 0};
+  const Picture made =
+      Finished(StepOf(pass), &guides, PlainPicture(guides.width(), guides.height(), 65535, 65535, 65535), {}, threads);
+  std::vector<double> ink;
+  for (std::size_t i = 0; i < made.rgba.size(); i += 4) ink.push_back(1.0 - made.rgba[i] / 65535.0);
+  return ink;
+}
+
+double Mean(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  return sum / double(values.size());
+}
+
+// Flat, in a light whose lightness is `tone`.
+GuideSet FlatInLight(double tone) {
+  GuideSet guides = FlatGuides(300, 300);
+  for (float& value : guides.Plane(Layer::kLuminance)) value = static_cast<float>(tone * tone * tone);
+  return guides;
+}
+
+TEST(Hatch, InkIsWhatTheToneLacks) {
+  for (const double tone : {0.95, 0.7, 0.5, 0.3, 0.1}) {
+    for (const int layers : {1, 2, 3}) {
+      HatchPass pass;
+      pass.layers = layers, pass.wobble = 0.0, pass.angle = 27.0;
+      EXPECT_NEAR(Mean(HatchOf(pass, FlatInLight(tone))), 1.0 - tone, 0.01) << tone << ' ' << layers;
+    }
+  }
+}
+
+TEST(Hatch, ThinLinesAndThinGapsKeepTheirShare) {
+  HatchPass pass;
+  pass.layers = 1, pass.wobble = 0.0, pass.angle = 13.0, pass.spacing = 2.5;
+  for (const double tone : {0.9, 0.5, 0.08})
+    EXPECT_NEAR(Mean(HatchOf(pass, FlatInLight(tone))), 1.0 - tone, 0.01) << tone;
+}
+
+TEST(Hatch, LightAboveTheLimitIsBare) {
+  HatchPass pass;
+  pass.from = 0.6;
+  EXPECT_EQ(Mean(HatchOf(pass, FlatInLight(0.65))), 0.0);
+  EXPECT_GT(Mean(HatchOf(pass, FlatInLight(0.5))), 0.1);
+  EXPECT_EQ(Mean(HatchOf({}, FlatInLight(1.0))), 0.0);
+}
+
+TEST(Hatch, DarknessIsFull) { EXPECT_NEAR(Mean(HatchOf({}, FlatInLight(0.0))), 1.0, 1e-3); }
+
+// How much the ink changes from a pixel to one `dx`, `dy` away.
+double Change(const std::vector<double>& ink, int width, int height, int dx, int dy) {
+  double sum = 0.0;
+  int count = 0;
+  for (int y = 20; y < height - 20; ++y) {
+    for (int x = 20; x < width - 20; ++x, ++count) {
+      sum += std::fabs(ink[std::size_t(y * width + x)] - ink[std::size_t((y + dy) * width + x + dx)]);
+    }
+  }
+  return sum / count;
+}
+
+// A cylinder over the whole picture whose axis is at 45 degrees, rising to the right (sign 1) or falling.
+GuideSet Cylinder(int size, float sign) {
+  GuideSet guides = GuidesOf(size, size, [=](glm::vec2 at) {
+    const float across = ((at.x - float(size) / 2) + sign * (at.y - float(size) / 2)) / (1.5f * float(size));
+    const float z = std::sqrt(std::max(0.0f, 1.0f - across * across));
+    const float h = std::sqrt(0.5f);
+    return SeenPoint{true, {across * h, -sign * across * h, z}, 5.0f, 1.0f};
+  });
+  guides.Add(Layer::kLuminance);
+  for (float& value : guides.Plane(Layer::kLuminance)) value = 0.125f;
+  return guides;
+}
+
+// The formula of lengths instead of a tensor gives both cylinders one direction.
+TEST(Hatch, CylindersThatLeanTheOtherWayAreHatchedTheOtherWay) {
+  HatchPass pass;
+  pass.layers = 1, pass.wobble = 0.0, pass.angle = 0.0, pass.spacing = 8.0, pass.patch = 1000.0;
+  for (const float sign : {1.0f, -1.0f}) {
+    const GuideSet guides = Cylinder(200, sign);
+    const int along = sign > 0 ? -4 : 4;  // the axis: where x rises, y falls
+    pass.along = HatchPass::Along::kAlong;
+    const auto strokes = HatchOf(pass, guides);
+    EXPECT_LT(Change(strokes, 200, 200, 4, along), 0.2 * Change(strokes, 200, 200, 4, -along)) << sign;
+    pass.along = HatchPass::Along::kAround;
+    const auto rings = HatchOf(pass, guides);
+    EXPECT_LT(Change(rings, 200, 200, 4, -along), 0.2 * Change(rings, 200, 200, 4, along)) << sign;
+  }
+}
+
+TEST(Hatch, FlatSurfacesTakeTheAngle) {
+  HatchPass pass;
+  pass.layers = 1, pass.wobble = 0.0, pass.angle = 90.0;
+  const auto ink = HatchOf(pass, FlatInLight(0.5));
+  EXPECT_EQ(Change(ink, 300, 300, 0, 5), 0.0);
+  EXPECT_GT(Change(ink, 300, 300, 4, 0), 0.1);
+}
+
+TEST(Hatch, ObjectsHaveTheirOwnPatches) {
+  GuideSet guides = Cylinder(200, 1.0f);
+  for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
+    if (i % 200 < 100) continue;
+    guides.Plane(Layer::kObject)[i] = 2.0f;
+    for (int c = 0; c < 3; ++c) guides.Plane(Layer::kNormal, c)[i] = c == 2 ? 1.0f : 0.0f;
+  }
+  HatchPass pass;
+  pass.layers = 1, pass.wobble = 0.0, pass.angle = 0.0, pass.patch = 1000.0;
+  const auto ink = HatchOf(pass, guides);
+  double flat = 0.0, bent = 0.0;
+  for (int x = 0; x < 90; ++x) {
+    bent += std::fabs(ink[std::size_t(100 * 200 + x)] - ink[std::size_t(100 * 200 + x + 4)]);
+    flat += std::fabs(ink[std::size_t(100 * 200 + x + 104)] - ink[std::size_t(100 * 200 + x + 108)]);
+  }
+  EXPECT_EQ(flat, 0.0) << "along a row";
+  EXPECT_GT(bent, 10.0);
+}
+
+TEST(Hatch, LooksAtPaintToo) {
+  GuideSet guides = FlatGuides(100, 100);
+  HatchPass pass;
+  pass.tone = HatchPass::Tone::kPaint, pass.along = HatchPass::Along::kFixed, pass.ink = {0, 0, 0};
+  const Picture white = PlainPicture(100, 100, 65535, 65535, 65535);
+  EXPECT_EQ(Finished(StepOf(pass), nullptr, white).rgba, white.rgba);
+  const Picture grey = PlainPicture(100, 100, 20000, 20000, 20000);
+  EXPECT_NE(Finished(StepOf(pass), nullptr, grey).rgba, grey.rgba);
+}
+
+}  // namespace
+}  // namespace scumble
