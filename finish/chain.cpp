@@ -23,7 +23,15 @@ using internal::OklabBlock, internal::PointEffect;
 struct PointStep {
   PointEffect apply;
   const FinishStep* step = nullptr;
+  std::span<const float> coverage;  // where it is 0 the step changes nothing; empty: it is not looked at
 };
+
+// Background has no light and no colour of its own: what looks at them leaves it as it is, a renderer's sky too.
+std::span<const float> CoverageFor(const FinishPass& pass, const FinishFrame& frame) {
+  const bool looks = std::holds_alternative<ShadowsPass>(pass.effect) ||
+                     std::holds_alternative<ToonPass>(pass.effect) || std::holds_alternative<RenderPass>(pass.effect);
+  return looks ? frame.guides->Plane(Layer::kCoverage) : std::span<const float>();
+}
 
 // The effect, where it treats each pixel by itself.
 std::optional<PointEffect> PointEffectOf(const FinishPass& pass, const FinishFrame& frame) {
@@ -45,11 +53,14 @@ std::optional<PointEffect> PointEffectOf(const FinishPass& pass, const FinishFra
 }
 
 // Where the step changes nothing or only part of it, puts back what was before.
-void Weigh(const FinishStep& step, std::size_t first, std::size_t count, const OklabBlock& before, OklabBlock& block) {
+void Weigh(const PointStep& one, std::size_t first, std::size_t count, const OklabBlock& before, OklabBlock& block) {
+  const FinishStep& step = *one.step;
   const auto strength = static_cast<float>(step.pass.strength);
-  if (strength >= 1.0f && step.only.empty()) return;
+  if (strength >= 1.0f && step.only.empty() && one.coverage.empty()) return;
   for (std::size_t i = 0; i < count; ++i) {
-    const float share = step.only.empty() || step.only[first + i] ? strength : 0.0f;
+    const bool is_for_it =
+        (step.only.empty() || step.only[first + i]) && (one.coverage.empty() || one.coverage[first + i] > 0.0f);
+    const float share = is_for_it ? strength : 0.0f;
     const auto mix = [&](float from, float to) { return share >= 1.0f ? to : from + (to - from) * share; };
     block.lightness[i] = mix(before.lightness[i], block.lightness[i]);
     block.a[i] = mix(before.a[i], block.a[i]);
@@ -65,7 +76,7 @@ void PaintBlock(std::span<const PointStep> steps, std::size_t first, std::size_t
   for (const PointStep& one : steps) {
     before = block;
     one.apply(first, count, block);
-    Weigh(*one.step, first, count, before, block);
+    Weigh(one, first, count, before, block);
   }
   std::uint16_t made[4 * internal::kOklabBlock];
   std::copy_n(texels, 4 * count, made);
@@ -109,7 +120,7 @@ Status Apply(std::span<const FinishStep* const> steps, const FinishFrame& frame,
     for (; i < steps.size(); ++i) {
       std::optional<PointEffect> effect = PointEffectOf(steps[i]->pass, frame);
       if (!effect) break;
-      points.push_back({*std::move(effect), steps[i]});
+      points.push_back({*std::move(effect), steps[i], CoverageFor(steps[i]->pass, frame)});
     }
     if (!points.empty()) {
       internal::RowProgress rows(progress, share * double(begin), share * double(i), std::max(1, picture.height));

@@ -14,7 +14,7 @@ LayerSet Of(const OutlinePass& pass) {
 }
 
 LayerSet Of(const ShadowsPass& pass) {
-  LayerSet layers;
+  LayerSet layers{Layer::kCoverage};
   if (pass.source != ShadowsPass::Source::kForm) layers.Add(Layer::kShadow);
   if (pass.source != ShadowsPass::Source::kCast) layers.Add(Layer::kLuminance);
   return layers;
@@ -33,9 +33,9 @@ LayerSet Of(const EdgesPass& pass) {
     case EdgesPass::Tone::kPaint:
       return {};
     case EdgesPass::Tone::kLight:
-      return {Layer::kLuminance};
+      return {Layer::kCoverage, Layer::kLuminance};
     case EdgesPass::Tone::kAlbedo:
-      return {Layer::kAlbedo};
+      return {Layer::kCoverage, Layer::kAlbedo};
   }
   return {};
 }
@@ -43,11 +43,11 @@ LayerSet Of(const EdgesPass& pass) {
 LayerSet Of(const HatchPass& pass) {
   LayerSet layers;
   if (pass.along != HatchPass::Along::kFixed) layers.Add({Layer::kCoverage, Layer::kObject, Layer::kNormal});
-  if (pass.tone == HatchPass::Tone::kLight) layers.Add(Layer::kLuminance);
+  if (pass.tone == HatchPass::Tone::kLight) layers.Add({Layer::kCoverage, Layer::kLuminance});
   return layers;
 }
 
-LayerSet Of(const RenderPass&) { return {Layer::kLpeFull}; }
+LayerSet Of(const RenderPass&) { return {Layer::kCoverage, Layer::kLpeFull}; }
 LayerSet Of(const DepthPass&) { return {Layer::kDepth}; }
 LayerSet Of(const TonesPass&) { return {}; }
 LayerSet Of(const GradePass&) { return {}; }

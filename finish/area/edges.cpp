@@ -84,11 +84,13 @@ std::vector<float> ToneOf(const EdgesPass& pass, const FinishFrame& frame, const
     for (int c = 0; c < 3; ++c) planes[std::size_t(c)] = frame.guides->Plane(Layer::kAlbedo, c).data();
   }
   std::vector<float> tone(pixels);
+  const auto coverage = frame.guides->Plane(Layer::kCoverage);
   tbb::parallel_for(std::size_t(0), (pixels + kOklabBlock - 1) / kOklabBlock, [&](std::size_t one) {
     const std::size_t first = one * kOklabBlock, count = std::min(kOklabBlock, pixels - first);
     OklabBlock block;
     OklabFromPlanes({planes[0] + first, planes[1] + first, planes[2] + first}, count, block);
-    std::copy_n(block.lightness.begin(), count, tone.begin() + std::ptrdiff_t(first));
+    // Background has no tone: it counts as bare paper.
+    for (std::size_t i = 0; i < count; ++i) tone[first + i] = coverage[first + i] > 0.0f ? block.lightness[i] : 1.0f;
   });
   return tone;
 }

@@ -162,9 +162,11 @@ class Tones {
  public:
   Tones(const HatchPass& pass, const FinishFrame& frame, const Picture& picture)
       : picture_(picture), per_bright_(static_cast<float>(1.0 / frame.measures.bright)) {
-    if (pass.tone == HatchPass::Tone::kLight) light_ = frame.guides->Plane(Layer::kLuminance);
+    if (pass.tone != HatchPass::Tone::kLight) return;
+    light_ = frame.guides->Plane(Layer::kLuminance), coverage_ = frame.guides->Plane(Layer::kCoverage);
   }
   float At(std::size_t pixel) const {
+    if (!coverage_.empty() && !(coverage_[pixel] > 0.0f)) return 1.0f;  // background has no light to lack
     if (!light_.empty()) return OklabFromLinear(glm::vec3(std::clamp(light_[pixel] * per_bright_, 0.0f, 1.0f))).x;
     const std::uint16_t* const texel = picture_.rgba.data() + 4 * pixel;
     return OklabFromLinear({Srgb16ToLinear(texel[0]), Srgb16ToLinear(texel[1]), Srgb16ToLinear(texel[2])}).x;
@@ -172,7 +174,7 @@ class Tones {
 
  private:
   const Picture& picture_;
-  std::span<const float> light_;
+  std::span<const float> light_, coverage_;
   float per_bright_;
 };
 

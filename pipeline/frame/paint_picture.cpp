@@ -156,9 +156,10 @@ void NoteExemplarUse(const Style& style, const RunContext& context) {
   }
 }
 
-// The passes of the picture. Measures that they look at are taken of the first picture and told.
-FrameFinish FinishOf(const StyleSet& styles, const GuideSet& guides, const StyleMap* map, const RunContext& context,
-                     PictureState& state) {
+// The passes of a picture that is painted by `guides`, and measured by those that were `given`, before they were
+// upsampled.
+FrameFinish FinishOf(const StyleSet& styles, const GuideSet& given, const GuideSet& guides, const StyleMap* map,
+                     const RunContext& context, PictureState& state) {
   FrameFinish finish;
   const bool is_first = !state.told_of_finish;
   finish.steps = FinishStepsOf(styles, guides, map, [&](const std::string& text) {
@@ -167,18 +168,18 @@ FrameFinish FinishOf(const StyleSet& styles, const GuideSet& guides, const Style
   if (finish.steps.empty()) return finish;
   state.told_of_finish = true;
   finish.reference_height = styles.first().transfer.reference_height;
-  std::vector<FinishPass> passes;
-  for (const FinishStep& step : finish.steps) passes.push_back(step.pass);
-  if (!LooksAtMeasures(passes)) return finish;
-  if (!state.finish_measures) {
-    state.finish_measures = MeasureFinish(guides);
-    context.Note("finish: " + DescribeMeasures(*state.finish_measures));
-  }
-  finish.measures = *state.finish_measures;
+  MeasureFinishOf(styles, given, context, state);
+  if (state.finish_measures) finish.measures = *state.finish_measures;
   return finish;
 }
 
 }  // namespace
+
+void MeasureFinishOf(const StyleSet& styles, const GuideSet& guides, const RunContext& context, PictureState& state) {
+  if (state.finish_measures || !LooksAtMeasures(AllPasses(styles))) return;
+  state.finish_measures = MeasureFinish(guides);
+  context.Note("finish: " + DescribeMeasures(*state.finish_measures));
+}
 
 Status ReadOver(const std::string& file, PictureState& state) {
   if (state.over && state.over_file == file) return Ok();
@@ -299,7 +300,7 @@ Expected<PaintedPicture> PaintInMemory(StyleSet& styles, const GuideSet& given, 
   times.emplace_back("prepare", watch.Lap());
   context.EndStage("prepare");
 
-  const FrameFinish finish = FinishOf(styles, guides, needs_map ? &map : nullptr, context, state);
+  const FrameFinish finish = FinishOf(styles, given, guides, needs_map ? &map : nullptr, context, state);
   double finish_ms = 0.0;
   FrameSettings settings{request.seed, request.frame.value_or(0), RateOf(request.fps, given), *state.exposure,
                          over,         request.KeepsField()};

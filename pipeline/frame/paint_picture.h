@@ -56,6 +56,9 @@ struct PictureState {
 // Reads PictureRequest::over, unless `state` has it already.
 Status ReadOver(const std::string& file, PictureState& state);
 
+// Measures what finishing passes look at, unless `state` has it already, and tells it. Nothing where none looks.
+void MeasureFinishOf(const StyleSet& styles, const GuideSet& guides, const RunContext& context, PictureState& state);
+
 // Of two lighting conditions with one luminance only the first is ever chosen: the others, with what is wrong
 // and how to fix it.
 struct EqualLight {

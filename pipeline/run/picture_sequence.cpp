@@ -7,6 +7,8 @@
 #include "core/io/existing_output.h"
 #include "core/io/picture_file.h"
 #include "core/style/style_keyframes.h"
+#include "finish/finish.h"
+#include "pipeline/style/finish_set.h"
 
 namespace scumble {
 namespace {
@@ -29,11 +31,15 @@ Status PictureSequence::Begin(const Sequence& sequence, int width, int height, c
   const int first = sequence.frames.front();
   const Expected<FrameGuides> found = guides_at(first, progress);
   if (!found) {
-    return Error{found.error().kind, found.error().message + "; frame " + std::to_string(first) +
-                                         " is the one that --exposure auto is measured on: give --exposure STOPS"};
+    const std::string fix = MeasuresExposure(styles_, request_)
+                                ? " is the one that --exposure auto is measured on: give --exposure STOPS"
+                                : " is the one that finishing effects are measured on: begin with another";
+    return Error{found.error().kind, found.error().message + "; frame " + std::to_string(first) + fix};
   }
   SCUMBLE_ASSIGN(const PictureRequest one, RequestAt(request_, first, request_.output));
   SCUMBLE_RETURN_IF_ERROR(PrepareFrame(styles_, *found->guides, one, context_, state_));
+  MeasureFinishOf(styles_, *found->guides, context_, state_);
+  if (!MeasuresExposure(styles_, request_)) return Ok();
   context_.Warn(
       fmt::format("the exposure of all frames was measured on frame {}: where a sequence is cut into several runs, "
                   "give each --exposure {:.2f}",
@@ -62,7 +68,7 @@ Status PictureSequence::Check(int frame, const std::string& output, int width, i
 }
 
 bool PictureSequence::MustLookAhead(const Sequence& sequence) const {
-  return sequence.frames.size() > 1 && MeasuresExposure(styles_, request_);
+  return sequence.frames.size() > 1 && (MeasuresExposure(styles_, request_) || LooksAtMeasures(AllPasses(styles_)));
 }
 
 Expected<FrameWrite> PictureSequence::Make(int frame, const std::string& output, const GuidesAt& guides_at,

@@ -112,6 +112,13 @@ Status SetFinish(const std::vector<std::string>& sets, std::vector<FinishPass>& 
   return Ok();
 }
 
+std::vector<FinishPass> AllPasses(const StyleSet& styles) {
+  std::vector<FinishPass> passes;
+  for (const Style& style : styles.styles) passes.insert(passes.end(), style.finish.begin(), style.finish.end());
+  passes.insert(passes.end(), styles.finish.begin(), styles.finish.end());
+  return passes;
+}
+
 std::vector<FinishStep> FinishStepsOf(const StyleSet& styles, const GuideSet& guides, const StyleMap* map,
                                       const std::function<void(const std::string&)>& tell) {
   std::vector<FinishStep> steps;

@@ -29,6 +29,9 @@ Expected<std::vector<FinishPass>> OpenFinish(const std::vector<std::string>& nam
 // Applies "finish.NAME.KEY=VALUE" to the passes; an error where none has that name.
 Status SetFinish(const std::vector<std::string>& sets, std::vector<FinishPass>& passes);
 
+// All passes of the styles and of the run, without their pixels.
+std::vector<FinishPass> AllPasses(const StyleSet& styles);
+
 // The passes of these styles and of the run, in their order, each with the pixels that it is for: a style's passes are
 // for its own pixels, the run's for all of them, and `objects` and `materials` limit both. `map`: null where one style
 // paints all. The styles must be at the picture's frame. Names that fit nothing are told to `tell`.

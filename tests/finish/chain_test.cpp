@@ -86,6 +86,16 @@ TEST_P(EveryEffect, TakesWhatBackgroundAndEdgesHold) {
   EXPECT_FALSE(Finished(Step(), &one, PlainPicture(1, 1, 1, 2, 3), measures_).empty());
 }
 
+// Of a picture that is opaque everywhere, as a renderer's with a sky.
+TEST_P(EveryEffect, LeavesASkyAsItIsWhereItHasNoGuides) {
+  const std::string name = GetParam();
+  if (name == "fill" || name == "grade" || name == "tones" || name == "depth" || name == "smooth") return;  // of all
+  const Picture opaque = PlainPicture(90, 90, 60000, 61000, 62000);
+  const Picture made = Finished(Step(), &guides_, opaque, measures_);
+  for (int c = 0; c < 4; ++c) EXPECT_EQ(made.At(2, 2)[c], opaque.At(2, 2)[c]);
+  EXPECT_NE(made.rgba, opaque.rgba);
+}
+
 TEST_P(EveryEffect, NamesTheLayersThatAreMissing) {
   const FinishStep step = Step();
   if (RequiredLayers(step.pass).empty()) {

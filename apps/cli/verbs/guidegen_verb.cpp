@@ -34,6 +34,9 @@ Expected<GuidegenRequest> ToRequest(const GuidegenVerb& verb) {
   if (verb.style.style.empty() && !verb.style.assigned.empty()) {
     return UsageError("--assign goes with a style for all the rest: give --style too");
   }
+  if (verb.style.style.empty() && !verb.style.finishes.empty()) {
+    return UsageError("--finish comes after a style: give --style too, or ask for --layers");
+  }
   SCUMBLE_ASSIGN(request.scene, ToRequest(verb.scene));
   SCUMBLE_ASSIGN(request.sequence, ToRequest(verb.sequence));
   if (!verb.style.style.empty()) request.style = verb.style;

@@ -163,6 +163,22 @@ TEST_F(CliFinish, SequencesAreOfOneMeasureAndResume) {
   EXPECT_TRUE(Contains(other.out, "\"kept\": 0")) << other.out;
 }
 
+// Frames that are made later look as those that were made at once.
+TEST_F(CliFinish, ResumedTransfersGoOnAsTheyBegan) {
+  WriteStyle("plain");
+  const Arguments run{"stylize", kToys,      "--frames",  "1-3", "--size",     "64x48",   "--style",
+                      "plain",   "--finish", "storybook", "-o",  "f.####.png", "--resume"};
+  RunOk(run);
+  const auto before = Read("f.0003.png").rgba;
+  std::filesystem::remove(At("f.0003.png"));
+  RunOk(run);
+  EXPECT_EQ(Read("f.0003.png").rgba, before);
+  std::filesystem::remove(At("f.0003.png"));
+  RunOk({"stylize", kToys, "--frame", "3", "--size", "64x48", "--style", "plain", "--finish", "storybook", "-o",
+         "f.0003.png"});
+  EXPECT_NE(Read("f.0003.png").rgba, before) << "alone it is measured on itself";
+}
+
 TEST_F(CliFinish, ListsEffectsKeysAndPresets) {
   const std::string all = RunOk({"finish", "--list"}).out;
   for (const char* name :

@@ -195,7 +195,7 @@ TEST(FinishLayers, AreThoseThatItReads) {
   EXPECT_TRUE(RequiredLayers(pass).empty()) << "what changes nothing reads nothing";
   FinishPass shadows = *MakeFinishPass("shadows");
   ASSERT_TRUE(SetFinishKey(shadows, "source", KeyValue(std::string("cast"))));
-  EXPECT_EQ(RequiredLayers(shadows), LayerSet{Layer::kShadow});
+  EXPECT_EQ(RequiredLayers(shadows), (LayerSet{Layer::kCoverage, Layer::kShadow}));
   FinishPass tones = *MakeFinishPass("tones");
   EXPECT_TRUE(RequiredLayers(tones).empty());
   tones.objects = {"Ball"};
