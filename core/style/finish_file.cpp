@@ -25,7 +25,8 @@ Status ReadNames(const toml::node& node, std::vector<std::string>& names) {
   return Ok();
 }
 
-Expected<FinishPass> ReadPass(const toml::table& table, const std::string& file) {
+Expected<FinishPass> ReadPass(const toml::table& table, const std::string& file,
+                              std::vector<internal::FinishFrames>* frames) {
   const auto* effect = table.get("effect");
   const auto* name_of_effect = effect ? effect->as_string() : nullptr;
   if (!name_of_effect) {
@@ -34,6 +35,7 @@ Expected<FinishPass> ReadPass(const toml::table& table, const std::string& file)
   Expected<FinishPass> made = MakeFinishPass(name_of_effect->get());
   if (!made) return InputError(internal::Where(file, *effect) + ": " + made.error().message);
   FinishPass pass = *std::move(made);
+  std::vector<internal::FinishFrames> of_pass;
   for (const auto& [key, node] : table) {
     const std::string name(key.str());
     if (name == "effect") continue;
@@ -47,6 +49,9 @@ Expected<FinishPass> ReadPass(const toml::table& table, const std::string& file)
         done = UsageError("expected a text without dots, colons, blanks or =");
       else
         pass.name = *text;
+    } else if (const auto* pairs = node.as_array(); pairs && FindFinishKey(pass, name)) {
+      of_pass.push_back({name, pairs});
+      if (!frames) done = UsageError("expected a plain value: key frames are for style.toml");
     } else if (!value) {
       done = UsageError("expected a plain value");
     } else {
@@ -54,20 +59,32 @@ Expected<FinishPass> ReadPass(const toml::table& table, const std::string& file)
     }
     if (!done) return InputError(internal::Where(file, node) + ": finish." + name + ": " + done.error().message);
   }
+  for (internal::FinishFrames& one : of_pass) {
+    one.key = kFinishKeys + pass.name + "." + one.key;
+    frames->push_back(std::move(one));
+  }
   return pass;
 }
 
 }  // namespace
 
-Expected<std::vector<FinishPass>> internal::ReadFinishTables(const toml::node& node, const std::string& file) {
+Expected<std::vector<FinishPass>> internal::ReadFinishTables(const toml::node& node, const std::string& file,
+                                                             std::vector<FinishFrames>* frames) {
   std::vector<FinishPass> passes;
   const auto* array = node.as_array();
   if (!array) return InputError(Where(file, node) + ": write [[finish]] with two brackets");
   for (const auto& item : *array) {
     const auto* table = item.as_table();
     if (!table) return InputError(Where(file, item) + ": write [[finish]] with two brackets");
-    SCUMBLE_ASSIGN(FinishPass pass, ReadPass(*table, file));
+    SCUMBLE_ASSIGN(FinishPass pass, ReadPass(*table, file, frames));
     passes.push_back(std::move(pass));
+  }
+  for (const FinishFrames& one : frames ? *frames : std::vector<FinishFrames>()) {
+    const auto is_it = [&](const FinishPass& pass) { return one.key.rfind(kFinishKeys + pass.name + ".", 0) == 0; };
+    if (std::count_if(passes.begin(), passes.end(), is_it) > 1) {
+      return InputError(Where(file, *one.pairs) + ": " + one.key +
+                        " changes over time, and two passes have that name: give each a name of its own");
+    }
   }
   return passes;
 }
@@ -81,7 +98,7 @@ Expected<FinishPreset> LoadFinishPreset(const std::filesystem::path& path) {
   preset.name = path.stem().string();
   for (const auto& [key, node] : root) {
     if (key.str() == "finish") {
-      SCUMBLE_ASSIGN(preset.passes, internal::ReadFinishTables(node, file));
+      SCUMBLE_ASSIGN(preset.passes, internal::ReadFinishTables(node, file, nullptr));
     } else if (const auto* text = node.as_string(); text && key.str() == "help") {
       preset.help = text->get();
     } else {
@@ -114,6 +131,10 @@ Expected<std::size_t> OverrideFinish(std::span<FinishPass> passes, const std::st
   const auto parsed = internal::ParseToml("value = " + value_text, "--set");
   const auto value = parsed && parsed->size() == 1 ? internal::ValueOf(*parsed->get("value")) : std::nullopt;
   const std::string key = text.substr(0, equals);
+  if (parsed && parsed->size() == 1 && parsed->get("value")->as_array()) {
+    return UsageError("--set " + text + ": key frames are of one style: begin with its name, as in oil:" + key +
+                      "=[[1,2],[9,4]]");
+  }
   if (key.rfind(kDialKeys, 0) == 0) {
     const Status turned = TurnFinishDial(passes, key, value ? *value : KeyValue(value_text));
     return turned ? Expected<std::size_t>(passes.size()) : UsageError("--set " + text + ": " + turned.error().message);

@@ -290,15 +290,6 @@ std::vector<FinishEffect> MakeEffects() {
   return effects;
 }
 
-const FinishKey* FindKey(const FinishPass& pass, const std::string& name) {
-  for (const auto keys : {std::span<const FinishKey>(EffectOf(pass).keys), CommonFinishKeys()}) {
-    for (const FinishKey& key : keys) {
-      if (key.name == name) return &key;
-    }
-  }
-  return nullptr;
-}
-
 template <class Named>
 std::vector<std::string> NamesOf(std::span<const Named> list) {
   std::vector<std::string> names;
@@ -350,6 +341,15 @@ const FinishEffect& EffectOf(const FinishPass& pass) {
   return *std::find_if(FinishEffects().begin(), FinishEffects().end(), has_it);
 }
 
+const FinishKey* FindFinishKey(const FinishPass& pass, const std::string& name) {
+  for (const auto keys : {std::span<const FinishKey>(EffectOf(pass).keys), CommonFinishKeys()}) {
+    for (const FinishKey& key : keys) {
+      if (key.name == name) return &key;
+    }
+  }
+  return nullptr;
+}
+
 Expected<FinishPass> MakeFinishPass(const std::string& effect) {
   if (const FinishEffect* found = FindFinishEffect(effect)) {
     return FinishPass{effect, found->defaults, FinishPass::Stage::kPaint, 1.0, {}, {}};
@@ -359,7 +359,7 @@ Expected<FinishPass> MakeFinishPass(const std::string& effect) {
 }
 
 Status SetFinishKey(FinishPass& pass, const std::string& name, const KeyValue& value) {
-  if (const FinishKey* key = FindKey(pass, name)) return key->set(pass, value);
+  if (const FinishKey* key = FindFinishKey(pass, name)) return key->set(pass, value);
   auto names = NamesOf(std::span<const FinishKey>(EffectOf(pass).keys));
   for (const FinishKey& key : CommonFinishKeys()) names.push_back(key.name);
   return UsageError("effect " + EffectOf(pass).name + " has no key '" + name + "'; it has " + Listed(names) +

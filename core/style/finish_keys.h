@@ -52,6 +52,9 @@ const FinishEffect* FindFinishEffect(const std::string& name);
 // The effect that a pass has.
 const FinishEffect& EffectOf(const FinishPass& pass);
 
+// The key of a pass, common ones included; null where there is none.
+const FinishKey* FindFinishKey(const FinishPass& pass, const std::string& name);
+
 // A pass of that effect with its defaults. A kUsage error lists the effects and names the nearest.
 Expected<FinishPass> MakeFinishPass(const std::string& effect);
 

@@ -9,7 +9,16 @@
 
 namespace scumble::internal {
 
-// The tables of `node`, which is what the file calls finish. Every mistake is kInput and names file and line.
-Expected<std::vector<FinishPass>> ReadFinishTables(const toml::node& node, const std::string& file);
+// A key whose value is a list: of frames with their values.
+struct FinishFrames {
+  std::string key;  // "finish.ink.width"
+  const toml::array* pairs = nullptr;
+};
+
+// The tables of `node`, which is what the file calls finish. Every mistake is kInput and names file and line. Keys with
+// lists are left at their defaults and told in `frames`, in which each pass has a name of its own; null: they are
+// mistakes.
+Expected<std::vector<FinishPass>> ReadFinishTables(const toml::node& node, const std::string& file,
+                                                   std::vector<FinishFrames>* frames);
 
 }  // namespace scumble::internal

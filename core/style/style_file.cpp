@@ -302,6 +302,17 @@ Status ReadExemplars(const toml::node& node, const StyleSource& source, Style& s
   return Ok();
 }
 
+Status ReadFinish(const toml::node& node, const fs::path& path, Style& style) {
+  std::vector<internal::FinishFrames> frames;
+  SCUMBLE_ASSIGN(style.finish, internal::ReadFinishTables(node, path.string(), &frames));
+  for (const internal::FinishFrames& one : frames) {
+    const std::string where = Where(path.string(), *one.pairs);
+    const auto done = SetTrack(style, *KeyOfTrack(style, one.key), *one.pairs, where, path.parent_path());
+    if (!done) return InputError(done.error().message);
+  }
+  return Ok();
+}
+
 Expected<Style> ReadStyleFile(const fs::path& path, const StyleReading& reading) {
   SCUMBLE_ASSIGN(const auto bytes, ReadWholeFile(path, kMaxStyleBytes));
   const std::string file = path.string();
@@ -314,7 +325,7 @@ Expected<Style> ReadStyleFile(const fs::path& path, const StyleReading& reading)
     if (name == "exemplar") {
       SCUMBLE_RETURN_IF_ERROR(ReadExemplars(node, {path, reading}, style));
     } else if (name == "finish") {
-      SCUMBLE_ASSIGN(style.finish, internal::ReadFinishTables(node, file));
+      SCUMBLE_RETURN_IF_ERROR(ReadFinish(node, path, style));
     } else if (const auto* table = node.as_table(); table && name == "transfer") {
       SCUMBLE_RETURN_IF_ERROR(SetKeysInFile(style, name, *table, path));
     } else {
@@ -377,7 +388,13 @@ Status ApplyOverride(Style& style, const std::string& text) {
     table.insert("value", value_text);
   }
   if (IsOfFinish(name)) {
+    if (is_track) {
+      const std::optional<StyleKey> key = KeyOfTrack(style, name);
+      if (!key) return UsageError("--set " + text + ": no finishing effect of the style has that key");
+      return SetTrack(style, *key, *table.get("value")->as_array(), "--set", fs::path());
+    }
     SCUMBLE_ASSIGN(const std::size_t count, OverrideFinish(style.finish, text));
+    RemoveTrack(style, name);
     return count > 0 ? Ok() : Status(NoSuchFinish(text, style.finish));
   }
   if (name.rfind("exemplar.", 0) == 0) return SetExemplarKey(style, name, *table.get("value"));
@@ -401,7 +418,9 @@ Status MakeUnpainted(Style& style) {
   grey.picture = Picture(16, 16);
   for (std::size_t i = 0; i < grey.picture.rgba.size(); ++i) grey.picture.rgba[i] = i % 4 == 3 ? 65535 : 32896;
   style.exemplars.assign(1, std::move(grey));
-  std::erase_if(style.tracks, [](const StyleTrack& track) { return track.name != "transfer.paper"; });
+  std::erase_if(style.tracks, [](const StyleTrack& track) {
+    return track.name != "transfer.paper" && track.name.rfind(kFinishKeys, 0) != 0;
+  });
   return Ok();
 }
 

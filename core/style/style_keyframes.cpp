@@ -5,6 +5,9 @@
 #include <iterator>
 #include <optional>
 #include <set>
+#include <string_view>
+
+#include "core/style/finish_keys.h"
 
 namespace scumble {
 namespace {
@@ -12,9 +15,10 @@ namespace {
 constexpr const char* kPaperKey = "transfer.paper";
 
 // Whether the key takes all values between two of the track's: whole numbers, flags and words have none.
-bool TakesFractions(const StyleKey& key, const StyleTrack& track) {
+bool TakesFractions(const Style& style, const StyleKey& key, const StyleTrack& track) {
   if (key.name == "transfer.jitter_fps") return false;
   Style scratch;
+  scratch.finish = style.finish;
   for (const auto& [frame, value] : track.keys) {
     const auto number = AsNumber(value);
     if (!number || !key.set(scratch, KeyValue(*number), {})) return false;
@@ -32,8 +36,31 @@ Status Set(Style& style, const StyleKey& key, StyleTrack& track, const KeyValue&
 
 }  // namespace
 
+std::optional<StyleKey> KeyOfTrack(const Style& style, const std::string& name) {
+  if (name.rfind(kFinishKeys, 0) != 0) {
+    const StyleKey* const key = FindStyleKey(name);
+    return key ? std::optional(*key) : std::nullopt;
+  }
+  const std::size_t begin = std::string_view(kFinishKeys).size(), dot = name.find('.', begin);
+  const std::string pass = name.substr(begin, dot - begin), last = dot == std::string::npos ? "" : name.substr(dot + 1);
+  const auto found =
+      std::find_if(style.finish.begin(), style.finish.end(), [&](const FinishPass& one) { return one.name == pass; });
+  const FinishKey* const of_pass = found == style.finish.end() ? nullptr : FindFinishKey(*found, last);
+  if (!of_pass) return std::nullopt;
+  StyleKey key;
+  key.kind = of_pass->kind, key.least = of_pass->least, key.most = of_pass->most, key.choices = of_pass->choices;
+  key.name = name, key.default_value = of_pass->default_value, key.help = of_pass->help;
+  key.needs_preparing = false;
+  key.set = [name](Style& changed, const KeyValue& value, const std::filesystem::path&) -> Status {
+    SCUMBLE_RETURN_IF_ERROR(SetFinishKeys(changed.finish, name, value));
+    return Ok();
+  };
+  return key;
+}
+
 Status AddTrack(Style& style, const StyleKey& key, StyleTrack track) {
-  if (key.name.rfind("transfer.", 0) != 0) return UsageError(key.name + " cannot change over time");
+  const bool is_of_finish = key.name.rfind(kFinishKeys, 0) == 0;
+  if (key.name.rfind("transfer.", 0) != 0 && !is_of_finish) return UsageError(key.name + " cannot change over time");
   if (key.name.rfind(kGuideWeights, 0) == 0) {
     return UsageError(key.name +
                       " cannot change over time: the exposure of a sequence is measured once, for one set of "
@@ -41,6 +68,7 @@ Status AddTrack(Style& style, const StyleKey& key, StyleTrack track) {
   }
   if (track.keys.empty()) return UsageError(key.name + " = []: expected a value, or pairs of frame and value");
   Style scratch;
+  scratch.finish = style.finish;
   std::set<std::string> read;  // words may name pictures, and come back in thousands of frames
   const std::int64_t* before = nullptr;
   for (const auto& [frame, value] : track.keys) {
@@ -60,7 +88,7 @@ Status AddTrack(Style& style, const StyleKey& key, StyleTrack track) {
     }
   }
   track.name = key.name;
-  track.straight = TakesFractions(key, track);
+  track.straight = TakesFractions(style, key, track);
   SCUMBLE_RETURN_IF_ERROR(Set(style, key, track, ValueAt(track, 0)));
   RemoveTrack(style, key.name);
   style.tracks.push_back(std::move(track));
@@ -89,7 +117,9 @@ Expected<std::vector<std::string>> SetStyleFrame(Style& style, std::int64_t fram
   for (std::size_t i = 0; i < style.tracks.size(); ++i) {
     const KeyValue value = ValueAt(style.tracks[i], frame);
     if (value == style.tracks[i].current) continue;
-    SCUMBLE_RETURN_IF_ERROR(Set(style, *FindStyleKey(style.tracks[i].name), style.tracks[i], value));
+    const std::optional<StyleKey> key = KeyOfTrack(style, style.tracks[i].name);
+    if (!key) continue;  // its pass was dropped
+    SCUMBLE_RETURN_IF_ERROR(Set(style, *key, style.tracks[i], value));
     changed.push_back(style.tracks[i].name);
   }
   return changed;
@@ -98,7 +128,7 @@ Expected<std::vector<std::string>> SetStyleFrame(Style& style, std::int64_t fram
 Expected<LayerSet> LayersOverTime(const Style& style) {
   // Layers depend on no picture, and this runs every frame: paper is not read again, exemplars are not copied.
   Style moving;
-  moving.transfer = style.transfer;
+  moving.transfer = style.transfer, moving.finish = style.finish;
   moving.exemplars.resize(style.exemplars.size());
   std::vector<std::int64_t> frames;
   for (const StyleTrack& track : style.tracks) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,9 +18,14 @@ namespace scumble {
 // pipeline/frame_range.h).
 inline constexpr std::int64_t kMaxTrackFrame = 999'999'999;
 
+// The key that a track changes: of StyleKeys(), or "finish.NAME.KEY" of the style's finishing passes of that name. None
+// where there is no such key.
+std::optional<StyleKey> KeyOfTrack(const Style& style, const std::string& name);
+
 // Checks the track's keys and adds it to the style, replacing an earlier one of that name. The style gets the values of
 // frame 0. Frames must rise and lie within kMaxTrackFrame, and the key must accept every value: kUsage names the one
-// that fails. Keys of [transfer] only, without the weights of guides.
+// that fails. Keys of [transfer] and of
+// [[finish]] only, without the weights of guides.
 Status AddTrack(Style& style, const StyleKey& key, StyleTrack track);
 
 // Removes the track of that name, if there is one.

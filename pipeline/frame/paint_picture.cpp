@@ -11,6 +11,7 @@
 #include "core/image/stopwatch.h"
 #include "core/io/file/atomic_file.h"
 #include "core/io/picture_file.h"
+#include "core/style/finish_keys.h"
 #include "core/style/place_sphere.h"
 #include "core/style/style_keyframes.h"
 #include "core/style/style_keys.h"
@@ -203,6 +204,7 @@ std::string SamplesAsked(const std::map<std::string, std::string>& attributes) {
 }
 
 bool IsReadEachFrame(const std::string& key) {
+  if (key.rfind(kFinishKeys, 0) == 0) return true;
   const StyleKey* const found = FindStyleKey(key);
   return found && !found->needs_preparing;
 }

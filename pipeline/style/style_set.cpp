@@ -43,7 +43,9 @@ Expected<std::uint16_t> PlaceOf(StyleSet& set, const std::string& name, const st
   }
   SCUMBLE_ASSIGN(Style style, LoadStyle(found, overrides, set.options.reading));
   for (const StyleSet::Override& one : set.overrides) {
-    if (one.style.empty() && IsOfFinish(one.text)) SCUMBLE_RETURN_IF_ERROR(OverrideFinish(style.finish, one.text));
+    if (!one.style.empty() || !IsOfFinish(one.text)) continue;
+    SCUMBLE_RETURN_IF_ERROR(OverrideFinish(style.finish, one.text));
+    RemoveTrack(style, one.text.substr(0, one.text.find('=')));
   }
   const auto& finishes = set.options.finishes;
   if (std::find(finishes.begin(), finishes.end(), kNoFinish) != finishes.end()) style.finish.clear();

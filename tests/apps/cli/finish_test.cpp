@@ -179,6 +179,18 @@ TEST_F(CliFinish, ResumedTransfersGoOnAsTheyBegan) {
   EXPECT_NE(Read("f.0003.png").rgba, before) << "alone it is measured on itself";
 }
 
+TEST_F(CliFinish, KeysMoveInSequences) {
+  WriteStyle("moving", "[[finish]]\neffect = \"outline\"\nwidth = [[1, 0], [3, 6]]\n");
+  WriteStyle("plain");
+  RunOk({"stylize", kBall, "--frames", "1-3", "--size", "64", "--style", "moving", "-o", "m.####.png"});
+  RunOk({"stylize", kBall, "--frame", "1", "--size", "64", "--style", "plain", "-o", "p.png"});
+  RunOk({"stylize", kBall, "--frame", "2", "--size", "64", "--style", "plain", "--finish", "outline", "--set",
+         "finish.outline.width=3", "-o", "w.png"});
+  EXPECT_EQ(Read("m.0001.png").rgba, Read("p.png").rgba);
+  EXPECT_EQ(Read("m.0002.png").rgba, Read("w.png").rgba);
+  EXPECT_NE(Read("m.0003.png").rgba, Read("m.0002.png").rgba);
+}
+
 TEST_F(CliFinish, ListsEffectsKeysAndPresets) {
   const std::string all = RunOk({"finish", "--list"}).out;
   for (const char* name :

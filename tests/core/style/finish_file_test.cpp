@@ -10,6 +10,7 @@
 #include "core/io/picture_file.h"
 #include "core/style/finish_keys.h"
 #include "core/style/style_file.h"
+#include "core/style/style_keyframes.h"
 #include "tests/support/temporary_folder.h"
 
 namespace scumble {
@@ -173,6 +174,42 @@ TEST_F(FinishFile, StyleHasItsOwn) {
   const auto wrong = LoadStyle(folder_ / "style.toml", {"finish.ink.width=3"});
   ASSERT_FALSE(wrong);
   EXPECT_THAT(wrong.error().message, HasSubstr("there are outline"));
+}
+
+TEST_F(FinishFile, KeysChangeOverTime) {
+  ASSERT_TRUE(WritePicture(folder_ / "lit.png", Picture(32, 32)));
+  const auto load = [&](const std::string& finish, const std::vector<std::string>& sets = {}) {
+    std::ofstream(folder_ / "style.toml") << "[[exemplar]]\nimage = \"lit.png\"\nfills = true\n" + finish;
+    return LoadStyle(folder_ / "style.toml", sets);
+  };
+  const std::string moving =
+      "[[finish]]\neffect = \"outline\"\nname = \"ink\"\nwidth = [[1, 2], [11, 4]]\nlight = [[5, 0], [6, 1]]\n";
+  auto style = load(moving);
+  ASSERT_TRUE(style) << style.error().message;
+  const auto width_at = [&](int frame) {
+    EXPECT_TRUE(SetStyleFrame(*style, frame));
+    return std::get<OutlinePass>(style->finish[0].effect).width;
+  };
+  EXPECT_EQ(width_at(0), 2.0);
+  EXPECT_EQ(width_at(6), 3.0);
+  EXPECT_EQ(width_at(20), 4.0);
+  const auto layers = LayersOverTime(*style);
+  ASSERT_TRUE(layers);
+  EXPECT_TRUE(layers->Has(Layer::kLuminance)) << "of a later frame";
+  style = load(moving, {"finish.ink.width=7"});
+  ASSERT_TRUE(style);
+  EXPECT_EQ(width_at(6), 7.0) << "a plain value takes the place of key frames";
+  style = load(moving, {"finish.ink.width=[[0, 1], [10, 2]]"});
+  ASSERT_TRUE(style) << style.error().message;
+  EXPECT_EQ(width_at(5), 1.5);
+  const auto twice = load(moving + "[[finish]]\neffect = \"tones\"\nname = \"ink\"\n");
+  ASSERT_FALSE(twice);
+  EXPECT_THAT(twice.error().message, HasSubstr("a name of its own"));
+  const auto wide = load("[[finish]]\neffect = \"outline\"\nwidth = [[1, 2], [11, 400]]\n");
+  ASSERT_FALSE(wide);
+  EXPECT_EQ(wide.error().kind, ErrorKind::kInput);
+  EXPECT_THAT(wide.error().message, HasSubstr("frame 11"));
+  EXPECT_THAT(ErrorOf("[[finish]]\neffect = \"outline\"\nwidth = [[1, 2]]\n"), HasSubstr("for style.toml"));
 }
 
 TEST_F(FinishFile, BundledPresetsAreRead) {
