@@ -3,6 +3,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <optional>
 #include <string>
 
@@ -136,13 +137,38 @@ Status Apply(std::span<const FinishStep* const> steps, const FinishFrame& frame,
 
 }  // namespace
 
-Status CheckFinish(std::span<const FinishStep> steps, const GuideSet* guides) {
+namespace {
+
+std::string DepthText(double given, double measured) {
+  char text[80];
+  std::snprintf(text, sizeof text, given > 0.0 ? "%g m" : "%g m, as measured", given > 0.0 ? given : measured);
+  return text;
+}
+
+// Whether the pass's far lies beyond its near; not known where neither is given or measured.
+Status CheckDepths(const FinishPass& pass, const FinishMeasures& measures) {
+  const auto* depth = std::get_if<DepthPass>(&pass.effect);
+  if (!depth) return Ok();
+  const double near = depth->near > 0.0 ? depth->near : measures.near,
+               far = depth->far > 0.0 ? depth->far : measures.far;
+  const bool is_given = depth->near > 0.0 || depth->far > 0.0;
+  if (!is_given || far == 0.0 || near < far) return Ok();
+  return InputError("finish " + pass.name + ": near is " + DepthText(depth->near, measures.near) + ", far is " +
+                    DepthText(depth->far, measures.far) + ": set finish." + pass.name + ".near below finish." +
+                    pass.name + ".far");
+}
+
+}  // namespace
+
+Status CheckFinish(std::span<const FinishStep> steps, const GuideSet* guides, const FinishMeasures& measures) {
   for (const FinishStep& step : steps) {
     const LayerSet needed = RequiredLayers(step.pass), held = guides ? guides->layers() : LayerSet();
     LayerSet lacking;
     for (const LayerInfo& info : AllLayers()) {
       if (needed.Has(info.layer) && !held.Has(info.layer)) lacking.Add(info.layer);
     }
+    if (!(step.pass.strength > 0.0)) continue;
+    SCUMBLE_RETURN_IF_ERROR(CheckDepths(step.pass, measures));
     const auto* outline = std::get_if<OutlinePass>(&step.pass.effect);
     if (outline && outline->thin > 0.0 && guides && guides->camera && guides->camera->IsOrthographic()) {
       return InputError("finish " + step.pass.name +
@@ -160,7 +186,7 @@ Status CheckFinish(std::span<const FinishStep> steps, const GuideSet* guides) {
 
 Status ApplyFinish(std::span<const FinishStep> steps, FinishPass::Stage stage, const FinishFrame& frame, int threads,
                    const Progress& progress, Picture& picture) {
-  SCUMBLE_RETURN_IF_ERROR(CheckFinish(steps, frame.guides));
+  SCUMBLE_RETURN_IF_ERROR(CheckFinish(steps, frame.guides, frame.measures));
   std::vector<const FinishStep*> chosen;
   for (const FinishStep& step : steps) {
     if (step.pass.at == stage && step.pass.strength > 0.0) chosen.push_back(&step);

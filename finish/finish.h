@@ -46,8 +46,8 @@ struct FinishFrame {
 };
 
 // kInput where the guides lack a layer that a step reads, or where a width is to follow the depth of an orthographic
-// view, which has no sizes. The message names the pass.
-Status CheckFinish(std::span<const FinishStep> steps, const GuideSet* guides);
+// view, which has no sizes, or where near is not before far. The message names the pass.
+Status CheckFinish(std::span<const FinishStep> steps, const GuideSet* guides, const FinishMeasures& measures = {});
 
 // Applies the steps of that stage to a picture with straight alpha. Pixels of alpha 0 stay so, but where lines run. A
 // step of strength 0 changes nothing. The bytes depend on the arguments alone, not on threads (0: all) or machine.

@@ -40,7 +40,7 @@ bool Looks(const FillPass&) { return false; }
 
 bool LooksAtMeasures(std::span<const FinishPass> passes) {
   return std::any_of(passes.begin(), passes.end(), [](const FinishPass& pass) {
-    return std::visit([](const auto& effect) { return Looks(effect); }, pass.effect);
+    return pass.strength > 0.0 && std::visit([](const auto& effect) { return Looks(effect); }, pass.effect);
   });
 }
 

@@ -442,7 +442,8 @@ Expected<Style> ReadPictureStyle(const fs::path& path, const StyleReading& readi
   const fs::path beside = path.parent_path() / "style.toml";
   if (Exists(beside)) {
     auto style = ReadStyleFile(beside, reading);
-    if (style && fs::path(style->exemplars.front().name).filename() == path.filename()) return style;
+    const bool has_picture = style && !style->exemplars.empty();
+    if (has_picture && fs::path(style->exemplars.front().name).filename() == path.filename()) return style;
     if (!style && style.error().kind != ErrorKind::kInput)
       return style.error();  // too large, whichever style it belongs to
   }

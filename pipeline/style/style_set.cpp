@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/style/finish_file.h"
+#include "core/style/finish_keys.h"
 #include "core/style/style_file.h"
 #include "core/style/style_keyframes.h"
 #include "core/style/style_keys.h"
@@ -48,7 +49,10 @@ Expected<std::uint16_t> PlaceOf(StyleSet& set, const std::string& name, const st
     RemoveTrack(style, one.text.substr(0, one.text.find('=')));
   }
   const auto& finishes = set.options.finishes;
-  if (std::find(finishes.begin(), finishes.end(), kNoFinish) != finishes.end()) style.finish.clear();
+  if (std::find(finishes.begin(), finishes.end(), kNoFinish) != finishes.end()) {
+    // What makes the picture of toon and render stays.
+    std::erase_if(style.finish, [&](const FinishPass& pass) { return EffectOf(pass).name != style.unpainted; });
+  }
   set.styles.push_back(std::move(style));
   set.given.push_back(name);
   return set.opened[path] = static_cast<std::uint16_t>(set.styles.size() - 1);

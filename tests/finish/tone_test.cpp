@@ -239,6 +239,19 @@ TEST(Depth, MeasuresStandInForWhatIsNotGiven) {
   EXPECT_EQ(Finished(StepOf(pass), &guides, paint, measures).rgba, Finished(StepOf(given), &guides, paint).rgba);
 }
 
+TEST(Depth, FarLiesBeyondNear) {
+  const GuideSet guides = Ramp(41);
+  DepthPass pass;
+  pass.near = 60.0;
+  const FinishStep step = StepOf(pass);
+  const Status wrong = CheckFinish(std::span(&step, 1), &guides, MeasureFinish(guides));
+  ASSERT_FALSE(wrong);
+  EXPECT_THAT(wrong.error().message, ::testing::HasSubstr("near is 60 m, far is 44 m, as measured"));
+  pass.far = 80.0;
+  const FinishStep right = StepOf(pass);
+  EXPECT_TRUE(CheckFinish(std::span(&right, 1), &guides, MeasureFinish(guides)));
+}
+
 TEST(Grade, ScalesChromaAndLightness) {
   GradePass pass;
   pass.saturation = 0.0, pass.contrast = 0.5, pass.lift = 0.1;

@@ -14,15 +14,18 @@ constexpr const char* kToys = SCUMBLE_SOURCE_DIR "/scenes/toys.glb";
 
 class CliFinish : public CliTest {
  protected:
-  // A style of one colour without paper.
-  void WriteStyle(const std::string& folder, const std::string& more = "") {
+  static Picture PlainBall() {
     Picture picture(32, 32);
     for (int i = 0; i < 32 * 32; ++i) {
       std::uint16_t* const texel = picture.At(i % 32, i / 32);
       texel[0] = 60000, texel[1] = 40000, texel[2] = 20000, texel[3] = 65535;
     }
+    return picture;
+  }
+  // A style of one colour without paper.
+  void WriteStyle(const std::string& folder, const std::string& more = "") {
     std::filesystem::create_directories(At(folder));
-    ASSERT_TRUE(WritePicture(At(folder + "/lit.png"), picture));
+    ASSERT_TRUE(WritePicture(At(folder + "/lit.png"), PlainBall()));
     WriteText(folder + "/style.toml", "[[exemplar]]\nimage = \"lit.png\"\nfills = true\n" + more);
   }
   Picture Read(const std::string& name) {
@@ -129,6 +132,10 @@ TEST_F(CliFinish, ToonAndRenderAreStylesWithoutAPainting) {
   WriteText("bare/style.toml", "[transfer]\nmethod = \"toon\"\n[[finish]]\neffect = \"toon\"\nbands = 1\n");
   RunOk({"stylize", kToys, "--size", "96x64", "--style", "bare", "-o", "bare.png"});
   EXPECT_EQ(Read("bare.png").rgba, flat.rgba);
+  ASSERT_TRUE(WritePicture(At("bare/ball.png"), PlainBall()));
+  RunOk({"stylize", kToys, "--size", "96x64", "--style", "bare/ball.png", "-o", "ball.png"});
+  RunOk({"stylize", kToys, "--size", "96x64", "--style", "toon", "--finish", "none", "-o", "none.png"});
+  EXPECT_EQ(Read("none.png").rgba, toon.rgba) << "what makes the picture is no finish";
   EXPECT_TRUE(Contains(RunOk({"stylize", kToys, "--style", "toon", "--explain"}).out, "read by finish toon"));
 }
 
@@ -154,6 +161,9 @@ TEST_F(CliFinish, SequencesAreOfOneMeasureAndResume) {
   EXPECT_NE(Read("one.png").rgba, Read("f.0002.png").rgba) << "alone it is measured on itself";
   const auto before = Read("f.0003.png").rgba;
   std::filesystem::remove(At("f.0003.png"));
+  RunOk({"finish", "p.####.png", "--frames", "1-3", "--finish", "shadows", "--set", "finish.shadows.strength=0", "-o",
+         "same.####.png", "--bits", "16"});
+  EXPECT_EQ(Read("same.0003.png").rgba, Read("p.0003.png").rgba) << "what changes nothing reads nothing";
   const CommandResult again = RunOk({"finish", "p.####.png", "g.####.exr", "--frames", "1-3", "--finish", "storybook",
                                      "-o", "f.####.png", "--resume", "--json"});
   EXPECT_TRUE(Contains(again.out, "\"kept\": 2")) << again.out;
