@@ -31,7 +31,7 @@ struct FinishState {
 LayerSet LayersOf(const std::vector<FinishPass>& passes) {
   LayerSet layers;
   for (const FinishPass& pass : passes) layers.Add(RequiredLayers(pass));
-  return layers.empty() ? layers : layers.Add(Layer::kCoverage);
+  return layers.empty() ? layers : layers.Add({Layer::kCoverage, Layer::kNormal});  // every guide set holds these
 }
 
 GuideReadOptions ReadOptions(const FinishRequest& request, const LayerSet& required, const std::string& camera) {

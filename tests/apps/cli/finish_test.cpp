@@ -53,6 +53,16 @@ TEST_F(CliFinish, AfterTheTransferIsWithTheTransfer) {
   EXPECT_EQ(Read("transfer.png").rgba, Read("whole.png").rgba);
 }
 
+TEST_F(CliFinish, EveryEffectTakesAGuideFile) {
+  ASSERT_TRUE(WritePicture(At("p.png"), Picture(40, 40)));
+  RunOk({"guidegen", kBall, "--size", "40", "--layers", "luminance,shadow,albedo,lpe.full", "--samples", "1", "-o",
+         "g.exr"});
+  for (const char* effect :
+       {"render", "toon", "smooth", "tones", "shadows", "depth", "grade", "fill", "edges", "hatch", "outline"}) {
+    RunOk({"finish", "p.png", "g.exr", "--finish", effect, "-o", std::string(effect) + ".png"});
+  }
+}
+
 TEST_F(CliFinish, CastsOnlyWhatItReads) {
   WriteStyle("plain", "[transfer]\nedge_aware = false\n");
   const auto plan = [&](const std::string& finish) {
