@@ -11,6 +11,7 @@
 #include "core/filter/parallel.h"
 #include "core/image/check.h"
 #include "finish/area/area_effects.h"
+#include "finish/area/ink.h"
 #include "finish/finish.h"
 #include "finish/outline/outline.h"
 #include "finish/tone/point_effect.h"
@@ -36,6 +37,8 @@ std::span<const float> CoverageFor(const FinishPass& pass, const FinishFrame& fr
 
 // The effect, where it treats each pixel by itself.
 std::optional<PointEffect> PointEffectOf(const FinishPass& pass, const FinishFrame& frame) {
+  const bool is_of_sheet = pass.at == FinishPass::Stage::kSheet;
+  if (is_of_sheet && std::holds_alternative<FillPass>(pass.effect)) return std::nullopt;  // raises alpha
   struct {
     const FinishFrame& frame;
     std::optional<PointEffect> operator()(const OutlinePass&) { return std::nullopt; }
@@ -98,6 +101,22 @@ bool PaintPoints(std::span<const PointStep> steps, internal::RowProgress& progre
   });
 }
 
+// The frame with the step's own lengths.
+FinishFrame FrameOf(const FinishStep& step, FinishFrame frame) {
+  if (step.reference_height < 0 || !frame.guides) return frame;
+  frame.scale = step.reference_height > 0 ? double(frame.guides->height()) / step.reference_height : 1.0;
+  return frame;
+}
+
+// One colour on all of the sheet, where nothing is painted, too.
+void FillSheet(const FillPass& fill, double strength, std::span<const std::uint8_t> only, Picture& picture) {
+  const std::uint16_t ink[4] = {fill.color[0], fill.color[1], fill.color[2],
+                                static_cast<std::uint16_t>(strength * 65535.0 + 0.5)};
+  for (std::size_t i = 0; i < picture.rgba.size() / 4 && ink[3] != 0; ++i) {
+    if (only.empty() || only[i]) internal::LayInk(ink, picture.rgba.data() + 4 * i);
+  }
+}
+
 // An effect that looks at more than the pixel itself.
 void ApplyToAll(const FinishStep& step, const FinishFrame& frame, Picture& picture) {
   const FinishPass& pass = step.pass;
@@ -109,6 +128,8 @@ void ApplyToAll(const FinishStep& step, const FinishFrame& frame, Picture& pictu
     internal::DrawEdges(*edges, pass.strength, step.only, frame, picture);
   } else if (const auto* hatch = std::get_if<HatchPass>(&pass.effect)) {
     internal::DrawHatch(*hatch, pass.strength, step.only, frame, picture);
+  } else if (const auto* fill = std::get_if<FillPass>(&pass.effect)) {
+    FillSheet(*fill, pass.strength, step.only, picture);
   }
 }
 
@@ -119,7 +140,7 @@ Status Apply(std::span<const FinishStep* const> steps, const FinishFrame& frame,
     std::vector<PointStep> points;
     const std::size_t begin = i;
     for (; i < steps.size(); ++i) {
-      std::optional<PointEffect> effect = PointEffectOf(steps[i]->pass, frame);
+      std::optional<PointEffect> effect = PointEffectOf(steps[i]->pass, FrameOf(*steps[i], frame));
       if (!effect) break;
       points.push_back({*std::move(effect), steps[i], CoverageFor(steps[i]->pass, frame)});
     }
@@ -129,7 +150,7 @@ Status Apply(std::span<const FinishStep* const> steps, const FinishFrame& frame,
       continue;
     }
     const FinishStep& step = *steps[i++];
-    ApplyToAll(step, frame, picture);
+    ApplyToAll(step, FrameOf(step, frame), picture);
     if (progress && !progress(share * double(i))) return CancelledError();
   }
   return Ok();

@@ -36,6 +36,7 @@ FinishMeasures MeasureFinish(const GuideSet& guides);
 struct FinishStep {
   FinishPass pass;
   std::vector<std::uint8_t> only;  // by pixel: 0 is left as it is; empty: none is
+  int reference_height = -1;       // of the pass's lengths; 0: they are pixels; -1: the frame's scale counts
 };
 
 struct FinishFrame {
@@ -51,7 +52,7 @@ Status CheckFinish(std::span<const FinishStep> steps, const GuideSet* guides, co
 
 // Applies the steps of that stage to a picture with straight alpha. Pixels of alpha 0 stay so, but where lines run. A
 // step of strength 0 changes nothing. The bytes depend on the arguments alone, not on threads (0: all) or machine.
-// kInput where layers are missing; kCancelled. O(pixels) for each step.
+// kInput where layers are missing; kCancelled. O(pixels) for each step, of filters times their radius.
 Status ApplyFinish(std::span<const FinishStep> steps, FinishPass::Stage stage, const FinishFrame& frame, int threads,
                    const Progress& progress, Picture& picture);
 

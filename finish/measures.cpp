@@ -59,7 +59,8 @@ FinishMeasures MeasureFinish(const GuideSet& guides) {
     const auto coverage = guides.Plane(Layer::kCoverage);
     for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
       const glm::vec3 color = guides.Vec3(Layer::kLpeFull, i);
-      if (coverage[i] > 0.0f) full.push_back(Luminance(color.r, color.g, color.b));
+      const float light = Luminance(color.r, color.g, color.b);
+      if (coverage[i] > 0.0f && light >= 0.0f && light <= 3e38f) full.push_back(light);
     }
     const double bright = full.empty() ? 0.0 : Percentile(full, 0.9);
     if (bright > 0.0) measures.full = bright;

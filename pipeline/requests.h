@@ -12,6 +12,7 @@
 #include "core/image/layers.h"
 #include "core/image/status.h"
 #include "core/style/style_file.h"
+#include "finish/finish.h"
 #include "guidegen/guidegen.h"
 #include "guidegen/scene/framing.h"
 #include "measure/mosaic/explain.h"
@@ -89,7 +90,8 @@ struct StyleRequest {
   std::vector<std::string> assigned;       // "NAME=STYLE", or "@FILE" of such lines
   bool scene_styles = true;                // follow the property scumble_style of objects and materials
   std::vector<std::string> finishes = {};  // effects and presets after the styles' own; "none" drops those
-  StyleReading reading = {};               // as LoadStyle takes it
+  std::optional<FinishMeasures> finish_measures = {};  // instead of those of the first picture
+  StyleReading reading = {};                           // as LoadStyle takes it
 };
 
 // What becomes of the paint: a picture file.

@@ -188,7 +188,7 @@ struct Style {
   std::vector<Exemplar> exemplars;  // one, or up to kMaxExemplars lighting conditions of the same style
   Paper paper;                      // neither set: transparent
   std::vector<FinishPass> finish;   // in order
-  // Of the methods "toon" and "render": the finishing effect that makes the picture. It is the first of `finish`, and
+  // Of the methods "toon" and "render": the finishing effect that makes the picture. It is one of `finish`, and
   // the exemplar is a plain grey sphere. Empty: paint makes it.
   std::string unpainted;
   std::vector<StyleTrack> tracks;

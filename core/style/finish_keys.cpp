@@ -360,6 +360,18 @@ Expected<FinishPass> MakeFinishPass(const std::string& effect) {
 
 Status SetFinishKey(FinishPass& pass, const std::string& name, const KeyValue& value) {
   if (const FinishKey* key = FindFinishKey(pass, name)) return key->set(pass, value);
+  if (name == "objects" || name == "materials") {
+    const auto* text = std::get_if<std::string>(&value);
+    if (!text) return UsageError("expected names with commas between");
+    std::vector<std::string>& list = name == "objects" ? pass.objects : pass.materials;
+    list.clear();
+    for (std::size_t begin = 0; begin <= text->size() && !text->empty();) {
+      const std::size_t end = std::min(text->find(',', begin), text->size());
+      list.push_back(text->substr(begin, end - begin));
+      begin = end + 1;
+    }
+    return Ok();
+  }
   auto names = NamesOf(std::span<const FinishKey>(EffectOf(pass).keys));
   for (const FinishKey& key : CommonFinishKeys()) names.push_back(key.name);
   return UsageError("effect " + EffectOf(pass).name + " has no key '" + name + "'; it has " + Listed(names) +
@@ -381,6 +393,48 @@ Expected<std::size_t> SetFinishKeys(std::span<FinishPass> passes, const std::str
   return count;
 }
 
+namespace {
+
+double UpTo(double most, double value) { return std::clamp(value, 0.0, most); }
+
+// `factor` is 0 … 2.
+void TurnDial(const std::string& dial, double factor, FinishPass& pass) {
+  if (dial == "lines") {
+    if (auto* const outline = std::get_if<OutlinePass>(&pass.effect))
+      outline->width = UpTo(64.0, outline->width * factor);
+    if (auto* const edges = std::get_if<EdgesPass>(&pass.effect)) {
+      edges->width = std::clamp(edges->width * factor, 0.5, 32.0);
+      if (factor == 0.0) pass.strength = 0.0;
+    }
+    if (auto* const hatch = std::get_if<HatchPass>(&pass.effect)) {
+      hatch->from = UpTo(1.0, hatch->from * factor);
+      if (factor == 0.0) pass.strength = 0.0;
+    }
+  } else if (dial == "detail") {
+    // Evening out: all of it and more below the middle, less and less above.
+    const double even = 2.0 - factor;
+    auto* const smooth = std::get_if<SmoothPass>(&pass.effect);
+    auto* const tones = std::get_if<TonesPass>(&pass.effect);
+    if (smooth && even > 1.0) smooth->radius = std::min(32.0, smooth->radius * even);
+    if (tones && even > 1.0) tones->bins = std::max(2, static_cast<int>(tones->bins / even + 0.5));
+    if (smooth || tones) pass.strength *= std::min(1.0, even);
+  } else if (dial == "light") {
+    if (auto* const shadows = std::get_if<ShadowsPass>(&pass.effect)) {
+      pass.strength = UpTo(1.0, pass.strength * factor);
+      if (factor > 1.0)
+        shadows->full = UpTo(4.0, shadows->full * factor), shadows->none = UpTo(4.0, shadows->none * factor);
+    }
+    if (auto* const toon = std::get_if<ToonPass>(&pass.effect)) {
+      toon->shade = UpTo(1.0, 1.0 - (1.0 - toon->shade) * factor);
+      toon->tint = UpTo(1.0, toon->tint * factor);
+    }
+  } else if (auto* const depth = std::get_if<DepthPass>(&pass.effect)) {
+    for (double* const part : {&depth->desaturate, &depth->tint, &depth->air}) *part = UpTo(1.0, *part * factor);
+  }
+}
+
+}  // namespace
+
 Status TurnFinishDial(std::span<FinishPass> passes, const std::string& key, const KeyValue& value) {
   const std::string name = key.substr(std::string_view(kDialKeys).size());
   const std::vector<std::string> names(std::begin(kDials), std::end(kDials));
@@ -389,28 +443,7 @@ Status TurnFinishDial(std::span<FinishPass> passes, const std::string& key, cons
   }
   const auto number = AsNumber(value);
   if (!number || !(*number >= 0.0 && *number <= 1.0)) return UsageError("expected a number, 0 to 1");
-  const double factor = 2.0 * *number;
-  for (FinishPass& pass : passes) {
-    const auto strengthen = [&](double by) { pass.strength = std::min(1.0, pass.strength * by); };
-    auto* const outline = std::get_if<OutlinePass>(&pass.effect);
-    auto* const edges = std::get_if<EdgesPass>(&pass.effect);
-    const bool is_hatch = std::holds_alternative<HatchPass>(pass.effect);
-    const bool evens =
-        std::holds_alternative<SmoothPass>(pass.effect) || std::holds_alternative<TonesPass>(pass.effect);
-    const bool of_light =
-        std::holds_alternative<ShadowsPass>(pass.effect) || std::holds_alternative<ToonPass>(pass.effect);
-    if (name == "lines" && outline) outline->width = std::min(64.0, outline->width * factor);
-    if (name == "lines" && edges) {
-      if (factor > 0.0)
-        edges->width = std::clamp(edges->width * factor, 0.5, 32.0);
-      else
-        pass.strength = 0.0;
-    }
-    if (name == "lines" && is_hatch) strengthen(factor);
-    if (name == "detail" && evens) strengthen(2.0 - factor);
-    if (name == "light" && of_light) strengthen(factor);
-    if (name == "depth" && std::holds_alternative<DepthPass>(pass.effect)) strengthen(factor);
-  }
+  for (FinishPass& pass : passes) TurnDial(name, 2.0 * *number, pass);
   return Ok();
 }
 

@@ -64,11 +64,11 @@ Status SetFinishKey(FinishPass& pass, const std::string& key, const KeyValue& va
 // "finish.NAME.KEY": sets the key in every pass of that name. Returns how many there are; 0 is no error.
 Expected<std::size_t> SetFinishKeys(std::span<FinishPass> passes, const std::string& key, const KeyValue& value);
 
-// Dials: four numbers for a whole chain, 0 … 1; at 0.5 the passes are as they are, at 0 their effect is gone.
-//   lines    the width of outlines and edges, the strength of hatching, up to twice
-//   detail   the strength of smoothing and of steps of tone, the other way round
-//   light    the strength of what depends on light: shadows, toon
-//   depth    the strength of what depends on depth
+// Dials: four numbers for a whole chain, 0 … 1; at 0.5 the passes are as they are.
+//   lines    the width of outlines and edges and how far hatching reaches into the light: none to twice
+//   detail   at 1 nothing is smoothed and no tones are in steps; towards 0 more is smoothed, in fewer steps
+//   light    at 0 shade looks as light does; towards 1 it is stronger and wider, and bands are further apart
+//   depth    what distance does: nothing to twice
 inline constexpr const char* kDialKeys = "dial.";
 inline constexpr const char* kDials[] = {"lines", "detail", "light", "depth"};
 

@@ -393,6 +393,7 @@ Status ApplyOverride(Style& style, const std::string& text) {
       if (!key) return UsageError("--set " + text + ": no finishing effect of the style has that key");
       return SetTrack(style, *key, *table.get("value")->as_array(), "--set", fs::path());
     }
+    SCUMBLE_RETURN_IF_ERROR(CheckDial(style, text));
     SCUMBLE_ASSIGN(const std::size_t count, OverrideFinish(style.finish, text));
     RemoveTrack(style, name);
     return count > 0 ? Ok() : Status(NoSuchFinish(text, style.finish));
@@ -410,9 +411,10 @@ Status MakeUnpainted(Style& style) {
     style.finish.insert(style.finish.begin(), std::move(pass));
   }
   const int reference_height = style.transfer.reference_height;
+  const ShadowMode shadow = style.transfer.shadow;
   style.transfer = TransferSettings();
   style.transfer.method = Method::kLitSphere, style.transfer.reference_height = reference_height;
-  style.transfer.edge_aware = false, style.transfer.blend_radius = 0;
+  style.transfer.edge_aware = false, style.transfer.blend_radius = 0, style.transfer.shadow = shadow;
   Exemplar grey;
   grey.name = style.unpainted, grey.fills = true;
   grey.picture = Picture(16, 16);
@@ -428,6 +430,9 @@ Status MakeUnpainted(Style& style) {
 Status ApplyOverrides(Style& style, const std::vector<std::string>& overrides) {
   for (const std::string& text : overrides) {
     if (!IsOfFinish(text)) SCUMBLE_RETURN_IF_ERROR(ApplyOverride(style, text));
+  }
+  if (style.exemplars.empty() && style.unpainted.empty()) {
+    return UsageError("style " + style.name + " has no painting: transfer.method must be toon or render");
   }
   SCUMBLE_RETURN_IF_ERROR(MakeUnpainted(style));
   for (const std::string& text : overrides) {

@@ -58,6 +58,16 @@ std::optional<StyleKey> KeyOfTrack(const Style& style, const std::string& name) 
   return key;
 }
 
+Status CheckDial(const Style& style, const std::string& set) {
+  if (set.rfind(kDialKeys, 0) != 0) return Ok();
+  for (const StyleTrack& track : style.tracks) {
+    if (track.name.rfind(kFinishKeys, 0) != 0) continue;
+    return UsageError("--set " + set + ": " + track.name + " of style " + style.name +
+                      " changes over time, which a dial would undo: change its key frames");
+  }
+  return Ok();
+}
+
 Status AddTrack(Style& style, const StyleKey& key, StyleTrack track) {
   const bool is_of_finish = key.name.rfind(kFinishKeys, 0) == 0;
   if (key.name.rfind("transfer.", 0) != 0 && !is_of_finish) return UsageError(key.name + " cannot change over time");

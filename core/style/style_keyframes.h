@@ -22,6 +22,9 @@ inline constexpr std::int64_t kMaxTrackFrame = 999'999'999;
 // where there is no such key.
 std::optional<StyleKey> KeyOfTrack(const Style& style, const std::string& name);
 
+// Ok, or a kUsage error where a dial (finish_keys.h) turns keys of the style that change over time.
+Status CheckDial(const Style& style, const std::string& set);
+
 // Checks the track's keys and adds it to the style, replacing an earlier one of that name. The style gets the values of
 // frame 0. Frames must rise and lie within kMaxTrackFrame, and the key must accept every value: kUsage names the one
 // that fails. Keys of [transfer] and of

@@ -24,10 +24,11 @@ void Smooth(const SmoothPass& pass, double strength, std::span<const std::uint8_
 void DrawEdges(const EdgesPass& pass, double strength, std::span<const std::uint8_t> only, const FinishFrame& frame,
                Picture& picture);
 
-// Strokes in patches of one direction. Patches are the cells of the nearest of jittered grid points, apart by object; a
-// patch's direction is the main axis of its structure tensor of normals, J = Σ ∇n ∇nᵀ, which has no sign, so that all
-// directions there are occur. Strokes of a layer are as wide as the share of ink asks, antialiased; layers fill one
-// after the other, and where they cross ink counts once: the mean share of ink is 1 - tone / from.
+// Strokes in patches of one direction. Patches are the cells of the nearest of the jittered grid points in 3 × 3 grid
+// cells, apart by object; a patch's direction is the main axis of its structure tensor of normals, J = Σ ∇n ∇nᵀ, which
+// has no sign, so that all directions there are occur. Strokes of a layer are as wide as the share of ink asks,
+// antialiased; layers fill one after the other, and where they cross ink counts once: the mean share of ink is 1 - tone
+// / from.
 void DrawHatch(const HatchPass& pass, double strength, std::span<const std::uint8_t> only, const FinishFrame& frame,
                Picture& picture);
 

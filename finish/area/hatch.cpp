@@ -55,7 +55,7 @@ class Patches {
  public:
   Patches(const HatchPass& pass, const FinishFrame& frame, int width, int height)
       : width_(width),
-        cell_(static_cast<float>(pass.patch * frame.scale)),
+        cell_(static_cast<float>(std::max(4.0, pass.patch * frame.scale))),
         columns_(static_cast<int>(static_cast<float>(width) / cell_) + 3),
         rows_(static_cast<int>(static_cast<float>(height) / cell_) + 3),
         seed_(frame.seed) {

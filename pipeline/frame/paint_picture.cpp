@@ -111,6 +111,12 @@ void WarnOfIdleOptions(const StyleSet& styles, const PictureRequest& request, co
     context.Warn(fmt::format("--exposure {}", *request.exposure) + " changes nothing: style " + styles.first().name +
                  " has one exemplar and no weight for light, so it does not look at it");
   }
+  if (request.GuideFactor() > 1 && !AllPasses(styles).empty()) {
+    context.Warn(
+        fmt::format("--upsample {}: finishing effects see the guides as they were made, so lines and bands are "
+                    "in blocks of {} pixels; give --upscale too, or leave it out",
+                    request.upsample, request.upsample));
+  }
   if (request.fast_io && !HasEnding(request.output, {".exr"})) {
     context.Warn("--fast-io changes nothing: " + request.output +
                  " is no .exr; --png-level 1 makes PNG quick to write");
@@ -160,10 +166,10 @@ void NoteExemplarUse(const Style& style, const RunContext& context) {
 // The passes of a picture that is painted by `guides`, and measured by those that were `given`, before they were
 // upsampled.
 FrameFinish FinishOf(const StyleSet& styles, const GuideSet& given, const GuideSet& guides, const StyleMap* map,
-                     const RunContext& context, PictureState& state) {
+                     bool over, const RunContext& context, PictureState& state) {
   FrameFinish finish;
   const bool is_first = !state.told_of_finish;
-  finish.steps = FinishStepsOf(styles, guides, map, [&](const std::string& text) {
+  finish.steps = FinishStepsOf(styles, guides, map, over, [&](const std::string& text) {
     if (is_first) context.Warn(text);
   });
   if (finish.steps.empty()) return finish;
@@ -178,8 +184,10 @@ FrameFinish FinishOf(const StyleSet& styles, const GuideSet& given, const GuideS
 
 void MeasureFinishOf(const StyleSet& styles, const GuideSet& guides, const RunContext& context, PictureState& state) {
   if (state.finish_measures || !LooksAtMeasures(AllPasses(styles))) return;
+  state.finish_measures = styles.options.finish_measures;
+  if (state.finish_measures) return;
   state.finish_measures = MeasureFinish(guides);
-  context.Note("finish: " + DescribeMeasures(*state.finish_measures));
+  context.Note("finish: --finish-measures " + MeasuresText(*state.finish_measures) + " repeats what was measured");
 }
 
 Status ReadOver(const std::string& file, PictureState& state) {
@@ -302,7 +310,8 @@ Expected<PaintedPicture> PaintInMemory(StyleSet& styles, const GuideSet& given, 
   times.emplace_back("prepare", watch.Lap());
   context.EndStage("prepare");
 
-  const FrameFinish finish = FinishOf(styles, given, guides, needs_map ? &map : nullptr, context, state);
+  const FrameFinish finish =
+      FinishOf(styles, given, guides, needs_map ? &map : nullptr, over != nullptr, context, state);
   double finish_ms = 0.0;
   FrameSettings settings{request.seed, request.frame.value_or(0), RateOf(request.fps, given), *state.exposure,
                          over,         request.KeepsField()};

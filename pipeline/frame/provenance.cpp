@@ -8,6 +8,7 @@
 #include "core/image/hash.h"
 #include "core/io/existing_output.h"
 #include "core/style/finish_keys.h"
+#include "pipeline/style/finish_set.h"
 
 namespace scumble {
 namespace {
@@ -82,6 +83,7 @@ std::uint64_t HashOfStyles(const StyleSet& styles, std::size_t count, ExemplarHa
     for (const FinishPass& pass : style.finish) hash = Hash(hash, HashText(FinishText(pass)));
   }
   for (const FinishPass& pass : styles.finish) hash = Hash(hash, HashText(FinishText(pass)));
+  if (styles.options.finish_measures) hash = Hash(hash, HashText(MeasuresText(*styles.options.finish_measures)));
   for (const StyleSet::Assigned& one : styles.assigned) hash = Hash(hash, HashText(one.pattern), one.style);
   return hash;
 }

@@ -45,7 +45,13 @@ std::string SettingsText(const FinishRequest& request, const std::vector<FinishP
   std::string text;
   for (const FinishPass& pass : passes) text += (text.empty() ? "" : ", ") + FinishText(pass);
   return fmt::format("scumble {}; finish {}; seed {}; height {}", SCUMBLE_VERSION, text, request.seed,
-                     request.reference_height);
+                     request.reference_height) +
+         (request.measures ? "; measures " + MeasuresText(*request.measures) : "");
+}
+
+void Measure(const GuideSet& guides, const RunContext& context, FinishState& state) {
+  state.measures = MeasureFinish(guides);
+  context.Note("finish: --finish-measures " + MeasuresText(*state.measures) + " repeats what was measured");
 }
 
 // The frame's files.
@@ -81,6 +87,7 @@ Expected<FrameWrite> Finish(const FinishRequest& request, const FrameFiles& file
   const auto picture = std::make_shared<Picture>();
   SCUMBLE_ASSIGN(*picture, ReadPicture(files.picture));
   std::optional<GuideSet> guides;
+  if (!files.guides.empty() && state.required.empty()) SCUMBLE_RETURN_IF_ERROR(InspectGuides(files.guides));
   if (!files.guides.empty() && !state.required.empty()) {
     SCUMBLE_ASSIGN(guides, ReadGuides(files.guides, ReadOptions(request, state.required, files.camera)));
     if (guides->width() != picture->width || guides->height() != picture->height) {
@@ -96,8 +103,7 @@ Expected<FrameWrite> Finish(const FinishRequest& request, const FrameFiles& file
         if (is_first) context.Warn(files.guides + ": " + text);
       });
   if (!state.measures && guides && LooksAtMeasures(state.passes)) {
-    state.measures = MeasureFinish(*guides);
-    context.Note("finish: " + DescribeMeasures(*state.measures));
+    Measure(*guides, context, state);
   }
   FinishFrame frame{guides ? &*guides : nullptr, state.measures.value_or(FinishMeasures()), 1.0, request.seed};
   if (request.reference_height > 0) frame.scale = double(picture->height) / request.reference_height;
@@ -137,7 +143,7 @@ Expected<RunReport> RunFinish(FinishRequest request, const SequenceListener& lis
   FinishState state;
   SCUMBLE_ASSIGN(state.passes, OpenFinish(request.finishes, context));
   SCUMBLE_RETURN_IF_ERROR(SetFinish(request.sets, state.passes));
-  state.required = LayersOf(state.passes);
+  state.required = LayersOf(state.passes), state.measures = request.measures;
   SCUMBLE_RETURN_IF_ERROR(CheckLayers(request, state));
   SCUMBLE_RETURN_IF_ERROR(CheckPictureTarget(request.output, {request.bits}));
   SCUMBLE_ASSIGN(const auto sequence, PlanSequence(request.sequence, request.frame, request.output));
@@ -181,12 +187,11 @@ Expected<RunReport> RunFinish(FinishRequest request, const SequenceListener& lis
   };
   // A sequence that is resumed goes on with the measures of its first frame.
   work.begin = [&](std::span<const int>, const Progress&) -> Status {
-    if (!LooksAtMeasures(state.passes)) return Ok();
+    if (state.measures || !LooksAtMeasures(state.passes)) return Ok();
     const int first = sequence->frames.front();
     SCUMBLE_ASSIGN(const GuideSet set,
                    ReadGuides(guides.At(first), ReadOptions(request, state.required, camera.At(first))));
-    state.measures = MeasureFinish(set);
-    context.Note("finish: " + DescribeMeasures(*state.measures));
+    Measure(set, context, state);
     return Ok();
   };
   work.make = [&](int frame, const std::string& output, const Progress& progress) {

@@ -14,13 +14,14 @@
 namespace scumble {
 
 struct FinishRequest {
-  std::string picture;                // a file, with a place for the frame's number for a range
-  std::string guides;                 // of the same view and size; empty: for effects that need none
-  std::string view_layer;             // of a multilayer file; empty: the only one
-  std::string light_layer;            // as TransferRequest has it
-  std::string camera;                 // likewise
-  std::vector<std::string> finishes;  // as StyleRequest has it; at least one
-  std::vector<std::string> sets;      // "finish.NAME.KEY=VALUE"
+  std::string picture;                     // a file, with a place for the frame's number for a range
+  std::string guides;                      // of the same view and size; empty: for effects that need none
+  std::string view_layer;                  // of a multilayer file; empty: the only one
+  std::string light_layer;                 // as TransferRequest has it
+  std::string camera;                      // likewise
+  std::vector<std::string> finishes;       // as StyleRequest has it; at least one
+  std::optional<FinishMeasures> measures;  // instead of those of the first picture
+  std::vector<std::string> sets;           // "finish.NAME.KEY=VALUE"
   std::string output;
   int bits = 8;
   int png_level = 6;

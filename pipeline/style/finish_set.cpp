@@ -114,12 +114,20 @@ Status SetFinish(const std::vector<std::string>& sets, std::vector<FinishPass>& 
 
 std::vector<FinishPass> AllPasses(const StyleSet& styles) {
   std::vector<FinishPass> passes;
-  for (const Style& style : styles.styles) passes.insert(passes.end(), style.finish.begin(), style.finish.end());
+  for (const Style& style : styles.styles) {
+    for (FinishPass pass : style.finish) {
+      // One whose strength moves counts from the beginning.
+      const std::string strength = kFinishKeys + pass.name + ".strength";
+      const auto moves = [&](const StyleTrack& track) { return track.name == strength; };
+      if (std::any_of(style.tracks.begin(), style.tracks.end(), moves)) pass.strength = 1.0;
+      passes.push_back(std::move(pass));
+    }
+  }
   passes.insert(passes.end(), styles.finish.begin(), styles.finish.end());
   return passes;
 }
 
-std::vector<FinishStep> FinishStepsOf(const StyleSet& styles, const GuideSet& guides, const StyleMap* map,
+std::vector<FinishStep> FinishStepsOf(const StyleSet& styles, const GuideSet& guides, const StyleMap* map, bool over,
                                       const std::function<void(const std::string&)>& tell) {
   std::vector<FinishStep> steps;
   for (std::size_t i = 0; i < styles.styles.size(); ++i) {
@@ -131,10 +139,23 @@ std::vector<FinishStep> FinishStepsOf(const StyleSet& styles, const GuideSet& gu
     }
     for (const FinishPass& pass : styles.styles[i].finish) {
       FinishStep& step = steps.emplace_back(FinishStep{pass, own});
+      step.reference_height = styles.styles[i].transfer.reference_height;
       LimitToNames(pass, guides, tell, step.only);
     }
   }
-  for (FinishStep& step : FinishStepsOf(styles.finish, &guides, tell)) steps.push_back(std::move(step));
+  std::vector<std::uint8_t> shows;
+  if (map && !styles.finish.empty()) {
+    shows.resize(map->style.size());
+    for (std::size_t p = 0; p < shows.size(); ++p) {
+      shows[p] = map->style[p] != StyleMap::kShadowCatcher && (over || map->style[p] != StyleMap::kPassThrough);
+    }
+    if (std::find(shows.begin(), shows.end(), 0) == shows.end()) shows.clear();
+  }
+  for (const FinishPass& pass : styles.finish) {
+    FinishStep& step = steps.emplace_back(FinishStep{pass, shows});
+    step.reference_height = styles.first().transfer.reference_height;
+    LimitToNames(pass, guides, tell, step.only);
+  }
   return steps;
 }
 
@@ -148,9 +169,9 @@ std::vector<FinishStep> FinishStepsOf(const std::vector<FinishPass>& passes, con
   return steps;
 }
 
-std::string DescribeMeasures(const FinishMeasures& measures) {
-  return fmt::format("near {:.4g} m, middle {:.4g} m, far {:.4g} m, bright {:.4g}", measures.near, measures.middle,
-                     measures.far, measures.bright);
+std::string MeasuresText(const FinishMeasures& measures) {
+  const auto& [near, middle, far, bright, full] = measures;
+  return fmt::format("{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}", near, middle, far, bright, full);
 }
 
 }  // namespace scumble

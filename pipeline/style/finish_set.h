@@ -33,16 +33,17 @@ Status SetFinish(const std::vector<std::string>& sets, std::vector<FinishPass>& 
 std::vector<FinishPass> AllPasses(const StyleSet& styles);
 
 // The passes of these styles and of the run, in their order, each with the pixels that it is for: a style's passes are
-// for its own pixels, the run's for all of them, and `objects` and `materials` limit both. `map`: null where one style
-// paints all. The styles must be at the picture's frame. Names that fit nothing are told to `tell`.
-std::vector<FinishStep> FinishStepsOf(const StyleSet& styles, const GuideSet& guides, const StyleMap* map,
+// for its own pixels and lengths, the run's for all that shows: not for shadow catchers, nor for objects that are left
+// as they are where nothing is `over`; `objects` and `materials` limit both. `map`: null where one style paints all.
+// The styles must be at the picture's frame. Names that fit nothing are told to `tell`.
+std::vector<FinishStep> FinishStepsOf(const StyleSet& styles, const GuideSet& guides, const StyleMap* map, bool over,
                                       const std::function<void(const std::string&)>& tell);
 
 // One chain of passes without styles, likewise.
 std::vector<FinishStep> FinishStepsOf(const std::vector<FinishPass>& passes, const GuideSet* guides,
                                       const std::function<void(const std::string&)>& tell);
 
-// "near 2.1 m, middle 4 m, far 11 m, bright 0.8".
-std::string DescribeMeasures(const FinishMeasures& measures);
+// "2.1,4,11,0.8,1": near, middle, far, bright, full, as --finish-measures takes them.
+std::string MeasuresText(const FinishMeasures& measures);
 
 }  // namespace scumble

@@ -45,6 +45,7 @@ Expected<std::uint16_t> PlaceOf(StyleSet& set, const std::string& name, const st
   SCUMBLE_ASSIGN(Style style, LoadStyle(found, overrides, set.options.reading));
   for (const StyleSet::Override& one : set.overrides) {
     if (!one.style.empty() || !IsOfFinish(one.text)) continue;
+    SCUMBLE_RETURN_IF_ERROR(CheckDial(style, one.text));
     SCUMBLE_RETURN_IF_ERROR(OverrideFinish(style.finish, one.text));
     RemoveTrack(style, one.text.substr(0, one.text.find('=')));
   }

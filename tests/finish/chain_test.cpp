@@ -148,6 +148,28 @@ TEST(Chain, StagesAreApart) {
   EXPECT_GT(picture.At(0, 0)[0], 50000);
 }
 
+TEST(Chain, FillOfTheSheetFillsWhatIsClear) {
+  FinishStep sheet = StepOf(FillPass{{65535, 0, 0}});
+  sheet.pass.at = FinishPass::Stage::kSheet;
+  Picture picture(2, 2);
+  ASSERT_TRUE(ApplyFinish(std::span(&sheet, 1), FinishPass::Stage::kSheet, {}, 0, {}, picture));
+  EXPECT_THAT(picture.rgba, ::testing::Contains(65535).Times(8));
+}
+
+TEST(Chain, StepsHaveTheirOwnLengths) {
+  const GuideSet guides = BallGuides(120, 40.0f);
+  FinishStep step = StepOf(OutlinePass());
+  const auto ink = [&] {
+    double sum = 0.0;
+    const Picture made = Finished(step, &guides, Picture(120, 120));
+    for (std::size_t i = 3; i < made.rgba.size(); i += 4) sum += made.rgba[i];
+    return sum;
+  };
+  const double plain = ink();
+  step.reference_height = 60;
+  EXPECT_NEAR(ink() / plain, 2.0, 0.05);
+}
+
 TEST(Chain, CanBeCancelled) {
   const FinishStep step = StepOf(FillPass());
   Picture picture = PlainPicture(8, 64, 0, 0, 0);

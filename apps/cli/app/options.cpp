@@ -265,13 +265,27 @@ void AddOneStyleOptions(CLI::App& verb, StyleRequest& request, bool required) {
       ->allow_extra_args(false);
 }
 
-void AddFinishOption(CLI::App& verb, std::vector<std::string>& finishes) {
+void AddFinishOptions(CLI::App& verb, std::vector<std::string>& finishes, std::optional<FinishMeasures>& measures) {
   verb.add_option("--finish", finishes,
                   "finishing effects after the transfer: a preset, an effect or a preset's file; `scumble finish "
                   "--list` names them; none leaves out the style's own; repeatable")
       ->type_name("NAME")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  verb.add_option_function<std::string>(
+          "--finish-measures",
+          [&measures](const std::string& text) {
+            const std::vector<double> given = ParseNumbers(text, 5, 5, "").value();
+            measures = FinishMeasures{given[0], given[1], given[2], given[3], given[4]};
+          },
+          "what --finish measures on the first picture, as a run prints it: near, middle and far depth, and how bright "
+          "luminance and lpe.full are; for frames that are made by several runs")
+      ->type_name("A,B,C,D,E")
+      ->check([](const std::string& text) {
+        const auto given = ParseNumbers(text, 5, 5, "--finish-measures");
+        if (!given) return given.error().message;
+        return (*given)[3] > 0.0 && (*given)[4] > 0.0 ? std::string() : "the last two must be above 0";
+      });
 }
 
 void AddStyleOptions(CLI::App& verb, StyleRequest& request, bool required) {
@@ -284,7 +298,7 @@ void AddStyleOptions(CLI::App& verb, StyleRequest& request, bool required) {
       ->type_name("NAME=STYLE")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  AddFinishOption(verb, request.finishes);
+  AddFinishOptions(verb, request.finishes, request.finish_measures);
   verb.add_flag("!--no-scene-styles", request.scene_styles,
                 "do not heed the styles that the scene gives its objects and materials (custom property "
                 "scumble_style); --assign goes before them in any case");

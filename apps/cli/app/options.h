@@ -74,8 +74,8 @@ void AddCastOptions(CLI::App& verb, SceneOptions& options);
 // With all other options but blender.frame, because commands that make pictures have a frame already.
 void AddSceneOptions(CLI::App& verb, SceneOptions& options);
 
-// --finish.
-void AddFinishOption(CLI::App& verb, std::vector<std::string>& finishes);
+// --finish and --finish-measures.
+void AddFinishOptions(CLI::App& verb, std::vector<std::string>& finishes, std::optional<FinishMeasures>& measures);
 
 // --style and --set alone, for one style.
 void AddOneStyleOptions(CLI::App& verb, StyleRequest& request, bool required);

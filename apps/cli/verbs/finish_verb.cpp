@@ -119,7 +119,7 @@ void AddFinishVerb(CLI::App& app, Globals& globals, Action& chosen) {
   sub->add_option("picture", request.picture, "a picture of any renderer")->type_name("PICTURE");
   sub->add_option("guides", request.guides, "its guides, of the same size: .exr; for effects that read none left out")
       ->type_name("GUIDES");
-  AddFinishOption(*sub, request.finishes);
+  AddFinishOptions(*sub, request.finishes, request.measures);
   sub->add_option("--set", request.sets, "change a key of an effect, as finish.outline.width=4; repeatable")
       ->type_name("KEY=VALUE")
       ->expected(1)

@@ -146,6 +146,8 @@ TEST_F(CliFinish, ToonAndRenderAreStylesWithoutAPainting) {
   RunOk({"stylize", kToys, "--size", "96x64", "--style", "bare/ball.png", "-o", "ball.png"});
   RunOk({"stylize", kToys, "--size", "96x64", "--style", "toon", "--finish", "none", "-o", "none.png"});
   EXPECT_EQ(Read("none.png").rgba, toon.rgba) << "what makes the picture is no finish";
+  ExpectError({"stylize", kToys, "--style", "toon", "--set", "transfer.method=styleblit", "-o", "x.png"}, 2,
+              {"must be toon or render"});
   EXPECT_TRUE(Contains(RunOk({"stylize", kToys, "--style", "toon", "--explain"}).out, "read by finish toon"));
 }
 
@@ -181,6 +183,49 @@ TEST_F(CliFinish, SequencesAreOfOneMeasureAndResume) {
   const CommandResult other = RunOk({"finish", "p.####.png", "g.####.exr", "--frames", "1-3", "--finish", "storybook",
                                      "--set", "finish.ink.width=5", "-o", "f.####.png", "--resume", "--json"});
   EXPECT_TRUE(Contains(other.out, "\"kept\": 0")) << other.out;
+}
+
+// What was measured can be given, so that frames of several runs agree.
+TEST_F(CliFinish, MeasuresCanBeGiven) {
+  WriteStyle("plain");
+  const auto paint = [&](const Arguments& more) {
+    Arguments arguments{"stylize", kToys,      "--size",    "64x48", "--style",
+                        "plain",   "--finish", "storybook", "-o",    "m.png"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return RunOk(arguments);
+  };
+  const std::string told = paint({"--frame", "1"}).err;
+  const std::string option = "--finish-measures ";
+  const std::size_t at = told.find(option);
+  ASSERT_NE(at, std::string::npos) << told;
+  const std::size_t begin = at + option.size();
+  const std::string measures = told.substr(begin, told.find(' ', begin) - begin);
+  const auto first = Read("m.png").rgba;
+  EXPECT_FALSE(Contains(paint({"--frame", "1", "--finish-measures", measures}).err, option));
+  EXPECT_EQ(Read("m.png").rgba, first);
+  paint({"--frame", "1", "--finish-measures", "1,2,30,1,1"});
+  EXPECT_NE(Read("m.png").rgba, first);
+  ExpectError({"stylize", kToys, "--style", "plain", "--finish-measures", "1,2", "-o", "x.png"}, 2,
+              {"--finish-measures"});
+}
+
+// What does not show has no lines.
+TEST_F(CliFinish, CatchersHaveNoLines) {
+  WriteStyle("plain");
+  RunOk({"stylize", kBall, "--size", "64", "--style", "plain", "--assign", "*=rendered", "--finish", "outline", "-o",
+         "rendered.png"});
+  const Picture nothing = Read("rendered.png");
+  EXPECT_EQ(std::count(nothing.rgba.begin(), nothing.rgba.end(), 0), std::ptrdiff_t(nothing.rgba.size()));
+}
+
+TEST_F(CliFinish, UpsampledGuidesAreWarnedOf) {
+  WriteStyle("plain");
+  const Arguments run{"stylize",  kBall,     "--size",     "64", "--style", "plain",
+                      "--finish", "outline", "--upsample", "2",  "-o",      "u.png"};
+  EXPECT_TRUE(Contains(RunOk(run).err, "blocks of 2 pixels"));
+  Arguments scaled = run;
+  scaled.push_back("--upscale");
+  EXPECT_FALSE(Contains(RunOk(scaled).err, "blocks of"));
 }
 
 // Frames that are made later look as those that were made at once.

@@ -120,6 +120,8 @@ TEST_F(FinishFile, OverridesGoToPassesByName) {
   EXPECT_EQ(*OverrideFinish(passes, "finish.ink.ink=#102030"), 1u) << "quotes may be left off";
   EXPECT_EQ(*OverrideFinish(passes, "finish.pen.width=3"), 0u);
   EXPECT_THAT(NoSuchFinish("finish.pen.width=3", passes).message, HasSubstr("there are outline, tones, ink"));
+  EXPECT_EQ(*OverrideFinish(passes, "finish.ink.objects=Tree*,House"), 1u);
+  EXPECT_THAT(passes[2].objects, ::testing::ElementsAre("Tree*", "House"));
   EXPECT_FALSE(OverrideFinish(passes, "finish.width=3"));
   EXPECT_FALSE(OverrideFinish(passes, "finish.ink.width=wide"));
 }
@@ -151,9 +153,14 @@ TEST_F(FinishFile, DialsTurnTheWholeChain) {
   EXPECT_EQ(passes[3].strength, 0.0);
   ASSERT_TRUE(OverrideFinish(passes, "dial.light=1"));
   EXPECT_EQ(passes[4].strength, 0.8);
-  EXPECT_EQ(passes[5].strength, 0.8);
+  EXPECT_EQ(std::get<ShadowsPass>(passes[4].effect).none, 2.0 * ShadowsPass().none);
+  EXPECT_EQ(passes[5].strength, 0.4);
+  EXPECT_EQ(std::get<ToonPass>(passes[5].effect).shade, 0.0);
+  ASSERT_TRUE(OverrideFinish(passes, "dial.light=0"));
+  EXPECT_EQ(passes[4].strength, 0.0);
+  EXPECT_EQ(std::get<ToonPass>(passes[5].effect).shade, 1.0) << "no band shows, and the colour does";
   ASSERT_TRUE(OverrideFinish(passes, "dial.depth=0.25"));
-  EXPECT_EQ(passes[6].strength, 0.2);
+  EXPECT_EQ(std::get<DepthPass>(passes[6].effect).desaturate, 0.5 * DepthPass().desaturate);
   EXPECT_EQ(passes[7].strength, 0.4) << "no dial turns it";
   const auto wrong = OverrideFinish(passes, "dial.line=0.5");
   ASSERT_FALSE(wrong);
@@ -202,6 +209,9 @@ TEST_F(FinishFile, KeysChangeOverTime) {
   style = load(moving, {"finish.ink.width=[[0, 1], [10, 2]]"});
   ASSERT_TRUE(style) << style.error().message;
   EXPECT_EQ(width_at(5), 1.5);
+  const auto dial = load(moving, {"dial.lines=0"});
+  ASSERT_FALSE(dial);
+  EXPECT_THAT(dial.error().message, HasSubstr("which a dial would undo"));
   const auto twice = load(moving + "[[finish]]\neffect = \"tones\"\nname = \"ink\"\n");
   ASSERT_FALSE(twice);
   EXPECT_THAT(twice.error().message, HasSubstr("a name of its own"));
