@@ -13,6 +13,8 @@
 #include <thread>
 #include <vector>
 
+#include "tests/support/temporary_folder.h"
+
 namespace scumble {
 namespace {
 
@@ -24,14 +26,12 @@ constexpr const char* kAddress = "http://127.0.0.1:4321/?token=secret";
 
 class OpenBrowser : public testing::Test {
  protected:
-  OpenBrowser() : folder_(fs::path(testing::TempDir()) / "open_browser") {
-    fs::remove_all(folder_);
+  OpenBrowser() {
     fs::create_directories(folder_ / "tmp");
     context_.temporary_folder = folder_ / "tmp";
-    context_.environment = {"PATH=" + folder_.string() + ":/usr/bin:/bin", "DISPLAY=:9"};
+    context_.environment = {"PATH=" + folder_.path().string() + ":/usr/bin:/bin", "DISPLAY=:9"};
     context_.on_message = [this](const Message& message) { notes_.push_back(message.text); };
   }
-  ~OpenBrowser() override { fs::remove_all(folder_); }
 
   // A browser that writes down what it is called with, and what it is sent on to.
   void Fake(const std::string& name) {
@@ -48,7 +48,7 @@ class OpenBrowser : public testing::Test {
     return std::string(std::istreambuf_iterator<char>(file), {});
   }
 
-  fs::path folder_;
+  TemporaryFolder folder_;  // its own, since cases run side by side
   RunContext context_;
   std::vector<std::string> notes_;
 };
@@ -81,19 +81,19 @@ TEST_F(OpenBrowser, TheFileGoesWithTheStudio) {
 TEST_F(OpenBrowser, TheVariableGoesFirst) {
   Fake("xdg-open");
   Fake("lynx");
-  context_.environment = {"PATH=" + folder_.string() + ":/usr/bin:/bin", "BROWSER=missing:lynx %s:xdg-open"};
+  context_.environment = {"PATH=" + folder_.path().string() + ":/usr/bin:/bin", "BROWSER=missing:lynx %s:xdg-open"};
   const auto browser = OpenedBrowser::Start(kAddress, context_);
   ASSERT_TRUE(browser);
   EXPECT_THAT(Said(), HasSubstr("lynx " + browser->file().string()));
 }
 
 TEST_F(OpenBrowser, WithoutABrowserANoteSaysSo) {
-  context_.environment = {"PATH=" + folder_.string(), "DISPLAY=:9"};
+  context_.environment = {"PATH=" + folder_.path().string(), "DISPLAY=:9"};
   EXPECT_FALSE(OpenedBrowser::Start(kAddress, context_));  // no xdg-open
   Fake("xdg-open");
-  context_.environment = {"PATH=" + folder_.string()};
+  context_.environment = {"PATH=" + folder_.path().string()};
   EXPECT_FALSE(OpenedBrowser::Start(kAddress, context_));  // no display
-  context_.environment = {"PATH=" + folder_.string(), "WAYLAND_DISPLAY=wayland-0"};
+  context_.environment = {"PATH=" + folder_.path().string(), "WAYLAND_DISPLAY=wayland-0"};
   context_.temporary_folder = folder_ / "none";
   EXPECT_FALSE(OpenedBrowser::Start(kAddress, context_));
   ASSERT_EQ(notes_.size(), 3u);
