@@ -260,6 +260,11 @@ def make_text():
     write("style", "tracks.toml",
           "[transfer]\nthreshold = [[1, 0.1], [24, 0.3]]\njitter = [[-5, 0], [5, 1.0]]\njitter_fps = 12\n"
           'edge = "exemplar"\nguide_weights = { normal = 2 }\nluminance_weight = inf\n' + exemplar)
+    write("style", "finish.toml",
+          '[[finish]]\neffect = "outline"\nname = "ink"\nwidth = [[1, 2], [9, 4]]\nink = "#102030"\nside = "inside"\n'
+          'objects = ["A*", "B"]\n[[finish]]\neffect = "shadows"\nmode = "complement"\nat = "sheet"\nstrength = 0.5\n'
+          '[[finish]]\neffect = "hatch"\nlayers = 3\n' + exemplar)
+    write("style", "toon.toml", '[transfer]\nmethod = "toon"\n[[finish]]\neffect = "toon"\nbands = 4\n')
     write("style", "sphere.toml", "[transfer]\nguide_weights = { lpe.LDE = 0.5, luminance = 1 }\n" +
           2 * (exemplar + 'guides = "sphere.exr"\n'))
     write("style", "scene.toml", "[transfer]\ncolorize = [[-999999999, 0], [999999999, 1]]\n"
