@@ -22,7 +22,7 @@ LayerSet Of(const ShadowsPass& pass) {
 
 LayerSet Of(const ToonPass& pass) {
   LayerSet layers{Layer::kCoverage, Layer::kObject, Layer::kLuminance};
-  if (pass.from == ToonPass::Color::kAlbedo) layers.Add(Layer::kAlbedo);
+  if (pass.base == ToonPass::Color::kAlbedo) layers.Add(Layer::kAlbedo);
   return layers;
 }
 

@@ -55,7 +55,7 @@ struct ToonPass {
   double shade = 0.45;                   // 0 … 1: the darkest band's lightness, as a share of the brightest's
   double tint = 0.3;                     // 0 … 1: how much of the hue of `color` the darkest band takes on
   Rgb16 color = {0x3838, 0x4444, 0x8080};
-  Color from = Color::kAlbedo;
+  Color base = Color::kAlbedo;
 };
 
 // The light of the scene itself (layer lpe.full) instead of the paint, by an extended Reinhard curve.
@@ -128,7 +128,7 @@ struct HatchPass {
   double cross = 60.0;   // 0 … 90 degrees from one layer of strokes to the next
   int layers = 2;        // 1 … 4
   double fullest = 0.6;  // 0.05 … 1: share of ink at which a layer is full, and the next begins
-  double from = 1.0;     // 0 … 1: tone from which on nothing is hatched
+  double bare = 1.0;     // 0 … 1: tone from which on nothing is hatched
   double wobble = 0.6;   // 0 … 16 pixels: how far strokes stray
   Tone tone = Tone::kLight;
   Along along = Along::kAround;

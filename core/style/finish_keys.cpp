@@ -171,7 +171,7 @@ std::vector<FinishKey> ToonKeys() {
       PassNumber("shade", &P::shade, 0.0, 1.0, "lightness of the darkest band, as a share of the brightest's"),
       PassNumber("tint", &P::tint, 0.0, 1.0, "how much of the colour's hue the darkest band takes on"),
       PassColor("color", &P::color, "of tint"),
-      PassChoice("from", &P::from, {"albedo", "paint"}, "what the bands shade: the scene's base colour, or the paint")};
+      PassChoice("base", &P::base, {"albedo", "paint"}, "what the bands shade: the scene's base colour, or the paint")};
 }
 
 std::vector<FinishKey> SmoothKeys() {
@@ -207,7 +207,7 @@ std::vector<FinishKey> HatchKeys() {
           PassNumber("cross", &P::cross, 0.0, 90.0, "from one layer of strokes to the next, degrees"),
           PassWhole("layers", &P::layers, 1, 4, "layers of strokes"),
           PassNumber("fullest", &P::fullest, 0.05, 1.0, "share of ink at which the next layer begins"),
-          PassNumber("from", &P::from, 0.0, 1.0, "tone from which on nothing is hatched"),
+          PassNumber("bare", &P::bare, 0.0, 1.0, "tone from which on nothing is hatched"),
           PassNumber("wobble", &P::wobble, 0.0, 16.0, "how far strokes stray, pixels"),
           PassChoice("tone", &P::tone, {"light", "paint"}, "what is looked at: the light or the paint"),
           PassColor("ink", &P::ink, "the colour of ink")};
@@ -407,7 +407,7 @@ void TurnDial(const std::string& dial, double factor, FinishPass& pass) {
       if (factor == 0.0) pass.strength = 0.0;
     }
     if (auto* const hatch = std::get_if<HatchPass>(&pass.effect)) {
-      hatch->from = UpTo(1.0, hatch->from * factor);
+      hatch->bare = UpTo(1.0, hatch->bare * factor);
       if (factor == 0.0) pass.strength = 0.0;
     }
   } else if (dial == "detail") {

@@ -32,7 +32,8 @@ std::vector<float> GaussianWeights(double sigma) {
   return weights;
 }
 
-// Rows, then columns. Beyond its edges the plane goes on with its last values.
+// Rows, then columns, by several threads and in floats, unlike core/filter/gaussian_blur.h. Beyond its edges the plane
+// goes on with its last values.
 std::vector<float> Blurred(const std::vector<float>& plane, int width, int height, double sigma) {
   const std::vector<float> weights = GaussianWeights(sigma);
   const int reach = static_cast<int>(weights.size()) - 1;

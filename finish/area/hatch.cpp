@@ -198,7 +198,7 @@ void DrawHatch(const HatchPass& pass, double strength, std::span<const std::uint
   const Tones tones(pass, frame, picture);
   const auto spacing = static_cast<float>(std::max(2.0, pass.spacing * frame.scale));
   const auto wobble = static_cast<float>(pass.wobble * frame.scale);
-  const auto fullest = static_cast<float>(pass.fullest), from = static_cast<float>(pass.from);
+  const auto fullest = static_cast<float>(pass.fullest), from = static_cast<float>(pass.bare);
   const float per_wave = 1.0f / (6.0f * spacing);
   std::array<glm::vec2, kMostLayers> turns;  // the cosine and sine of each layer's turn
   for (int k = 0; k < kMostLayers; ++k) turns[std::size_t(k)] = AxisAt(k * pass.cross);

@@ -70,7 +70,7 @@ class BandOf {
 PointEffect MakeToon(const ToonPass& pass, const FinishFrame& frame) {
   const BandOf band_of(pass, frame);
   const GuideSet& guides = *frame.guides;
-  const bool from_albedo = pass.from == ToonPass::Color::kAlbedo;
+  const bool from_albedo = pass.base == ToonPass::Color::kAlbedo;
   const LabColor color = ToOklab(pass.color);
   const float darkest = static_cast<float>(pass.shade), tint = static_cast<float>(pass.tint);
   const float per_band = pass.bands > 1 ? 1.0f / static_cast<float>(pass.bands - 1) : 0.0f;

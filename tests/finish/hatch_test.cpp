@@ -52,7 +52,7 @@ TEST(Hatch, ThinLinesAndThinGapsKeepTheirShare) {
 
 TEST(Hatch, LightAboveTheLimitIsBare) {
   HatchPass pass;
-  pass.from = 0.6;
+  pass.bare = 0.6;
   EXPECT_EQ(Mean(HatchOf(pass, FlatInLight(0.65))), 0.0);
   EXPECT_GT(Mean(HatchOf(pass, FlatInLight(0.5))), 0.1);
   EXPECT_EQ(Mean(HatchOf({}, FlatInLight(1.0))), 0.0);

@@ -107,7 +107,7 @@ TEST(Toon, BandsShadeThePaintWhereAsked) {
   GuideSet guides = FlatGuides(8, 1);
   for (std::size_t x = 0; x < 4; ++x) guides.Plane(Layer::kLuminance)[x] = 0.0f;
   ToonPass pass;
-  pass.from = ToonPass::Color::kPaint, pass.tint = 0.0, pass.shade = 0.5;
+  pass.base = ToonPass::Color::kPaint, pass.tint = 0.0, pass.shade = 0.5;
   const Picture paint = PlainPicture(8, 1, 50000, 30000, 20000);
   const Picture made = Finished(StepOf(pass), &guides, paint);
   EXPECT_NEAR(LightnessOf(made.At(0, 0)), 0.5 * LightnessOf(paint.At(0, 0)), 1e-3);
