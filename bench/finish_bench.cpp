@@ -68,7 +68,15 @@ int Run(int runs) {
           }));
   };
   for (const FinishEffect& effect : FinishEffects()) {
-    if (effect.name != "render") measure(effect.name, {*MakeFinishPass(effect.name)});  // needs light paths
+    if (effect.name == "render") continue;  // needs light paths
+    FinishPass pass = *MakeFinishPass(effect.name);
+    if (auto* const palette = std::get_if<PalettePass>(&pass.effect)) palette->target = MeasureColors(*painted);
+    measure(effect.name, {pass});
+  }
+  for (const double blur : {4.0, 32.0}) {
+    FinishPass depth = *MakeFinishPass("depth");
+    std::get<DepthPass>(depth.effect).blur = blur;
+    measure("depth, blur " + std::to_string(int(blur)), {depth});
   }
   measure("tones, shadows, depth, grade",
           {*MakeFinishPass("tones"), *MakeFinishPass("shadows"), *MakeFinishPass("depth"), *MakeFinishPass("grade")});

@@ -35,24 +35,41 @@ std::span<const float> CoverageFor(const FinishPass& pass, const FinishFrame& fr
   return looks ? frame.guides->Plane(Layer::kCoverage) : std::span<const float>();
 }
 
-// The effect, where it treats each pixel by itself.
-std::optional<PointEffect> PointEffectOf(const FinishPass& pass, const FinishFrame& frame) {
+// Whether a point effect depends on more of the picture than the pixel: what comes before it must be painted.
+bool LooksAtPicture(const FinishPass& pass) {
+  const auto* palette = std::get_if<PalettePass>(&pass.effect);
+  const auto* depth = std::get_if<DepthPass>(&pass.effect);
+  return (palette && !palette->source) || (depth && depth->blur > 0.0);
+}
+
+// The effect, where it treats each pixel by itself. `picture`: as the steps before have left it, if LooksAtPicture.
+std::optional<PointEffect> PointEffectOf(const FinishStep& step, const FinishFrame& frame, Picture& picture) {
+  const FinishPass& pass = step.pass;
   const bool is_of_sheet = pass.at == FinishPass::Stage::kSheet;
   if (is_of_sheet && std::holds_alternative<FillPass>(pass.effect)) return std::nullopt;  // raises alpha
   struct {
+    const FinishStep& step;
     const FinishFrame& frame;
+    Picture& picture;
     std::optional<PointEffect> operator()(const OutlinePass&) { return std::nullopt; }
     std::optional<PointEffect> operator()(const SmoothPass&) { return std::nullopt; }
     std::optional<PointEffect> operator()(const EdgesPass&) { return std::nullopt; }
     std::optional<PointEffect> operator()(const HatchPass&) { return std::nullopt; }
+    std::optional<PointEffect> operator()(const PigmentPass&) { return std::nullopt; }
     std::optional<PointEffect> operator()(const ToonPass& one) { return internal::MakeToon(one, frame); }
     std::optional<PointEffect> operator()(const RenderPass& one) { return internal::MakeRender(one, frame); }
     std::optional<PointEffect> operator()(const TonesPass& one) { return internal::MakeTones(one); }
     std::optional<PointEffect> operator()(const ShadowsPass& one) { return internal::MakeShadows(one, frame); }
-    std::optional<PointEffect> operator()(const DepthPass& one) { return internal::MakeDepth(one, frame); }
+    std::optional<PointEffect> operator()(const DepthPass& one) {
+      if (one.blur > 0.0) internal::BlurByDepth(one, step.pass.strength, step.only, frame, picture);
+      return internal::MakeDepth(one, frame);
+    }
+    std::optional<PointEffect> operator()(const PalettePass& one) {
+      return internal::MakePalette(one, one.source ? *one.source : MeasureColors(picture, step.only));
+    }
     std::optional<PointEffect> operator()(const GradePass& one) { return internal::MakeGrade(one); }
     std::optional<PointEffect> operator()(const FillPass& one) { return internal::MakeFill(one); }
-  } make{frame};
+  } make{step, frame, picture};
   return std::visit(make, pass.effect);
 }
 
@@ -128,6 +145,8 @@ void ApplyToAll(const FinishStep& step, const FinishFrame& frame, Picture& pictu
     internal::DrawEdges(*edges, pass.strength, step.only, frame, picture);
   } else if (const auto* hatch = std::get_if<HatchPass>(&pass.effect)) {
     internal::DrawHatch(*hatch, pass.strength, step.only, frame, picture);
+  } else if (const auto* pigment = std::get_if<PigmentPass>(&pass.effect)) {
+    internal::Pigment(*pigment, pass.strength, step.only, frame, picture);
   } else if (const auto* fill = std::get_if<FillPass>(&pass.effect)) {
     FillSheet(*fill, pass.strength, step.only, picture);
   }
@@ -140,7 +159,8 @@ Status Apply(std::span<const FinishStep* const> steps, const FinishFrame& frame,
     std::vector<PointStep> points;
     const std::size_t begin = i;
     for (; i < steps.size(); ++i) {
-      std::optional<PointEffect> effect = PointEffectOf(steps[i]->pass, FrameOf(*steps[i], frame));
+      if (i > begin && LooksAtPicture(steps[i]->pass)) break;
+      std::optional<PointEffect> effect = PointEffectOf(*steps[i], FrameOf(*steps[i], frame), picture);
       if (!effect) break;
       points.push_back({*std::move(effect), steps[i], CoverageFor(steps[i]->pass, frame)});
     }
@@ -190,6 +210,10 @@ Status CheckFinish(std::span<const FinishStep> steps, const GuideSet* guides, co
     }
     if (!(step.pass.strength > 0.0)) continue;
     SCUMBLE_RETURN_IF_ERROR(CheckDepths(step.pass, measures));
+    if (const auto* palette = std::get_if<PalettePass>(&step.pass.effect); palette && !palette->target) {
+      return InputError("finish " + step.pass.name + ": there is no painting whose palette it could take: set finish." +
+                        step.pass.name + ".like to a picture's file, or to colours, \"#203050 #f0e0c0\"");
+    }
     const auto* outline = std::get_if<OutlinePass>(&step.pass.effect);
     if (outline && outline->thin > 0.0 && guides && guides->camera && guides->camera->IsOrthographic()) {
       return InputError("finish " + step.pass.name +

@@ -33,6 +33,10 @@ bool LooksAtMeasures(std::span<const FinishPass> passes);
 // Of layers that the guides lack, and of nothing covered, the values stay as they are above.
 FinishMeasures MeasureFinish(const GuideSet& guides);
 
+// The mean and covariance of a picture's colours in Oklab, weighted by alpha: of all, or of the pixels of `only` that
+// are not 0. 0 where there are none. The same on any number of threads.
+ColorSpread MeasureColors(const Picture& picture, std::span<const std::uint8_t> only = {});
+
 struct FinishStep {
   FinishPass pass;
   std::vector<std::uint8_t> only;  // by pixel: 0 is left as it is; empty: none is
@@ -47,7 +51,8 @@ struct FinishFrame {
 };
 
 // kInput where the guides lack a layer that a step reads, or where a width is to follow the depth of an orthographic
-// view, which has no sizes, or where near is not before far. The message names the pass.
+// view, which has no sizes, where near is not before far, or where a palette has no example. The message names the
+// pass.
 Status CheckFinish(std::span<const FinishStep> steps, const GuideSet* guides, const FinishMeasures& measures = {});
 
 // Applies the steps of that stage to a picture with straight alpha. Pixels of alpha 0 stay so, but where lines run. A

@@ -33,7 +33,9 @@ bool Looks(const ToonPass&) { return true; }
 bool Looks(const RenderPass&) { return true; }
 bool Looks(const DepthPass& pass) { return pass.near == 0.0 || pass.far == 0.0; }
 bool Looks(const TonesPass&) { return false; }
+bool Looks(const PalettePass&) { return false; }
 bool Looks(const GradePass&) { return false; }
+bool Looks(const PigmentPass&) { return false; }
 bool Looks(const FillPass&) { return false; }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // The exact Euclidean distance transform. It finds the nearest feature pixel, not only the distance to it. Private to
-// core/filter.
+// Scumble.
 #pragma once
 
 #include <tbb/parallel_for.h>

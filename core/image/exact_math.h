@@ -22,4 +22,7 @@ double Exp2(double x);
 // -infinity, negative numbers and NaN give NaN.
 double Log2(double x);
 
+// e^x is Exp2(x * kLog2OfE).
+inline constexpr double kLog2OfE = 1.4426950408889634;
+
 }  // namespace scumble

@@ -10,6 +10,7 @@ LayerSet Of(const OutlinePass& pass) {
   if (is_on(LineClass::kTexture)) layers.Add(Layer::kAlbedo);
   if (is_on(LineClass::kShadow)) layers.Add(Layer::kShadow);
   if (pass.light != 0.0) layers.Add(Layer::kLuminance);
+  if (pass.stick && pass.wobble > 0.0) layers.Add(Layer::kPref);
   return layers;
 }
 
@@ -48,7 +49,18 @@ LayerSet Of(const HatchPass& pass) {
 }
 
 LayerSet Of(const RenderPass&) { return {Layer::kCoverage, Layer::kLpeFull}; }
-LayerSet Of(const DepthPass&) { return {Layer::kDepth}; }
+LayerSet Of(const DepthPass& pass) {
+  return pass.focus_on.empty() ? LayerSet{Layer::kDepth} : LayerSet{Layer::kDepth, Layer::kCoverage, Layer::kObject};
+}
+
+LayerSet Of(const PigmentPass& pass) {
+  LayerSet layers;
+  if (pass.edge > 0.0) layers.Add({Layer::kCoverage, Layer::kObject});
+  if (pass.stick) layers.Add({Layer::kCoverage, Layer::kObject, Layer::kDepth, Layer::kPref});
+  return layers;
+}
+
+LayerSet Of(const PalettePass&) { return {}; }
 LayerSet Of(const TonesPass&) { return {}; }
 LayerSet Of(const GradePass&) { return {}; }
 LayerSet Of(const FillPass&) { return {}; }

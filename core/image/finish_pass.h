@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -42,6 +43,7 @@ struct OutlinePass {
   double taper = 0.0;           // 0 … 512: ends grow thin over this length
   double wobble = 0.0;          // 0 … 16: how far lines stray
   double wobble_length = 24.0;  // 1 … 512: of the waves of that
+  bool stick = false;           // the waves stick to surfaces; false: to the picture
   Color color = Color::kInk;
   Rgb16 ink = {0x1c1c, 0x1a1a, 0x1919};
   Side side = Side::kCentre;
@@ -93,6 +95,8 @@ struct DepthPass {
   double tint = 0.0;        // 0 … 1: hue and chroma go towards `color` by tint · u
   double air = 0.0;         // 0 … 1: share of `color` at `far`, by Beer and Lambert's law
   Rgb16 color = {0xb4b4, 0xc6c6, 0xdcdc};
+  double blur = 0.0;     // 0 … 64 pixels at the reference height: sigma of a Gaussian where u is 1
+  std::string focus_on;  // a pattern of object names: the focus is their middle depth; empty: `focus` is
 };
 
 // Detail below a contrast is evened out; edges stay. A bilateral filter by rows, then by columns, several times.
@@ -141,6 +145,38 @@ struct GradePass {
   double lift = 0.0;        // -1 … 1, added to lightness
 };
 
+// Where colours lie in Oklab: their mean (L, a, b), and their covariance as LL, La, Lb, aa, ab, bb.
+struct ColorSpread {
+  std::array<double, 3> mean{};
+  std::array<double, 6> covariance{};
+};
+
+// The word for a style's own painting.
+inline constexpr const char* kPaintingPalette = "painting";
+
+// The palette of an example: colours are moved so that their mean and covariance become those of other colours.
+struct PalettePass {
+  std::string like = kPaintingPalette;  // the style's painting; or a picture's file; or colours, "#203050 #f0e0c0"
+  std::string from;   // whose colours become those of `like`: a picture's file; empty: the picture's own
+  double gain = 3.0;  // 1 … 16: how much the spread of colours may grow in any direction
+  bool keep_lightness = false;
+  std::optional<ColorSpread> target, source;  // of `like` and of `from`, once they are read
+};
+
+// Watercolour: how much pigment lies where.
+struct PigmentPass {
+  double edge = 0.7;              // 0 … 4: more of it inside the border of an object
+  double edge_width = 8.0;        // 0.5 … 128 pixels at the reference height: it is darkest at half that distance
+  double turbulence = 0.5;        // 0 … 2: more and less of it in clouds
+  double turbulence_size = 90.0;  // 2 … 2048 pixels: of the largest clouds
+  double granulation = 0.3;       // 0 … 2: grains of it in the paper's hollows
+  double grain_size = 2.5;        // 0.5 … 64 pixels
+  double thin = 0.25;             // 0 … 1: less of it where the picture is light
+  double tremor = 1.5;            // 0 … 32 pixels: how far shapes stray
+  double tremor_size = 24.0;      // 2 … 512 pixels: of the waves of that
+  bool stick = false;             // clouds stick to surfaces; false: to the picture
+};
+
 // One colour in place of the paint.
 struct FillPass {
   Rgb16 color = {0xf4f4, 0xefef, 0xe6e6};
@@ -149,7 +185,7 @@ struct FillPass {
 struct FinishPass {
   enum class Stage { kPaint, kSheet };  // before the paper is put behind, or after
   using Effect = std::variant<OutlinePass, SmoothPass, EdgesPass, HatchPass, ToonPass, RenderPass, TonesPass,
-                              ShadowsPass, DepthPass, GradePass, FillPass>;
+                              ShadowsPass, DepthPass, PalettePass, GradePass, PigmentPass, FillPass>;
   std::string name;  // for --set finish.NAME.KEY; the effect's if the user gives none
   Effect effect;
   Stage at = Stage::kPaint;

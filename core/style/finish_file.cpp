@@ -25,6 +25,15 @@ Status ReadNames(const toml::node& node, std::vector<std::string>& names) {
   return Ok();
 }
 
+// Files that a pass names stand beside the file that names them.
+void ResolveFiles(const std::filesystem::path& folder, FinishPass& pass) {
+  auto* const palette = std::get_if<PalettePass>(&pass.effect);
+  if (!palette) return;
+  for (std::string* const source : {&palette->like, &palette->from}) {
+    if (!source->empty() && *source != kPaintingPalette && (*source)[0] != '#') *source = (folder / *source).string();
+  }
+}
+
 Expected<FinishPass> ReadPass(const toml::table& table, const std::string& file,
                               std::vector<internal::FinishFrames>* frames) {
   const auto* effect = table.get("effect");
@@ -59,6 +68,7 @@ Expected<FinishPass> ReadPass(const toml::table& table, const std::string& file,
     }
     if (!done) return InputError(internal::Where(file, node) + ": finish." + name + ": " + done.error().message);
   }
+  ResolveFiles(std::filesystem::path(file).parent_path(), pass);
   for (internal::FinishFrames& one : of_pass) {
     one.key = kFinishKeys + pass.name + "." + one.key;
     frames->push_back(std::move(one));

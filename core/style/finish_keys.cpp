@@ -118,6 +118,19 @@ FinishKey PassColor(const char* name, Rgb16 Pass::*field, const char* help) {
 }
 
 template <class Pass>
+FinishKey PassText(const char* name, std::string Pass::*field, const char* help) {
+  FinishKey key{name, KeyKind::kText, 0.0, 0.0, {}, "", help, {}, {}};
+  key.set = [=](FinishPass& pass, const KeyValue& value) -> Status {
+    const auto* text = std::get_if<std::string>(&value);
+    if (!text) return UsageError("expected a text in quotes");
+    PassMember(pass, field) = *text;
+    return Ok();
+  };
+  key.get = [=](const FinishPass& pass) -> KeyValue { return PassMember(pass, field); };
+  return key;
+}
+
+template <class Pass>
 FinishKey PassFlag(const char* name, bool Pass::*field, const char* help) {
   FinishKey key{name, KeyKind::kFlag, 0.0, 0.0, {}, "", help, {}, {}};
   key.set = [=](FinishPass& pass, const KeyValue& value) -> Status {
@@ -157,6 +170,7 @@ std::vector<FinishKey> OutlineKeys() {
       PassNumber("taper", &P::taper, 0.0, 512.0, "length over which lines end in a point, pixels"),
       PassNumber("wobble", &P::wobble, 0.0, 16.0, "how far lines stray, pixels"),
       PassNumber("wobble_length", &P::wobble_length, 1.0, 512.0, "of the waves of that, pixels"),
+      PassFlag("stick", &P::stick, "the waves stick to surfaces, not to the picture"),
       PassChoice("color", &P::color, {"ink", "paint", "complement"},
                  "ink, or paint: the paint beside the line, darker; or complement: its opposite hue"),
       PassColor("ink", &P::ink, "the colour of ink"),
@@ -248,7 +262,32 @@ std::vector<FinishKey> DepthKeys() {
           PassNumber("desaturate", &P::desaturate, 0.0, 1.0, "chroma lost"),
           PassNumber("tint", &P::tint, 0.0, 1.0, "share of the colour's hue and chroma taken on"),
           PassNumber("air", &P::air, 0.0, 1.0, "share of the colour that the air adds at far"),
-          PassColor("color", &P::color, "of tint and air")};
+          PassColor("color", &P::color, "of tint and air"),
+          PassNumber("blur", &P::blur, 0.0, 64.0, "sigma where the effect is full, pixels"),
+          PassText("focus_on", &P::focus_on, "an object whose middle depth is the focus; a name, * and ? fit any")};
+}
+
+std::vector<FinishKey> PaletteKeys() {
+  using P = PalettePass;
+  return {
+      PassText("like", &P::like, "whose colours: painting, the style's own; a picture's file; or \"#203050 #f0e0c0\""),
+      PassText("from", &P::from, "a picture's file whose colours become those; empty: the picture's own"),
+      PassNumber("gain", &P::gain, 1.0, 16.0, "most that the spread of colours grows"),
+      PassFlag("keep_lightness", &P::keep_lightness, "hue and chroma change alone")};
+}
+
+std::vector<FinishKey> PigmentKeys() {
+  using P = PigmentPass;
+  return {PassNumber("edge", &P::edge, 0.0, 4.0, "pigment that gathers inside borders of objects"),
+          PassNumber("edge_width", &P::edge_width, 0.5, 128.0, "of that, pixels"),
+          PassNumber("turbulence", &P::turbulence, 0.0, 2.0, "more and less pigment in clouds"),
+          PassNumber("turbulence_size", &P::turbulence_size, 2.0, 2048.0, "of the largest clouds, pixels"),
+          PassNumber("granulation", &P::granulation, 0.0, 2.0, "grains of pigment"),
+          PassNumber("grain_size", &P::grain_size, 0.5, 64.0, "of grains, pixels"),
+          PassNumber("thin", &P::thin, 0.0, 1.0, "less pigment where it is light"),
+          PassNumber("tremor", &P::tremor, 0.0, 32.0, "how far shapes stray, pixels"),
+          PassNumber("tremor_size", &P::tremor_size, 2.0, 512.0, "of the waves of that, pixels"),
+          PassFlag("stick", &P::stick, "clouds stick to surfaces, not to the picture")};
 }
 
 std::vector<FinishKey> GradeKeys() {
@@ -278,7 +317,9 @@ std::vector<FinishEffect> MakeEffects() {
       {"tones", "lightness in steps", TonesPass(), TonesKeys()},
       {"shadows", "what is in shade: darker, black, in another colour", ShadowsPass(), ShadowsKeys()},
       {"depth", "what is far: paler, tinted, in haze, in layers", DepthPass(), DepthKeys()},
+      {"palette", "the colours of an example", PalettePass(), PaletteKeys()},
       {"grade", "saturation, contrast and lightness", GradePass(), GradeKeys()},
+      {"pigment", "watercolour: darker edges, clouds, grains, a trembling hand", PigmentPass(), PigmentKeys()},
       {"fill", "one colour instead of the paint", FillPass(), {PassColor("color", &FillPass::color, "of everything")}},
       {"edges", "lines where the tone changes", EdgesPass(), EdgesKeys()},
       {"hatch", "strokes of ink in the shade, around the forms", HatchPass(), HatchKeys()},
@@ -430,6 +471,7 @@ void TurnDial(const std::string& dial, double factor, FinishPass& pass) {
     }
   } else if (auto* const depth = std::get_if<DepthPass>(&pass.effect)) {
     for (double* const part : {&depth->desaturate, &depth->tint, &depth->air}) *part = UpTo(1.0, *part * factor);
+    depth->blur = UpTo(64.0, depth->blur * factor);
   }
 }
 
@@ -453,6 +495,14 @@ std::string FinishText(const FinishPass& pass) {
     for (const FinishKey& key : keys) {
       const std::string value = ToText(key.get(pass));
       if (value != key.default_value) text += " " + key.name + "=" + value;
+    }
+  }
+  // A file may change under its name.
+  if (const auto* palette = std::get_if<PalettePass>(&pass.effect)) {
+    for (const auto& colors : {palette->target, palette->source}) {
+      if (!colors) continue;
+      for (const double number : colors->mean) text += " " + ToText(KeyValue(number));
+      for (const double number : colors->covariance) text += " " + ToText(KeyValue(number));
     }
   }
   for (const std::string& name : pass.objects) text += " object " + name;

@@ -17,7 +17,6 @@ namespace {
 
 constexpr double kWider = 1.6;           // of the second Gaussian
 constexpr double kWidthOfSigma = 2.055;  // of the dark side of a step's response, at half its depth
-constexpr double kLog2OfE = 1.4426950408889634;
 
 std::vector<float> GaussianWeights(double sigma) {
   const int reach = static_cast<int>(std::ceil(3.0 * sigma));
@@ -34,10 +33,10 @@ std::vector<float> GaussianWeights(double sigma) {
 
 // Rows, then columns, by several threads and in floats, unlike core/filter/gaussian_blur.h. Beyond its edges the plane
 // goes on with its last values.
-std::vector<float> Blurred(const std::vector<float>& plane, int width, int height, double sigma) {
+Plane Blurred(const Plane& plane, int width, int height, double sigma) {
   const std::vector<float> weights = GaussianWeights(sigma);
   const int reach = static_cast<int>(weights.size()) - 1;
-  std::vector<float> half(plane.size()), whole(plane.size());
+  Plane half(plane.size()), whole(plane.size());
   tbb::parallel_for(tbb::blocked_range<int>(0, height, 8), [&](const auto& rows) {
     std::vector<float> padded(std::size_t(width + 2 * reach));
     for (int y = rows.begin(); y != rows.end(); ++y) {
@@ -69,12 +68,12 @@ std::vector<float> Blurred(const std::vector<float>& plane, int width, int heigh
   return whole;
 }
 
-std::vector<float> ToneOf(const EdgesPass& pass, const FinishFrame& frame, const LabPlanes& paint) {
+Plane ToneOf(const EdgesPass& pass, const FinishFrame& frame, const LabPlanes& paint) {
   if (pass.tone == EdgesPass::Tone::kPaint) return paint.lightness;
   const bool of_light = pass.tone == EdgesPass::Tone::kLight;
   const std::size_t pixels = paint.lightness.size();
   std::array<const float*, 3> planes{};
-  std::vector<float> light;
+  Plane light;
   if (of_light) {
     const auto plane = frame.guides->Plane(Layer::kLuminance);
     const auto per_bright = static_cast<float>(1.0 / frame.measures.bright);
@@ -84,7 +83,7 @@ std::vector<float> ToneOf(const EdgesPass& pass, const FinishFrame& frame, const
   } else {
     for (int c = 0; c < 3; ++c) planes[std::size_t(c)] = frame.guides->Plane(Layer::kAlbedo, c).data();
   }
-  std::vector<float> tone(pixels);
+  Plane tone(pixels);
   const auto coverage = frame.guides->Plane(Layer::kCoverage);
   tbb::parallel_for(std::size_t(0), (pixels + kOklabBlock - 1) / kOklabBlock, [&](std::size_t one) {
     const std::size_t first = one * kOklabBlock, count = std::min(kOklabBlock, pixels - first);
@@ -106,10 +105,10 @@ float Tanh(float x) {
 void DrawEdges(const EdgesPass& pass, double strength, std::span<const std::uint8_t> only, const FinishFrame& frame,
                Picture& picture) {
   const LabPlanes given = PlanesOf(picture);
-  const std::vector<float> tone = ToneOf(pass, frame, given);
+  const Plane tone = ToneOf(pass, frame, given);
   const double sigma = pass.width * frame.scale / kWidthOfSigma;
-  const std::vector<float> narrow = Blurred(tone, picture.width, picture.height, sigma);
-  const std::vector<float> wide = Blurred(tone, picture.width, picture.height, kWider * sigma);
+  const Plane narrow = Blurred(tone, picture.width, picture.height, sigma);
+  const Plane wide = Blurred(tone, picture.width, picture.height, kWider * sigma);
   const auto sharpness = static_cast<float>(pass.sharpness), fill = static_cast<float>(pass.fill),
              threshold = static_cast<float>(pass.threshold), slope = static_cast<float>(pass.slope);
   const bool on_paper = pass.draw == EdgesPass::Draw::kPaint;

@@ -5,12 +5,16 @@
 #include <span>
 #include <vector>
 
+#include "core/image/plane_allocator.h"
 #include "scumble/picture.h"
 
 namespace scumble::internal {
 
+// One number a pixel, not set at first. Fresh memory costs more than most filters; this is used again.
+using Plane = std::vector<float, PlaneAllocator<float>>;
+
 struct LabPlanes {
-  std::vector<float> lightness, a, b;  // by pixel
+  Plane lightness, a, b;
 };
 
 LabPlanes PlanesOf(const Picture& picture);

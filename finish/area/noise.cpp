@@ -1,22 +1,130 @@
 #include "finish/area/noise.h"
 
-#include <cmath>
+#include <tbb/parallel_for.h>
 
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "core/image/exact_math.h"
 #include "core/image/hash.h"
 
 namespace scumble::internal {
+namespace {
+
+float Smooth01(float t) { return t * t * (3.0f - 2.0f * t); }
+
+float LatticeValue(std::uint64_t hash) { return 2.0f * UnitFloat(hash) - 1.0f; }
+
+// Pixels of an object whose right neighbour is of it too, at most so many: enough for a median.
+constexpr std::size_t kMostSteps = 4096;
+
+// |∂pref/∂x| / depth of every object.
+std::map<float, float> UnitsOf(const GuideSet& guides) {
+  const auto coverage = guides.Plane(Layer::kCoverage), object = guides.Plane(Layer::kObject),
+             depth = guides.Plane(Layer::kDepth);
+  std::map<float, std::size_t> pixels;
+  for (std::size_t i = 0; i < object.size(); ++i) pixels[object[i]] += coverage[i] > 0.0f;
+  std::map<float, std::vector<float>> steps;
+  std::map<float, std::size_t> seen;
+  for (int y = 0; y < guides.height(); ++y) {
+    for (int x = 0; x + 1 < guides.width(); ++x) {
+      const std::size_t p = guides.Index(x, y);
+      if (!(coverage[p] > 0.0f) || !(coverage[p + 1] > 0.0f) || object[p] != object[p + 1]) continue;
+      const std::size_t every = 1 + pixels[object[p]] / kMostSteps;
+      if (seen[object[p]]++ % every != 0) continue;
+      const glm::vec3 step = guides.Vec3(Layer::kPref, p + 1) - guides.Vec3(Layer::kPref, p);
+      const float length = std::sqrt(step.x * step.x + step.y * step.y + step.z * step.z) / depth[p];
+      if (length > 0.0f && length < 1e30f) steps[object[p]].push_back(length);
+    }
+  }
+  std::map<float, float> units;
+  for (auto& [id, of_object] : steps) {
+    const auto middle = of_object.begin() + std::ptrdiff_t(of_object.size() / 2);
+    std::nth_element(of_object.begin(), middle, of_object.end());
+    units[id] = *middle;
+  }
+  return units;
+}
+
+}  // namespace
 
 float Noise(std::uint64_t seed, glm::vec2 at) {
   const float floor_x = std::floor(at.x), floor_y = std::floor(at.y);
   const auto x = static_cast<std::int64_t>(floor_x), y = static_cast<std::int64_t>(floor_y);
-  const float u = at.x - floor_x, v = at.y - floor_y;
-  const float su = u * u * (3.0f - 2.0f * u), sv = v * v * (3.0f - 2.0f * v);
-  const auto value = [&](std::int64_t dx, std::int64_t dy) {
-    return 2.0f * UnitFloat(Hash(seed, x + dx, y + dy)) - 1.0f;
-  };
+  const float su = Smooth01(at.x - floor_x), sv = Smooth01(at.y - floor_y);
+  const auto value = [&](std::int64_t dx, std::int64_t dy) { return LatticeValue(Hash(seed, x + dx, y + dy)); };
   const float above = value(0, 0) + (value(1, 0) - value(0, 0)) * su;
   const float below = value(0, 1) + (value(1, 1) - value(0, 1)) * su;
   return above + (below - above) * sv;
+}
+
+float Noise(std::uint64_t seed, glm::vec3 at) {
+  constexpr float kMost = 1e9f;
+  if (!(std::fabs(at.x) < kMost && std::fabs(at.y) < kMost && std::fabs(at.z) < kMost)) return 0.0f;
+  const float floor_z = std::floor(at.z), sw = Smooth01(at.z - floor_z);
+  const auto z = static_cast<std::int64_t>(floor_z);
+  const float near = Noise(Hash(seed, z), glm::vec2(at)), far = Noise(Hash(seed, z + 1), glm::vec2(at));
+  return near + (far - near) * sw;
+}
+
+NoiseField::NoiseField(std::uint64_t seed, double wave, bool stick, const FinishFrame& frame, int width, int height)
+    : seed_(seed),
+      per_wave_(static_cast<float>(1.0 / std::max(0.5, wave))),
+      width_(width),
+      columns_(static_cast<int>(static_cast<float>(width) * per_wave_) + 2) {
+  const int rows = static_cast<int>(static_cast<float>(height) * per_wave_) + 2;
+  lattice_.resize(std::size_t(columns_) * std::size_t(rows));
+  for (int v = 0; v < rows; ++v) {
+    for (int u = 0; u < columns_; ++u)
+      lattice_[std::size_t(v) * std::size_t(columns_) + std::size_t(u)] = LatticeValue(Hash(seed, u, v));
+  }
+  if (!stick) return;
+  guides_ = frame.guides;
+  const std::map<float, float> units = UnitsOf(*guides_);
+  const auto coverage = guides_->Plane(Layer::kCoverage), object = guides_->Plane(Layer::kObject),
+             depth = guides_->Plane(Layer::kDepth);
+  wave_.resize(guides_->pixel_count());
+  tbb::parallel_for(0, height, [&](int y) {
+    float id = -1.0f, unit = 0.0f;
+    for (std::size_t p = guides_->Index(0, y), end = p + std::size_t(width); p < end; ++p) {
+      if (!(coverage[p] > 0.0f)) continue;
+      if (object[p] != id) {
+        id = object[p];
+        const auto found = units.find(id);
+        unit = found == units.end() ? 0.0f : found->second;
+      }
+      const float wave_there = unit * depth[p] / per_wave_;
+      if (wave_there < 1e30f) wave_[p] = wave_there;
+    }
+  });
+}
+
+float NoiseField::InPicture(glm::vec2 at) const {
+  // Places in the picture are above 0, so that conversion is a floor.
+  const int x = static_cast<int>(at.x), y = static_cast<int>(at.y);
+  const float su = Smooth01(at.x - static_cast<float>(x)), sv = Smooth01(at.y - static_cast<float>(y));
+  const float* const above = lattice_.data() + std::size_t(y) * std::size_t(columns_) + std::size_t(x);
+  const float* const below = above + columns_;
+  const float upper = above[0] + (above[1] - above[0]) * su, lower = below[0] + (below[1] - below[0]) * su;
+  return upper + (lower - upper) * sv;
+}
+
+float NoiseField::At(int x, int y) const {
+  const std::size_t p = std::size_t(y) * std::size_t(width_) + std::size_t(x);
+  const glm::vec2 centre(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
+  if (!guides_ || !(wave_[p] > 1e-30f)) return InPicture(centre * per_wave_);
+  const double level = Log2(wave_[p]), octave = std::floor(level);
+  const auto share = static_cast<float>(level - octave);
+  const auto per_octave = static_cast<float>(Exp2(-octave));
+  const glm::vec3 place = guides_->Vec3(Layer::kPref, p) * per_octave;
+  const auto number = static_cast<std::int64_t>(octave);
+  const std::uint64_t object = static_cast<std::uint64_t>(IdOf(guides_->Plane(Layer::kObject)[p]));
+  const float finer = Noise(Hash(seed_, object, number), place);
+  const float coarser = Noise(Hash(seed_, object, number + 1), place * 0.5f);
+  // A mean of two independent noises is fainter than either.
+  const float rest = 1.0f - share, per_spread = 1.0f / std::sqrt(rest * rest + share * share);
+  return std::clamp((rest * finer + share * coarser) * per_spread, -1.0f, 1.0f);
 }
 
 }  // namespace scumble::internal

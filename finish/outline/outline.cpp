@@ -4,11 +4,14 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 #include "core/image/color.h"
+#include "core/image/hash.h"
 #include "core/image/oklab.h"
 #include "finish/area/ink.h"
+#include "finish/area/noise.h"
 #include "finish/outline/border_map.h"
 #include "finish/outline/line_chains.h"
 #include "finish/outline/strokes.h"
@@ -37,9 +40,16 @@ void DrawOutline(const OutlinePass& pass, double strength, std::span<const std::
   BorderMap borders = FindBorders(pass, *frame.guides, only);
   const std::vector<LineChain> chains =
       TraceLines(borders, *frame.guides, std::max(kShortest, kShortest * frame.scale));
+  std::optional<NoiseField> across, down;
+  if (pass.stick && pass.wobble > 0.0) {
+    const double wave = pass.wobble_length * frame.scale;
+    across.emplace(Hash(frame.seed, 1), wave, true, frame, width, height);
+    down.emplace(Hash(frame.seed, 2), wave, true, frame, width, height);
+  }
+  const Straying straying{across ? &*across : nullptr, down ? &*down : nullptr};
   std::vector<std::vector<StrokePiece>> strokes(chains.size());
   tbb::parallel_for(std::size_t(0), chains.size(),
-                    [&](std::size_t i) { strokes[i] = StrokeOf(pass, frame, chains[i]); });
+                    [&](std::size_t i) { strokes[i] = StrokeOf(pass, frame, straying, chains[i]); });
   std::vector<StrokePiece> pieces;
   for (const auto& stroke : strokes) pieces.insert(pieces.end(), stroke.begin(), stroke.end());
   const bool of_paint = pass.color != OutlinePass::Color::kInk;

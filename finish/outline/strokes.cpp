@@ -70,7 +70,7 @@ struct Middle {
   std::vector<std::uint32_t> owner;
 };
 
-Middle MiddleOf(const OutlinePass& pass, const FinishFrame& frame, const LineChain& chain,
+Middle MiddleOf(const OutlinePass& pass, const FinishFrame& frame, const Straying& straying, const LineChain& chain,
                 const std::vector<float>& widths) {
   const auto& points = chain.points;
   const std::size_t count = points.size();
@@ -89,7 +89,11 @@ Middle MiddleOf(const OutlinePass& pass, const FinishFrame& frame, const LineCha
       if (Dot(across, points[i].to_owner) < 0.0f) across = -across;
       at += across * (side * widths[i]);
     }
-    if (wobble > 0.0f) {
+    if (wobble > 0.0f && straying.across) {
+      const auto width = static_cast<std::uint32_t>(frame.guides->width());
+      const int x = static_cast<int>(points[i].owner % width), y = static_cast<int>(points[i].owner / width);
+      at += wobble * glm::vec2(straying.across->At(x, y), straying.down->At(x, y));
+    } else if (wobble > 0.0f) {
       const glm::vec2 cell = at * per_wave;
       at += wobble * glm::vec2(Noise(Hash(frame.seed, 1), cell), Noise(Hash(frame.seed, 2), cell));
     }
@@ -147,10 +151,11 @@ void Draw(const StrokePiece& piece, int y0, int y1, int width, StrokeCover& cove
 
 }  // namespace
 
-std::vector<StrokePiece> StrokeOf(const OutlinePass& pass, const FinishFrame& frame, const LineChain& chain) {
+std::vector<StrokePiece> StrokeOf(const OutlinePass& pass, const FinishFrame& frame, const Straying& straying,
+                                  const LineChain& chain) {
   std::vector<float> widths = WidthsOf(pass, frame, chain);
   Taper(pass.taper * frame.scale, chain, widths);
-  const Middle middle = MiddleOf(pass, frame, chain, widths);
+  const Middle middle = MiddleOf(pass, frame, straying, chain, widths);
   std::vector<StrokePiece> pieces;
   const std::size_t last = middle.at.size() - 1;
   for (std::size_t i = 0; i < last;) {

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "finish/area/noise.h"
 #include "finish/finish.h"
 #include "finish/outline/line_chains.h"
 
@@ -18,9 +19,15 @@ struct StrokePiece {
   std::uint32_t owner = 0;                   // the pixel that the line belongs to, at `from`
 };
 
+// What strokes stray by along each axis, where that sticks to surfaces. Null: it sticks to the picture.
+struct Straying {
+  const NoiseField *across = nullptr, *down = nullptr;
+};
+
 // One line's stroke: its widths by class, depth, light and taper, its wobble and side. Pieces are as long as they may
 // be without leaving the line by a tenth of a pixel.
-std::vector<StrokePiece> StrokeOf(const OutlinePass& pass, const FinishFrame& frame, const LineChain& chain);
+std::vector<StrokePiece> StrokeOf(const OutlinePass& pass, const FinishFrame& frame, const Straying& straying,
+                                  const LineChain& chain);
 
 // How much of each pixel the strokes cover, 0 … 1, and the owner of the piece that covers most of it.
 struct StrokeCover {

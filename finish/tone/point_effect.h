@@ -18,6 +18,11 @@ PointEffect MakeRender(const RenderPass& pass, const FinishFrame& frame);
 PointEffect MakeTones(const TonesPass& pass);
 PointEffect MakeShadows(const ShadowsPass& pass, const FinishFrame& frame);
 PointEffect MakeDepth(const DepthPass& pass, const FinishFrame& frame);
+// The linear map of Monge and Kantorovich between two normal distributions (Pitié, Kokaram, "The linear
+// Monge-Kantorovitch linear colour mapping for example-based colour transfer", 2007), A = S^-½ (S^½ T S^½)^½ S^-½, in
+// Oklab. `source` are the picture's colours; the pass has a target. Eigenvalues of A end at the pass's gain; those of S
+// and T begin at the square of 0.001, so that pictures of one colour are moved and no more.
+PointEffect MakePalette(const PalettePass& pass, const ColorSpread& source);
 PointEffect MakeGrade(const GradePass& pass);
 PointEffect MakeFill(const FillPass& pass);
 

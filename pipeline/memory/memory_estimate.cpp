@@ -281,8 +281,15 @@ void AddFinish(std::span<const FinishPass> passes, bool has_map, const Size& siz
     if (std::holds_alternative<SmoothPass>(pass.effect)) transient = std::max(transient, 3 * kLab + 1);
     if (std::holds_alternative<HatchPass>(pass.effect)) transient = std::max(transient, kFloat);
     if (std::holds_alternative<EdgesPass>(pass.effect)) transient = std::max(transient, 2 * kLab + 5 * kFloat);
+    // Two copies, sigmas, and a level of the picture's size.
+    const auto* depth = std::get_if<DepthPass>(&pass.effect);
+    if (depth && depth->blur > 0.0) transient = std::max(transient, 2 * kLab + kFloat + 5 * kFloat);
+    // Distances and rims, the lattice and the waves of four noises, a copy.
+    const auto* pigment = std::get_if<PigmentPass>(&pass.effect);
+    if (pigment) transient = std::max(transient, 2 + kFloat + 8 + (pigment->stick ? 3 : 1) * kFloat + kPaint);
     const auto* outline = std::get_if<OutlinePass>(&pass.effect);
     if (!outline) continue;
+    if (outline->stick && outline->wobble > 0.0) transient = std::max(transient, kOutline + 2 * kFloat);
     Bytes of_pixel = kOutline;
     if (outline->color != OutlinePass::Color::kInk) of_pixel += 4 + kPaint;
     if (outline->of_class[std::size_t(LineClass::kTexture)] > 0.0) of_pixel += 3 * kFloat;

@@ -3,10 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <set>
+#include <sstream>
 #include <system_error>
+#include <tuple>
 #include <utility>
 
+#include "core/io/picture_file.h"
 #include "core/style/finish_keys.h"
 #include "core/style/nearest_name.h"
 #include "pipeline/style/assignments.h"
@@ -83,7 +88,105 @@ void LimitToNames(const FinishPass& pass, const GuideSet& guides, const std::fun
   }
 }
 
+// "#203050 #f0e0c0" as a row of pixels.
+Expected<Picture> Swatches(const std::string& text) {
+  std::vector<Rgb16> colors;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    const auto color = ParseColor(word);
+    if (!color) return InputError(fmt::format("{} is no colour: {}, with blanks between several", word, kColorForm));
+    colors.push_back(*color);
+  }
+  Picture row(static_cast<int>(colors.size()), 1);
+  for (std::size_t i = 0; i < colors.size(); ++i) {
+    std::copy_n(colors[i].begin(), 3, row.rgba.begin() + std::ptrdiff_t(4 * i));
+    row.rgba[4 * i + 3] = 65535;
+  }
+  return row;
+}
+
+bool IsFile(const std::string& source) { return !source.empty() && source != kPaintingPalette && source[0] != '#'; }
+
+ColorSpread ColorsOfPainting(const Exemplar& exemplar) {
+  const Picture& picture = exemplar.picture;
+  if (!exemplar.is_sphere) return MeasureColors(picture);
+  std::vector<std::uint8_t> sphere(picture.rgba.size() / 4);
+  for (int y = 0; y < picture.height; ++y) {
+    for (int x = 0; x < picture.width; ++x) {
+      const double u = (x + 0.5) * 2.0 / picture.width - 1.0, v = (y + 0.5) * 2.0 / picture.height - 1.0;
+      sphere[std::size_t(y) * std::size_t(picture.width) + std::size_t(x)] = u * u + v * v < 1.0;
+    }
+  }
+  return MeasureColors(picture, sphere);
+}
+
+Expected<std::optional<ColorSpread>> ColorsOf(const std::string& source, const Style* style) {
+  if (source.empty()) return std::optional<ColorSpread>();
+  if (source == kPaintingPalette) {
+    if (!style || !style->unpainted.empty() || style->exemplars.empty()) return std::optional<ColorSpread>();
+    return std::optional(ColorsOfPainting(style->exemplars.front()));
+  }
+  SCUMBLE_ASSIGN(const Picture picture, IsFile(source) ? ReadPicture(source) : Swatches(source));
+  return std::optional(MeasureColors(picture));
+}
+
+// The depth that half of the pixels of these objects are nearer than; 0: there are none.
+double MiddleDepth(const std::string& pattern, const GuideSet& guides) {
+  if (!guides.Has(Layer::kObject) || !guides.Has(Layer::kDepth)) return 0.0;
+  const std::set<std::uint32_t> ids = IdsThatFit({pattern}, guides.object_names);
+  const auto object = guides.Plane(Layer::kObject), depth = guides.Plane(Layer::kDepth),
+             coverage = guides.Plane(Layer::kCoverage);
+  std::vector<float> depths;
+  for (std::size_t i = 0; i < object.size(); ++i) {
+    if (coverage[i] > 0.0f && depth[i] > 0.0f && std::isfinite(depth[i]) && ids.count(IdOf(object[i])))
+      depths.push_back(depth[i]);
+  }
+  if (depths.empty()) return 0.0;
+  const auto middle = depths.begin() + std::ptrdiff_t(depths.size() / 2);
+  std::nth_element(depths.begin(), middle, depths.end());
+  return *middle;
+}
+
+// Puts the focus of a depth effect on the object that it names.
+void Focus(const GuideSet& guides, const std::function<void(const std::string&)>& tell, FinishPass& pass) {
+  auto* const depth = std::get_if<DepthPass>(&pass.effect);
+  if (!depth || depth->focus_on.empty()) return;
+  const double middle = MiddleDepth(depth->focus_on, guides);
+  if (middle > 0.0) {
+    depth->focus = middle;
+  } else {
+    tell(fmt::format("finish {}: no object in the picture has the name {}, so the focus stays at {}", pass.name,
+                     depth->focus_on, depth->focus > 0.0 ? fmt::format("{} m", depth->focus) : "near"));
+  }
+}
+
 }  // namespace
+
+Status ReadPalettes(const Style* style, std::vector<FinishPass>& passes) {
+  for (FinishPass& pass : passes) {
+    auto* const palette = std::get_if<PalettePass>(&pass.effect);
+    if (!palette) continue;
+    for (const auto& [key, source, colors] :
+         {std::tuple("like", &palette->like, &palette->target), {"from", &palette->from, &palette->source}}) {
+      auto found = ColorsOf(*source, style);
+      if (!found) return InputError(fmt::format("finish {}: {}: {}", pass.name, key, found.error().message));
+      *colors = *std::move(found);
+    }
+  }
+  return Ok();
+}
+
+std::vector<std::string> FilesOf(const std::vector<FinishPass>& passes) {
+  std::vector<std::string> files;
+  for (const FinishPass& pass : passes) {
+    const auto* palette = std::get_if<PalettePass>(&pass.effect);
+    if (!palette) continue;
+    for (const std::string& source : {palette->like, palette->from}) {
+      if (IsFile(source)) files.push_back(source);
+    }
+  }
+  return files;
+}
 
 Expected<std::vector<FinishPreset>> FinishPresets(const RunContext& context) {
   std::vector<FinishPreset> presets;
@@ -140,6 +243,7 @@ std::vector<FinishStep> FinishStepsOf(const StyleSet& styles, const GuideSet& gu
     for (const FinishPass& pass : styles.styles[i].finish) {
       FinishStep& step = steps.emplace_back(FinishStep{pass, own});
       step.reference_height = styles.styles[i].transfer.reference_height;
+      Focus(guides, tell, step.pass);
       LimitToNames(pass, guides, tell, step.only);
     }
   }
@@ -154,6 +258,7 @@ std::vector<FinishStep> FinishStepsOf(const StyleSet& styles, const GuideSet& gu
   for (const FinishPass& pass : styles.finish) {
     FinishStep& step = steps.emplace_back(FinishStep{pass, shows});
     step.reference_height = styles.first().transfer.reference_height;
+    Focus(guides, tell, step.pass);
     LimitToNames(pass, guides, tell, step.only);
   }
   return steps;
@@ -164,7 +269,9 @@ std::vector<FinishStep> FinishStepsOf(const std::vector<FinishPass>& passes, con
   std::vector<FinishStep> steps;
   for (const FinishPass& pass : passes) {
     FinishStep& step = steps.emplace_back(FinishStep{pass, {}});
-    if (guides) LimitToNames(pass, *guides, tell, step.only);
+    if (!guides) continue;
+    Focus(*guides, tell, step.pass);
+    LimitToNames(pass, *guides, tell, step.only);
   }
   return steps;
 }

@@ -57,10 +57,66 @@ TEST_F(CliFinish, EveryEffectTakesAGuideFile) {
   ASSERT_TRUE(WritePicture(At("p.png"), Picture(40, 40)));
   RunOk({"guidegen", kBall, "--size", "40", "--layers", "luminance,shadow,albedo,lpe.full", "--samples", "1", "-o",
          "g.exr"});
-  for (const char* effect :
-       {"render", "toon", "smooth", "tones", "shadows", "depth", "grade", "fill", "edges", "hatch", "outline"}) {
+  for (const char* effect : {"render", "toon", "smooth", "tones", "shadows", "depth", "grade", "pigment", "fill",
+                             "edges", "hatch", "outline"}) {
     RunOk({"finish", "p.png", "g.exr", "--finish", effect, "-o", std::string(effect) + ".png"});
   }
+}
+
+// A palette by the style's painting, by colours, by a file beside the preset, by one that --set names.
+TEST_F(CliFinish, PalettesAreOfPaintingsColoursAndFiles) {
+  WriteStyle("plain");
+  std::filesystem::create_directories(At("looks"));
+  Picture blue(8, 8);
+  for (std::size_t i = 0; i < blue.rgba.size(); ++i) blue.rgba[i] = i % 4 == 2 || i % 4 == 3 ? 65535 : 20000;
+  ASSERT_TRUE(WritePicture(At("looks/blue.png"), blue));
+  WriteText("looks/cold.toml", "help = \"cold\"\n[[finish]]\neffect = \"palette\"\nlike = \"blue.png\"\n");
+  const auto middle = [&](const Arguments& more) {
+    Arguments arguments{"stylize", kBall, "--size", "32", "--style", "plain", "--bits", "16", "-o", "p.png"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    RunOk(arguments);
+    const Picture picture = Read("p.png");
+    return std::vector<int>(picture.At(16, 16), picture.At(16, 16) + 3);
+  };
+  const auto is_near = [](const std::vector<int>& got, int r, int g, int b) {
+    return std::abs(got[0] - r) < 300 && std::abs(got[1] - g) < 300 && std::abs(got[2] - b) < 300;
+  };
+  const std::vector<int> plain = middle({});
+  EXPECT_TRUE(is_near(plain, 60000, 40000, 20000));
+  EXPECT_TRUE(is_near(middle({"--finish", "palette"}), 60000, 40000, 20000));
+  EXPECT_TRUE(is_near(middle({"--finish", "looks/cold.toml"}), 20000, 20000, 65535));
+  EXPECT_TRUE(
+      is_near(middle({"--finish", "palette", "--set", "finish.palette.like=looks/blue.png"}), 20000, 20000, 65535));
+  EXPECT_TRUE(is_near(middle({"--finish", "palette", "--set", "finish.palette.like=#804020"}), 0x8080, 0x4040, 0x2020));
+  // Of one colour each, `from` moves by the difference.
+  EXPECT_TRUE(is_near(middle({"--finish", "looks/cold.toml", "--set", "finish.palette.from=looks/blue.png"}), 60000,
+                      40000, 20000));
+  const auto of_like = [&](const std::string& like) {
+    return Arguments{"stylize", kBall,      "--size",  "32",    "--style",
+                     "plain",   "--finish", "palette", "--set", "finish.palette.like=" + like,
+                     "-o",      "q.png"};
+  };
+  ExpectError(of_like("#12345"), 3, {"finish palette: like: #12345 is no colour"});
+  ExpectError(of_like("none.png"), 3, {"finish palette: like: ", "none.png"});
+  ExpectError({"finish", "p.png", "--finish", "palette", "-o", "q.png"}, 3,
+              {"set finish.palette.like to a picture's file"});
+  ExpectError({"finish", "p.png", "--finish", "looks/cold.toml", "-o", "looks/blue.png"}, 2,
+              {"the example of a palette"});
+}
+
+TEST_F(CliFinish, FocusesOnAnObject) {
+  WriteStyle("plain");
+  const auto paint = [&](const Arguments& more, const std::string& name) {
+    Arguments arguments{"stylize", kToys, "--size", "96x64", "--style", "plain", "--finish", "depth", "-o", name};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return RunOk(arguments).err;
+  };
+  paint({}, "near.png");
+  paint({"--set", "finish.depth.focus_on=Jelly*"}, "on.png");
+  EXPECT_NE(Read("near.png").rgba, Read("on.png").rgba);
+  EXPECT_TRUE(Contains(paint({"--set", "finish.depth.focus_on=Nobody"}, "lost.png"),
+                       "no object in the picture has the name Nobody"));
+  EXPECT_EQ(Read("near.png").rgba, Read("lost.png").rgba);
 }
 
 TEST_F(CliFinish, CastsOnlyWhatItReads) {

@@ -1,0 +1,74 @@
+// Depth as a share of the way from near to far, for what distance does.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include "core/image/exact_math.h"
+#include "finish/finish.h"
+
+namespace scumble::internal {
+
+// A function of 0 … `most` from a table, by straight lines between 4096 cells; beyond, and in the lowest 64, where
+// powers bend most, it is computed.
+class Curve {
+ public:
+  Curve() = default;
+  Curve(double most, std::function<double(double)> function) : most_(most), function_(std::move(function)) {
+    for (int i = 0; i <= kCells + 1; ++i) values_.push_back(function_(most * i / kCells));
+  }
+  double At(double x) const {
+    const double at = x / most_ * kCells;
+    if (!(at >= 64.0 && at < kCells)) return function_(x);
+    const auto cell = static_cast<std::size_t>(at);
+    return values_[cell] + (values_[cell + 1] - values_[cell]) * (at - static_cast<double>(cell));
+  }
+
+ private:
+  static constexpr int kCells = 4096;
+  double most_ = 1.0;
+  std::function<double(double)> function_;
+  std::vector<double> values_;
+};
+
+// The u of DepthPass.
+class DepthScale {
+ public:
+  DepthScale(const DepthPass& pass, const FinishMeasures& measures)
+      : inverse_(pass.metric == DepthPass::Metric::kInverse) {
+    const double near = pass.near > 0.0 ? pass.near : measures.near, far = pass.far > 0.0 ? pass.far : measures.far;
+    near_ = Of(near);
+    const double span = Of(far) - near_;
+    per_span_ = span != 0.0 ? 1.0 / span : 0.0;
+    focus_ = pass.focus > 0.0 ? Of(pass.focus) : near_;
+    gamma_ = pass.gamma;
+    if (gamma_ != 1.0)
+      power_ = Curve(1.0, [gamma = pass.gamma](double u) { return u > 0.0 ? Exp2(gamma * Log2(u)) : 0.0; });
+    layers_ = pass.layers;
+  }
+  // Depth above 0, infinity allowed. Unclamped: 0 near, 1 far.
+  double Distance(float depth) const { return (Of(depth) - near_) * per_span_; }
+  bool IsBeforeFocus(float depth) const { return Of(depth) < focus_; }
+  // 0 … 1.
+  double Share(float depth) const {
+    double u = std::min(std::fabs(Of(depth) - focus_) * std::fabs(per_span_), 1.0);
+    if (!(u >= 0.0)) u = 1.0;
+    if (gamma_ != 1.0) u = power_.At(u);
+    if (layers_ > 1) u = std::min(std::floor(u * layers_), layers_ - 1.0) / (layers_ - 1);
+    return u;
+  }
+
+ private:
+  double Of(double depth) const { return inverse_ ? -1.0 / depth : depth; }
+
+  bool inverse_;
+  double near_ = 0.0, per_span_ = 0.0, focus_ = 0.0, gamma_ = 1.0;
+  int layers_ = 0;
+  Curve power_;
+};
+
+}  // namespace scumble::internal

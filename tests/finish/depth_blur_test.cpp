@@ -1,0 +1,99 @@
+// Blur by depth: its second moment, what it leaves alone, and that nothing sharp runs into it.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/image/color.h"
+#include "core/image/oklab.h"
+#include "tests/finish/finish_fixtures.h"
+
+namespace scumble {
+namespace {
+
+FinishStep BlurStep(double blur) {
+  DepthPass pass;
+  pass.near = 1.0, pass.far = 5.0, pass.focus = 1.0, pass.desaturate = 0.0, pass.blur = blur;
+  return StepOf(pass);
+}
+
+// A grey of linear lightness, as Oklab has it.
+double LightnessOnRow(const Picture& picture, int x, int y) {
+  const float linear = Srgb16ToLinear(picture.At(x, y)[0]);
+  return OklabFromLinear(glm::vec3(linear)).x;
+}
+
+// A bright line on dark ground, all of it at 5 m: the line's profile is the filter.
+TEST(DepthBlur, HasTheSigmaThatItsKeySays) {
+  const GuideSet guides = FlatGuides(241, 64);
+  for (const double blur : {0.5, 1.0, 2.5, 6.0, 13.0}) {
+    Picture picture = PlainPicture(241, 64, 8000, 8000, 8000);
+    for (int y = 0; y < 64; ++y) std::fill_n(picture.At(120, y), 3, std::uint16_t{60000});
+    const Picture made = Finished(BlurStep(blur), &guides, picture);
+    const double ground = LightnessOnRow(picture, 2, 32);
+    double sum = 0.0, second = 0.0;
+    for (int x = 0; x < 241; ++x) {
+      const double over = LightnessOnRow(made, x, 32) - ground;
+      sum += over, second += over * (x - 120.0) * (x - 120.0);
+    }
+    EXPECT_NEAR(std::sqrt(second / sum), blur, 0.02 * blur + 0.03) << blur;
+    EXPECT_NEAR(sum, LightnessOnRow(picture, 120, 32) - ground, 0.02) << blur;
+  }
+}
+
+// A near square on a far striped ground.
+class NearAndFar : public ::testing::Test {
+ protected:
+  NearAndFar() {
+    for (int y = 0; y < 80; ++y) {
+      for (int x = 0; x < 80; ++x) {
+        const bool near = IsNear(x, y);
+        guides_.Plane(Layer::kDepth)[guides_.Index(x, y)] = near ? 1.0f : 5.0f;
+        const std::uint16_t grey = near ? 65535 : x % 8 < 4 ? 10000 : 20000;
+        std::fill_n(picture_.At(x, y), 3, grey);
+      }
+    }
+  }
+  static bool IsNear(int x, int y) { return x >= 30 && x < 50 && y >= 30 && y < 50; }
+  GuideSet guides_ = FlatGuides(80, 80);
+  Picture picture_ = PlainPicture(80, 80, 0, 0, 0);
+};
+
+TEST_F(NearAndFar, WhatIsInFocusKeepsItsBytesAndRunsNowhere) {
+  const Picture made = Finished(BlurStep(6.0), &guides_, picture_);
+  for (int y = 0; y < 80; ++y) {
+    for (int x = 0; x < 80; ++x) {
+      if (IsNear(x, y)) {
+        EXPECT_EQ(made.At(x, y)[0], 65535);
+      } else {
+        EXPECT_LE(made.At(x, y)[0], 20100) << x << ' ' << y;
+        EXPECT_GE(made.At(x, y)[0], 9900);
+      }
+    }
+  }
+  // The stripes are gone.
+  EXPECT_NEAR(made.At(10, 10)[0], made.At(14, 10)[0], 400);
+}
+
+TEST_F(NearAndFar, WhatIsBeforeTheFocusIsBlurredToo) {
+  FinishStep step = BlurStep(4.0);
+  std::get<DepthPass>(step.pass.effect).focus = 5.0;
+  for (int y = 30; y < 50; ++y) {
+    for (int x = 30; x < 50; ++x) std::fill_n(picture_.At(x, y), 3, std::uint16_t(x < 40 ? 30000 : 50000));
+  }
+  const Picture made = Finished(step, &guides_, picture_);
+  for (int x = 0; x < 80; ++x) EXPECT_EQ(made.At(x, 10)[0], picture_.At(x, 10)[0]);
+  EXPECT_GT(made.At(38, 40)[0], 31000);
+  EXPECT_LT(made.At(41, 40)[0], 49000);
+}
+
+TEST_F(NearAndFar, InfiniteDepthIsFar) {
+  for (float& depth : guides_.Plane(Layer::kDepth)) {
+    if (depth > 1.0f) depth = INFINITY;
+  }
+  const Picture made = Finished(BlurStep(6.0), &guides_, picture_);
+  EXPECT_EQ(made.At(40, 40)[0], 65535);
+  EXPECT_NEAR(made.At(10, 10)[0], made.At(14, 10)[0], 400);
+}
+
+}  // namespace
+}  // namespace scumble
