@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -122,6 +123,19 @@ struct EdgesPass {
   Rgb16 paper = {0xf4f4, 0xefef, 0xe6e6};
 };
 
+// A threshold texture at several sizes: a pixel is ink where its number, 0 … 1, lies below the share of ink wanted. Of
+// each size all numbers are equally frequent, so that the share of ink is the one wanted.
+struct HatchTexture {
+  struct Level {
+    int size = 0;                   // of a square that repeats
+    std::vector<float> thresholds;  // size × size, row by row
+  };
+  std::vector<Level> levels;  // each half as large as the one before
+};
+
+// The word for even lines.
+inline constexpr const char* kPlainStrokes = "lines";
+
 // Strokes of ink, denser where it is darker, in patches that follow the surfaces.
 struct HatchPass {
   enum class Tone { kLight, kPaint };            // what is looked at
@@ -137,6 +151,8 @@ struct HatchPass {
   Tone tone = Tone::kLight;
   Along along = Along::kAround;
   Rgb16 ink = {0x1c1c, 0x1a1a, 0x1919};
+  std::string strokes = kPlainStrokes;          // or a tool, "pencil"; or the file of a threshold texture
+  std::shared_ptr<const HatchTexture> texture;  // of `strokes`, once it is read; null: even lines
 };
 
 struct GradePass {

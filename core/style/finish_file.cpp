@@ -27,6 +27,9 @@ Status ReadNames(const toml::node& node, std::vector<std::string>& names) {
 
 // Files that a pass names stand beside the file that names them.
 void ResolveFiles(const std::filesystem::path& folder, FinishPass& pass) {
+  // Without an ending it is the name of bundled strokes.
+  if (auto* const hatch = std::get_if<HatchPass>(&pass.effect); hatch && hatch->strokes.find('.') != std::string::npos)
+    hatch->strokes = (folder / hatch->strokes).string();
   auto* const palette = std::get_if<PalettePass>(&pass.effect);
   if (!palette) return;
   for (std::string* const source : {&palette->like, &palette->from}) {

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/image/hash.h"
 #include "core/style/nearest_name.h"
 
 namespace scumble {
@@ -223,6 +224,7 @@ std::vector<FinishKey> HatchKeys() {
           PassNumber("fullest", &P::fullest, 0.05, 1.0, "share of ink at which the next layer begins"),
           PassNumber("bare", &P::bare, 0.0, 1.0, "tone from which on nothing is hatched"),
           PassNumber("wobble", &P::wobble, 0.0, 16.0, "how far strokes stray, pixels"),
+          PassText("strokes", &P::strokes, "lines; or of pencil, pen, charcoal; or the file of a threshold texture"),
           PassChoice("tone", &P::tone, {"light", "paint"}, "what is looked at: the light or the paint"),
           PassColor("ink", &P::ink, "the colour of ink")};
 }
@@ -504,6 +506,10 @@ std::string FinishText(const FinishPass& pass) {
       for (const double number : colors->mean) text += " " + ToText(KeyValue(number));
       for (const double number : colors->covariance) text += " " + ToText(KeyValue(number));
     }
+  }
+  if (const auto* hatch = std::get_if<HatchPass>(&pass.effect); hatch && hatch->texture) {
+    const auto& finest = hatch->texture->levels.front().thresholds;
+    text += " " + ToText(KeyValue(std::int64_t(HashBytes(std::span<const float>(finest)) >> 1)));
   }
   for (const std::string& name : pass.objects) text += " object " + name;
   for (const std::string& name : pass.materials) text += " material " + name;

@@ -12,6 +12,7 @@
 #include "core/image/hash.h"
 #include "core/io/guide_file.h"
 #include "core/io/picture_file.h"
+#include "exemplars/paint/hatching.h"
 #include "exemplars/paint/styles.h"
 
 namespace {
@@ -77,6 +78,21 @@ Status PaintOne(const paint::StyleEntry& style, const paint::Studio& studio, con
   return Ok();
 }
 
+// FOLDER/pencil.png and so on.
+Status PaintAllHatching(const paint::Studio& studio, const std::filesystem::path& folder) {
+  std::error_code failure;
+  std::filesystem::create_directories(folder, failure);
+  for (const char* tool : paint::kHatchTools) {
+    SCUMBLE_ASSIGN(const Picture picture, paint::PaintHatching(studio, tool));
+    const std::filesystem::path file = folder / (std::string(tool) + ".png");
+    PictureWriteOptions options;
+    options.png_level = 9, options.grey = true;
+    SCUMBLE_RETURN_IF_ERROR(WritePicture(file, picture, options));
+    std::cout << file.string() << "\n";
+  }
+  return Ok();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -104,11 +120,18 @@ int main(int argc, char** argv) {
   app.add_option("--brushes", studio.brushes, "Folder of the brushes of mypaint-brushes")->capture_default_str();
   app.add_option("--scene", studio.scene, "Guides of scenes/ball.glb, for the styles that paint a scene")
       ->capture_default_str();
+  bool hatching = false;
+  app.add_flag("--hatching", hatching,
+               "Paint the threshold textures of finishing effects instead: FOLDER/pencil.png …");
   app.add_option("-o", folder, "Folder to write to")->capture_default_str();
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kOk : kUsage;
+  }
+  if (hatching) {
+    const Status painted = PaintAllHatching(studio, folder);
+    return painted ? kOk : Report(painted.error());
   }
   for (const paint::StyleEntry& style : paint::kStyles) {
     if (chosen != "all" && chosen != style.name) continue;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <vector>
 
 #include "core/image/color.h"
@@ -13,6 +14,7 @@
 #include "core/image/hash.h"
 #include "core/image/oklab.h"
 #include "finish/area/area_effects.h"
+#include "finish/area/hatch_texture.h"
 #include "finish/area/ink.h"
 #include "finish/area/noise.h"
 
@@ -190,6 +192,25 @@ float LineCover(float across, float spacing, float share) {
   return std::clamp(std::max(0.0f, high - low) + std::max(0.0f, next_high - next_low), 0.0f, 1.0f);
 }
 
+// The share of a pixel that a layer of strokes covers.
+class Strokes {
+ public:
+  Strokes(const HatchPass& pass, double spacing) : spacing_(static_cast<float>(spacing)) {
+    if (pass.texture) texture_.emplace(*pass.texture, spacing);
+  }
+  // `at` in pixels, along the strokes and across them; `layer` counts from 0; `share`: of ink, wanted.
+  float Cover(glm::vec2 at, int layer, float share) const {
+    // Layers of one spacing would meet in a pattern.
+    const float wider = 1.0f + 0.137f * static_cast<float>(layer);
+    if (texture_) return texture_->Cover(at / wider + glm::vec2(91.7f * static_cast<float>(layer)), share);
+    return LineCover(at.y, spacing_ * wider, share);
+  }
+
+ private:
+  float spacing_;
+  std::optional<TextureStrokes> texture_;
+};
+
 }  // namespace
 
 void DrawHatch(const HatchPass& pass, double strength, std::span<const std::uint8_t> only, const FinishFrame& frame,
@@ -199,6 +220,7 @@ void DrawHatch(const HatchPass& pass, double strength, std::span<const std::uint
   const auto spacing = static_cast<float>(std::max(2.0, pass.spacing * frame.scale));
   const auto wobble = static_cast<float>(pass.wobble * frame.scale);
   const auto fullest = static_cast<float>(pass.fullest), from = static_cast<float>(pass.bare);
+  const Strokes strokes(pass, spacing);
   const float per_wave = 1.0f / (6.0f * spacing);
   std::array<glm::vec2, kMostLayers> turns;  // the cosine and sine of each layer's turn
   for (int k = 0; k < kMostLayers; ++k) turns[std::size_t(k)] = AxisAt(k * pass.cross);
@@ -221,9 +243,7 @@ void DrawHatch(const HatchPass& pass, double strength, std::span<const std::uint
           const Axis along(axis.x * turn.x - axis.y * turn.y, axis.x * turn.y + axis.y * turn.x);
           float across = at.y * along.x - at.x * along.y;
           if (wobble > 0.0f) across += wobble * Noise(Hash(frame.seed, 4, k), at * per_wave);
-          // Layers of one spacing would meet in a pattern.
-          const float apart = spacing * (1.0f + 0.137f * static_cast<float>(k));
-          bare *= 1.0f - LineCover(across, apart, share);
+          bare *= 1.0f - strokes.Cover({at.x * along.x + at.y * along.y, across}, k, share);
           left = share < 1.0f ? left / (1.0f - share) : 1.0f;
         }
         std::uint16_t ink[4] = {pass.ink[0], pass.ink[1], pass.ink[2], 0};

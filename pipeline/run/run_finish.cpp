@@ -143,7 +143,7 @@ Expected<RunReport> RunFinish(FinishRequest request, const SequenceListener& lis
   FinishState state;
   SCUMBLE_ASSIGN(state.passes, OpenFinish(request.finishes, context));
   SCUMBLE_RETURN_IF_ERROR(SetFinish(request.sets, state.passes));
-  SCUMBLE_RETURN_IF_ERROR(ReadPalettes(nullptr, state.passes));
+  SCUMBLE_RETURN_IF_ERROR(ReadFinishFiles(nullptr, context, state.passes));
   state.required = LayersOf(state.passes), state.measures = request.measures;
   SCUMBLE_RETURN_IF_ERROR(CheckLayers(request, state));
   SCUMBLE_RETURN_IF_ERROR(CheckPictureTarget(request.output, {request.bits}));
@@ -160,7 +160,7 @@ Expected<RunReport> RunFinish(FinishRequest request, const SequenceListener& lis
       if (!file.empty()) inputs.Reads(what, file);
     }
   }
-  for (const std::string& file : FilesOf(state.passes)) inputs.Reads("the example of a palette", file);
+  for (const std::string& file : FilesOf(state.passes)) inputs.Reads("a file of a finish", file);
   if (!sequence) {
     SCUMBLE_ASSIGN(request.output, NameOfOne(request.output, request.frame));
   }

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <sstream>
@@ -130,6 +132,35 @@ Expected<std::optional<ColorSpread>> ColorsOf(const std::string& source, const S
   return std::optional(MeasureColors(picture));
 }
 
+// The bundled textures of hatching, by name.
+std::map<std::string, fs::path> HatchFiles(const RunContext& context) {
+  std::map<std::string, fs::path> files;
+  std::error_code failed;
+  for (const fs::path& folder : context.DataFolders("finish/hatching")) {
+    for (const auto& entry : fs::directory_iterator(folder, failed)) {
+      if (entry.path().extension() == ".png") files.emplace(entry.path().stem().string(), entry.path());
+    }
+  }
+  return files;
+}
+
+Expected<HatchTexture> StrokesOf(const std::string& name, const RunContext& context) {
+  const auto files = HatchFiles(context);
+  const auto found = files.find(name);
+  std::error_code failed;
+  if (found == files.end() && !fs::is_regular_file(name, failed)) {
+    std::vector<std::string> names{kPlainStrokes};
+    for (const auto& [one, file] : files) names.push_back(one);
+    return InputError(fmt::format("there are no strokes '{}'; there are {}, or name the file of a threshold texture",
+                                  name, fmt::join(names, ", ")));
+  }
+  const fs::path file = found == files.end() ? fs::path(name) : found->second;
+  SCUMBLE_ASSIGN(const Picture picture, ReadPicture(file));
+  Expected<HatchTexture> texture = MakeHatchTexture(picture);
+  if (!texture) return InputError(file.string() + ": " + texture.error().message);
+  return texture;
+}
+
 // The depth that half of the pixels of these objects are nearer than; 0: there are none.
 double MiddleDepth(const std::string& pattern, const GuideSet& guides) {
   if (!guides.Has(Layer::kObject) || !guides.Has(Layer::kDepth)) return 0.0;
@@ -162,15 +193,23 @@ void Focus(const GuideSet& guides, const std::function<void(const std::string&)>
 
 }  // namespace
 
-Status ReadPalettes(const Style* style, std::vector<FinishPass>& passes) {
+Status ReadFinishFiles(const Style* style, const RunContext& context, std::vector<FinishPass>& passes) {
   for (FinishPass& pass : passes) {
-    auto* const palette = std::get_if<PalettePass>(&pass.effect);
-    if (!palette) continue;
-    for (const auto& [key, source, colors] :
-         {std::tuple("like", &palette->like, &palette->target), {"from", &palette->from, &palette->source}}) {
-      auto found = ColorsOf(*source, style);
-      if (!found) return InputError(fmt::format("finish {}: {}: {}", pass.name, key, found.error().message));
-      *colors = *std::move(found);
+    const auto of_key = [&](const char* key, const Error& error) {
+      return InputError(fmt::format("finish {}: {}: {}", pass.name, key, error.message));
+    };
+    if (auto* const palette = std::get_if<PalettePass>(&pass.effect)) {
+      for (const auto& [key, source, colors] :
+           {std::tuple("like", &palette->like, &palette->target), {"from", &palette->from, &palette->source}}) {
+        auto found = ColorsOf(*source, style);
+        if (!found) return of_key(key, found.error());
+        *colors = *std::move(found);
+      }
+    }
+    if (auto* const hatch = std::get_if<HatchPass>(&pass.effect); hatch && hatch->strokes != kPlainStrokes) {
+      Expected<HatchTexture> texture = StrokesOf(hatch->strokes, context);
+      if (!texture) return of_key("strokes", texture.error());
+      hatch->texture = std::make_shared<const HatchTexture>(*std::move(texture));
     }
   }
   return Ok();
@@ -180,10 +219,11 @@ std::vector<std::string> FilesOf(const std::vector<FinishPass>& passes) {
   std::vector<std::string> files;
   for (const FinishPass& pass : passes) {
     const auto* palette = std::get_if<PalettePass>(&pass.effect);
-    if (!palette) continue;
-    for (const std::string& source : {palette->like, palette->from}) {
+    for (const std::string& source : palette ? std::vector{palette->like, palette->from} : std::vector<std::string>()) {
       if (IsFile(source)) files.push_back(source);
     }
+    const auto* hatch = std::get_if<HatchPass>(&pass.effect);
+    if (std::error_code failed; hatch && fs::is_regular_file(hatch->strokes, failed)) files.push_back(hatch->strokes);
   }
   return files;
 }

@@ -26,10 +26,10 @@ Expected<std::vector<FinishPreset>> FinishPresets(const RunContext& context);
 // kNoFinish adds nothing. A kInput error lists what there is.
 Expected<std::vector<FinishPass>> OpenFinish(const std::vector<std::string>& names, const RunContext& context);
 
-// Measures the colours that palettes go by: of the files and colours that they name, and of the style's painting, the
-// part of it on the sphere. `style`: null where nothing is painted; palettes that ask for a painting then get none, and
-// CheckFinish refuses them. kInput where a file cannot be read or a colour is none.
-Status ReadPalettes(const Style* style, std::vector<FinishPass>& passes);
+// Reads what passes name: measures the colours that palettes go by, of files, of colours, and of the style's painting,
+// the part of it on the sphere; makes the strokes of hatching. `style`: null where nothing is painted; palettes that ask
+// for a painting then get none, and CheckFinish refuses them. kInput where a file cannot be read or a colour is none.
+Status ReadFinishFiles(const Style* style, const RunContext& context, std::vector<FinishPass>& passes);
 
 // The files that the passes name.
 std::vector<std::string> FilesOf(const std::vector<FinishPass>& passes);

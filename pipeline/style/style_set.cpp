@@ -265,8 +265,8 @@ Expected<StyleSet> OpenStyles(const StyleRequest& options, const RunContext& con
   set.chosen = set.styles.size();
   SCUMBLE_RETURN_IF_ERROR(CheckOverrides(set));
   SCUMBLE_RETURN_IF_ERROR(SetFinishOfRun(set));
-  for (Style& style : set.styles) SCUMBLE_RETURN_IF_ERROR(ReadPalettes(&style, style.finish));
-  SCUMBLE_RETURN_IF_ERROR(ReadPalettes(&set.first(), set.finish));
+  for (Style& style : set.styles) SCUMBLE_RETURN_IF_ERROR(ReadFinishFiles(&style, context, style.finish));
+  SCUMBLE_RETURN_IF_ERROR(ReadFinishFiles(&set.first(), context, set.finish));
   return set;
 }
 

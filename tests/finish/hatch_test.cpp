@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/image/color.h"
+#include "core/io/picture_file.h"
 #include "tests/finish/finish_fixtures.h"
 
 namespace scumble {
@@ -136,6 +137,66 @@ TEST(Hatch, LooksAtPaintToo) {
   EXPECT_EQ(Finished(StepOf(pass), nullptr, white).rgba, white.rgba);
   const Picture grey = PlainPicture(100, 100, 20000, 20000, 20000);
   EXPECT_NE(Finished(StepOf(pass), nullptr, grey).rgba, grey.rgba);
+}
+
+std::shared_ptr<const HatchTexture> Bundled(const std::string& tool) {
+  const Expected<Picture> picture = ReadPicture(SCUMBLE_SOURCE_DIR "/finish/hatching/" + tool + ".png");
+  EXPECT_TRUE(picture) << tool;
+  Expected<HatchTexture> texture = MakeHatchTexture(*picture);
+  EXPECT_TRUE(texture) << tool;
+  return std::make_shared<const HatchTexture>(*std::move(texture));
+}
+
+// Over a square of whole tiles: as much ink as the tone lacks, from every size of the texture. The smallest is seen by
+// few samples.
+TEST(HatchTexture, InkIsWhatTheToneLacks) {
+  for (const char* const tool : {"pencil", "pen", "charcoal"}) {
+    HatchPass pass;
+    pass.along = HatchPass::Along::kFixed;
+    pass.texture = Bundled(tool), pass.layers = 1, pass.wobble = 0.0, pass.angle = 0.0;
+    for (const double spacing : {300.0 / 24.0, 150.0 / 24.0, 75.0 / 24.0}) {
+      pass.spacing = spacing;
+      for (const double tone : {0.97, 0.85, 0.5, 0.2, 0.05})
+        EXPECT_NEAR(Mean(HatchOf(pass, FlatInLight(tone))), 1.0 - tone, spacing > 4.0 ? 0.01 : 0.02)
+            << tool << spacing << ' ' << tone;
+    }
+  }
+}
+
+TEST(HatchTexture, DarkerTonesKeepTheStrokesOfLighterOnes) {
+  HatchPass pass;
+  pass.texture = Bundled("pencil"), pass.layers = 1;
+  const auto light = HatchOf(pass, FlatInLight(0.8)), dark = HatchOf(pass, FlatInLight(0.5));
+  for (std::size_t i = 0; i < light.size(); ++i) ASSERT_GE(dark[i], light[i] - 1e-4);
+}
+
+TEST(HatchTexture, StrokesRunInTheDirectionOfTheirAngle) {
+  HatchPass pass;
+  pass.along = HatchPass::Along::kFixed;
+  pass.texture = Bundled("pen"), pass.layers = 1, pass.wobble = 0.0, pass.spacing = 10.0;
+  const GuideSet guides = FlatInLight(0.8);
+  const auto change = [&](double angle, int dx, int dy) {
+    pass.angle = angle;
+    const auto ink = HatchOf(pass, guides);
+    double sum = 0.0;
+    for (int y = 10; y < 290; ++y) {
+      for (int x = 10; x < 290; ++x)
+        sum += std::fabs(ink[std::size_t(y * 300 + x)] - ink[std::size_t((y + dy) * 300 + x + dx)]);
+    }
+    return sum;
+  };
+  EXPECT_LT(3.0 * change(0.0, 3, 0), change(0.0, 0, 3));
+  EXPECT_LT(3.0 * change(90.0, 0, 3), change(90.0, 3, 0));
+  EXPECT_LT(3.0 * change(45.0, 2, -2), change(45.0, 2, 2)) << "rows count downwards";
+}
+
+TEST(HatchTexture, MustBeASquare) {
+  for (const Picture& picture : {Picture(64, 32), Picture(8, 8), Picture()}) {
+    const auto made = MakeHatchTexture(picture);
+    ASSERT_FALSE(made);
+    EXPECT_THAT(made.error().message, ::testing::HasSubstr("expected a square"));
+  }
+  EXPECT_TRUE(MakeHatchTexture(PlainPicture(17, 17, 5, 5, 5)));  // all of one grey
 }
 
 }  // namespace

@@ -100,8 +100,22 @@ TEST_F(CliFinish, PalettesAreOfPaintingsColoursAndFiles) {
   ExpectError(of_like("none.png"), 3, {"finish palette: like: ", "none.png"});
   ExpectError({"finish", "p.png", "--finish", "palette", "-o", "q.png"}, 3,
               {"set finish.palette.like to a picture's file"});
-  ExpectError({"finish", "p.png", "--finish", "looks/cold.toml", "-o", "looks/blue.png"}, 2,
-              {"the example of a palette"});
+  ExpectError({"finish", "p.png", "--finish", "looks/cold.toml", "-o", "looks/blue.png"}, 2, {"a file of a finish"});
+}
+
+TEST_F(CliFinish, HatchesWithTools) {
+  ASSERT_TRUE(WritePicture(At("p.png"), PlainBall()));
+  const auto hatched = [&](const std::string& strokes, const std::string& name) {
+    RunOk({"finish", "p.png", "--finish", "hatch", "--set", "finish.hatch.tone=paint", "--set",
+           "finish.hatch.along=fixed", "--set", "finish.hatch.strokes=" + strokes, "-o", name});
+    return Read(name).rgba;
+  };
+  const auto lines = hatched("lines", "a.png"), pencil = hatched("pencil", "b.png");
+  EXPECT_NE(lines, pencil);
+  EXPECT_NE(hatched("pen", "c.png"), pencil);
+  EXPECT_EQ(hatched(SCUMBLE_SOURCE_DIR "/finish/hatching/pencil.png", "d.png"), pencil);
+  ExpectError({"finish", "p.png", "--finish", "hatch", "--set", "finish.hatch.strokes=crayon", "-o", "e.png"}, 3,
+              {"finish hatch: strokes: there are no strokes 'crayon'", "lines, charcoal, pen, pencil"});
 }
 
 TEST_F(CliFinish, FocusesOnAnObject) {

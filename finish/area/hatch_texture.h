@@ -1,0 +1,30 @@
+// Strokes of a threshold texture.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include "core/image/finish_pass.h"
+
+namespace scumble::internal {
+
+// A texture's rows hold so many strokes' spacings.
+inline constexpr float kSpacingsOfTexture = 24.0f;
+
+// The texture at a size, softened to keep edges of strokes from being jagged. Keeps a reference to the texture.
+class TextureStrokes {
+ public:
+  // `spacing`: from stroke to stroke, pixels.
+  TextureStrokes(const HatchTexture& texture, double spacing);
+
+  // How much of the pixel around `at`, in pixels along and across the strokes, is ink, where `share` of all is. The mean
+  // over the texture is `share`.
+  float Cover(glm::vec2 at, float share) const;
+
+ private:
+  float Threshold(glm::vec2 texel) const;
+
+  const HatchTexture::Level* level_;
+  float texels_per_pixel_;
+};
+
+}  // namespace scumble::internal
