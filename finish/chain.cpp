@@ -42,6 +42,27 @@ bool LooksAtPicture(const FinishPass& pass) {
   return (palette && !palette->source) || (depth && depth->blur > 0.0);
 }
 
+// The picture where the step's share is 1, what was before where it is 0, and of both in between: their sum by shares
+// of the codes times alpha, which is what ink of so much less strength gives.
+void MixByShare(const Picture& before, std::span<const std::uint16_t> shares, Picture& picture) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, shares.size(), 1 << 14), [&](const auto& part) {
+    for (std::size_t i = part.begin(); i != part.end(); ++i) {
+      if (shares[i] == 65535) continue;
+      const std::uint16_t* const from = before.rgba.data() + 4 * i;
+      std::uint16_t* const to = picture.rgba.data() + 4 * i;
+      if (shares[i] == 0 || std::equal(from, from + 4, to)) {
+        std::copy_n(from, 4, to);
+        continue;
+      }
+      const double share = shares[i] / 65535.0;
+      const double of_from = from[3] * (1.0 - share), of_to = to[3] * share, alpha = of_from + of_to;
+      if (!(alpha > 0.0)) continue;
+      for (int c = 0; c < 3; ++c) to[c] = static_cast<std::uint16_t>((from[c] * of_from + to[c] * of_to) / alpha + 0.5);
+      to[3] = static_cast<std::uint16_t>(alpha + 0.5);
+    }
+  });
+}
+
 // The effect, where it treats each pixel by itself. `picture`: as the steps before have left it, if LooksAtPicture.
 std::optional<PointEffect> PointEffectOf(const FinishStep& step, const FinishFrame& frame, Picture& picture) {
   const FinishPass& pass = step.pass;
@@ -61,7 +82,11 @@ std::optional<PointEffect> PointEffectOf(const FinishStep& step, const FinishFra
     std::optional<PointEffect> operator()(const TonesPass& one) { return internal::MakeTones(one); }
     std::optional<PointEffect> operator()(const ShadowsPass& one) { return internal::MakeShadows(one, frame); }
     std::optional<PointEffect> operator()(const DepthPass& one) {
-      if (one.blur > 0.0) internal::BlurByDepth(one, step.pass.strength, step.only, frame, picture);
+      if (one.blur > 0.0) {
+        const Picture before = step.share.empty() ? Picture() : picture;
+        internal::BlurByDepth(one, step.pass.strength, step.only, frame, picture);
+        if (!before.empty()) MixByShare(before, step.share, picture);
+      }
       return internal::MakeDepth(one, frame);
     }
     std::optional<PointEffect> operator()(const PalettePass& one) {
@@ -77,11 +102,13 @@ std::optional<PointEffect> PointEffectOf(const FinishStep& step, const FinishFra
 void Weigh(const PointStep& one, std::size_t first, std::size_t count, const OklabBlock& before, OklabBlock& block) {
   const FinishStep& step = *one.step;
   const auto strength = static_cast<float>(step.pass.strength);
-  if (strength >= 1.0f && step.only.empty() && one.coverage.empty()) return;
+  if (strength >= 1.0f && step.only.empty() && step.share.empty() && one.coverage.empty()) return;
   for (std::size_t i = 0; i < count; ++i) {
     const bool is_for_it =
         (step.only.empty() || step.only[first + i]) && (one.coverage.empty() || one.coverage[first + i] > 0.0f);
-    const float share = is_for_it ? strength : 0.0f;
+    const float masked =
+        step.share.empty() ? strength : strength * (static_cast<float>(step.share[first + i]) / 65535.0f);
+    const float share = is_for_it ? masked : 0.0f;
     const auto mix = [&](float from, float to) { return share >= 1.0f ? to : from + (to - from) * share; };
     block.lightness[i] = mix(before.lightness[i], block.lightness[i]);
     block.a[i] = mix(before.a[i], block.a[i]);
@@ -138,7 +165,7 @@ void FillSheet(const FillPass& fill, double strength, std::span<const std::uint8
 void ApplyToAll(const FinishStep& step, const FinishFrame& frame, Picture& picture) {
   const FinishPass& pass = step.pass;
   if (const auto* outline = std::get_if<OutlinePass>(&pass.effect)) {
-    internal::DrawOutline(*outline, pass.strength, step.only, frame, picture);
+    internal::DrawOutline(*outline, pass.strength, step.only, step.share, frame, picture);
   } else if (const auto* smooth = std::get_if<SmoothPass>(&pass.effect)) {
     internal::Smooth(*smooth, pass.strength, step.only, frame, picture);
   } else if (const auto* edges = std::get_if<EdgesPass>(&pass.effect)) {
@@ -170,7 +197,11 @@ Status Apply(std::span<const FinishStep* const> steps, const FinishFrame& frame,
       continue;
     }
     const FinishStep& step = *steps[i++];
+    const bool draws = std::holds_alternative<OutlinePass>(step.pass.effect);  // lines have the share of their surface
+    Picture before;
+    if (!step.share.empty() && !draws) before = picture;
     ApplyToAll(step, FrameOf(step, frame), picture);
+    if (!before.empty()) MixByShare(before, step.share, picture);
     if (progress && !progress(share * double(i))) return CancelledError();
   }
   return Ok();
@@ -199,6 +230,13 @@ Status CheckDepths(const FinishPass& pass, const FinishMeasures& measures) {
                     pass.name + ".far");
 }
 
+Status CheckMask(const FinishPass& pass) {
+  const FinishMask& mask = pass.mask;
+  if (!(mask.near > 0.0) || !(mask.far > 0.0) || mask.near < mask.far) return Ok();
+  return InputError("finish " + pass.name + ": mask_near is " + DepthText(mask.near, 0.0) + ", mask_far is " +
+                    DepthText(mask.far, 0.0) + ": set mask_near below mask_far, or one of them to 0, which is open");
+}
+
 }  // namespace
 
 Status CheckFinish(std::span<const FinishStep> steps, const GuideSet* guides, const FinishMeasures& measures) {
@@ -214,6 +252,7 @@ Status CheckFinish(std::span<const FinishStep> steps, const GuideSet* guides, co
       return InputError("finish " + step.pass.name + ": there is no painting whose palette it could take: set finish." +
                         step.pass.name + ".like to a picture's file, or to colours, \"#203050 #f0e0c0\"");
     }
+    SCUMBLE_RETURN_IF_ERROR(CheckMask(step.pass));
     const auto* outline = std::get_if<OutlinePass>(&step.pass.effect);
     if (outline && outline->thin > 0.0 && guides && guides->camera && guides->camera->IsOrthographic()) {
       return InputError("finish " + step.pass.name +

@@ -44,8 +44,9 @@ Expected<HatchTexture> MakeHatchTexture(const Picture& picture);
 
 struct FinishStep {
   FinishPass pass;
-  std::vector<std::uint8_t> only;  // by pixel: 0 is left as it is; empty: none is
-  int reference_height = -1;       // of the pass's lengths; 0: they are pixels; -1: the frame's scale counts
+  std::vector<std::uint8_t> only;         // by pixel: 0 is left as it is; empty: none is
+  int reference_height = -1;              // of the pass's lengths; 0: they are pixels; -1: the frame's scale counts
+  std::vector<std::uint16_t> share = {};  // by pixel: a factor of the strength, 65535 for 1; empty: 1 everywhere
 };
 
 struct FinishFrame {

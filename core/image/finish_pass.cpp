@@ -72,6 +72,7 @@ LayerSet RequiredLayers(const FinishPass& pass) {
   LayerSet layers = std::visit([](const auto& effect) { return Of(effect); }, pass.effect);
   if (!pass.objects.empty()) layers.Add(Layer::kObject);
   if (!pass.materials.empty()) layers.Add(Layer::kMaterial);
+  if (pass.mask.HasDepth()) layers.Add(Layer::kDepth);
   return layers;
 }
 

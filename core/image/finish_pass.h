@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/image/finish_mask.h"
 #include "core/image/layers.h"
 
 namespace scumble {
@@ -207,6 +208,7 @@ struct FinishPass {
   Stage at = Stage::kPaint;
   double strength = 1.0;                        // 0 … 1; 0 changes no byte
   std::vector<std::string> objects, materials;  // patterns of names; both empty: the whole picture
+  FinishMask mask = {};                         // besides these
 };
 
 // The layers that the pass reads.

@@ -5,6 +5,7 @@
 
 #include "core/io/file/atomic_file.h"
 #include "core/style/finish_keys.h"
+#include "core/style/finish_mask_keys.h"
 #include "core/style/finish_tables.h"
 
 namespace scumble {
@@ -66,6 +67,8 @@ Expected<FinishPass> ReadPass(const toml::table& table, const std::string& file,
       if (!frames) done = UsageError("expected a plain value: key frames are for style.toml");
     } else if (!value) {
       done = UsageError("expected a plain value");
+    } else if (const auto* shape = std::get_if<std::string>(&*value); shape && name == kMaskKey) {
+      done = SetMaskShape(*shape, std::filesystem::path(file).parent_path(), pass.mask);
     } else {
       done = SetFinishKey(pass, name, *value);
     }

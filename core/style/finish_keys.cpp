@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/image/hash.h"
+#include "core/style/finish_mask_keys.h"
 #include "core/style/nearest_name.h"
 
 namespace scumble {
@@ -306,6 +307,7 @@ std::vector<FinishKey> MakeCommonKeys() {
       FinishChoice(
           "at", [](FinishPass& pass) -> FinishPass::Stage& { return pass.at; }, {"paint", "sheet"},
           "paint: objects alone; sheet: the paper behind them, too")};
+  for (FinishKey& key : FinishMaskKeys()) keys.push_back(std::move(key));
   const FinishPass defaults{"", OutlinePass(), FinishPass::Stage::kPaint, 1.0, {}, {}};
   for (FinishKey& key : keys) key.default_value = ToText(key.get(defaults));
   return keys;
@@ -513,6 +515,12 @@ std::string FinishText(const FinishPass& pass) {
   }
   for (const std::string& name : pass.objects) text += " object " + name;
   for (const std::string& name : pass.materials) text += " material " + name;
+  if (pass.mask.picture) {
+    char content[24];
+    std::snprintf(content, sizeof content, " of %016llx",
+                  static_cast<unsigned long long>(HashBytes(std::span<const std::uint16_t>(pass.mask.picture->rgba))));
+    text += content;
+  }
   return text;
 }
 

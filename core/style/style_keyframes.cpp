@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "core/style/finish_keys.h"
+#include "core/style/finish_mask_keys.h"
 
 namespace scumble {
 namespace {
@@ -70,7 +71,10 @@ Status CheckDial(const Style& style, const std::string& set) {
 
 Status AddTrack(Style& style, const StyleKey& key, StyleTrack track) {
   const bool is_of_finish = key.name.rfind(kFinishKeys, 0) == 0;
-  if (key.name.rfind("transfer.", 0) != 0 && !is_of_finish) return UsageError(key.name + " cannot change over time");
+  if ((key.name.rfind("transfer.", 0) != 0 && !is_of_finish) ||
+      (is_of_finish && key.name.ends_with(std::string(".") + kMaskKey))) {
+    return UsageError(key.name + " cannot change over time");
+  }
   if (key.name.rfind(kGuideWeights, 0) == 0) {
     return UsageError(key.name +
                       " cannot change over time: the exposure of a sequence is measured once, for one set of "

@@ -34,8 +34,8 @@ void InkFromPaint(bool is_complement, std::uint16_t* texel) {
 
 }  // namespace
 
-void DrawOutline(const OutlinePass& pass, double strength, std::span<const std::uint8_t> only, const FinishFrame& frame,
-                 Picture& picture) {
+void DrawOutline(const OutlinePass& pass, double strength, std::span<const std::uint8_t> only,
+                 std::span<const std::uint16_t> shares, const FinishFrame& frame, Picture& picture) {
   const int width = picture.width, height = picture.height;
   BorderMap borders = FindBorders(pass, *frame.guides, only);
   const std::vector<LineChain> chains =
@@ -53,7 +53,7 @@ void DrawOutline(const OutlinePass& pass, double strength, std::span<const std::
   std::vector<StrokePiece> pieces;
   for (const auto& stroke : strokes) pieces.insert(pieces.end(), stroke.begin(), stroke.end());
   const bool of_paint = pass.color != OutlinePass::Color::kInk;
-  const StrokeCover cover = CoverOf(pieces, width, height, of_paint);
+  const StrokeCover cover = CoverOf(pieces, width, height, of_paint || !shares.empty());
   std::vector<std::uint16_t> paint;  // as it was before the lines
   if (of_paint) paint = picture.rgba;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cover.share.size(), 1 << 14), [&](const auto& part) {
@@ -72,7 +72,8 @@ void DrawOutline(const OutlinePass& pass, double strength, std::span<const std::
         }
         std::copy_n(last_ink, 3, texel);
       }
-      texel[3] = static_cast<std::uint16_t>(cover.share[i] * static_cast<float>(strength) * 65535.0f + 0.5f);
+      const float share = shares.empty() ? 1.0f : static_cast<float>(shares[cover.owner[i]]) / 65535.0f;
+      texel[3] = static_cast<std::uint16_t>(cover.share[i] * static_cast<float>(strength) * share * 65535.0f + 0.5f);
       if (texel[3] == 0) continue;
       std::uint16_t* const pixel = picture.rgba.data() + 4 * i;
       LayInk(texel, pixel);

@@ -18,6 +18,7 @@
 #include "measure/mosaic/coherence.h"
 #include "measure/painting/paint_faults.h"
 #include "pipeline/frame/explain_frame.h"
+#include "pipeline/style/finish_order.h"
 #include "pipeline/style/finish_set.h"
 #include "transfer/upsample_guides.h"
 
@@ -101,11 +102,12 @@ bool IsCatcher(const StyleSet& styles) {
                      [](const auto& one) { return one.second == StyleMap::kShadowCatcher; });
 }
 
-// Of what was asked for and changes nothing, once in a run.
+// Of what was asked for and changes nothing or is likely a slip, once in a run.
 void WarnOfIdleOptions(const StyleSet& styles, const PictureRequest& request, const RunContext& context,
                        PictureState& state) {
   if (state.warned) return;
   state.warned = true;
+  for (const std::string& doubt : OrderDoubts(styles)) context.Warn(doubt);
   const bool lit = std::any_of(styles.styles.begin(), styles.styles.end(), LooksAtLight);
   if (request.exposure && !lit) {
     context.Warn(fmt::format("--exposure {}", *request.exposure) + " changes nothing: style " + styles.first().name +

@@ -273,11 +273,13 @@ void AddFinish(std::span<const FinishPass> passes, bool has_map, const Size& siz
   // of 40 bytes and a piece of a stroke of 28, in lists that grow.
   constexpr Bytes kOutline = 2 + kFloat + (40 + 2 * 28 + 24) / 10;
   constexpr Bytes kLab = 3 * kFloat;
-  Bytes masks = 0, transient = 0;
+  Bytes masks = 0, transient = 0, mixes = 0;
   for (const FinishPass& pass : passes) {
     if (!(pass.strength > 0.0)) continue;
     const bool has_names = !pass.objects.empty() || !pass.materials.empty();
-    masks += (has_map ? 1 : 0) + (has_names ? 2 : 0);
+    masks += (has_map ? 1 : 0) + (has_names ? 2 : 0) + (pass.mask.empty() ? 0 : 2);
+    if (pass.mask.picture) need.Take("mask", kPaint * pass.mask.picture->rgba.size() / 4);
+    if (!pass.mask.empty()) mixes = std::max(mixes, pass.mask.picture ? 2 * kPaint : Bytes(kPaint));
     if (std::holds_alternative<SmoothPass>(pass.effect)) transient = std::max(transient, 3 * kLab + 1);
     if (std::holds_alternative<HatchPass>(pass.effect)) transient = std::max(transient, kFloat);
     if (std::holds_alternative<EdgesPass>(pass.effect)) transient = std::max(transient, 2 * kLab + 5 * kFloat);
@@ -291,12 +293,13 @@ void AddFinish(std::span<const FinishPass> passes, bool has_map, const Size& siz
     if (!outline) continue;
     if (outline->stick && outline->wobble > 0.0) transient = std::max(transient, kOutline + 2 * kFloat);
     Bytes of_pixel = kOutline;
-    if (outline->color != OutlinePass::Color::kInk) of_pixel += 4 + kPaint;
+    if (outline->color != OutlinePass::Color::kInk || !pass.mask.empty()) of_pixel += 4 + kPaint;
     if (outline->of_class[std::size_t(LineClass::kTexture)] > 0.0) of_pixel += 3 * kFloat;
     transient = std::max(transient, of_pixel);
   }
   const bool measures = LooksAtMeasures(passes);
   if (masks > 0) need.Take("finish", masks * PixelsOf(size));
+  transient += mixes;
   if (measures) transient = std::max(transient, Bytes(2 * kFloat));  // a copy of a plane that grows
   if (transient > 0) need.TakeTransient("finishing", transient * PixelsOf(size));
 }

@@ -102,6 +102,7 @@ Status CheckFiles(RunInputs& files, const PictureRequest& picture, const std::op
   SCUMBLE_ASSIGN(const auto overs, NamesOf(picture.over, sequence));
   for (const std::string& over : overs) files.Reads("the picture of --over", over);
   for (const std::string& file : FilesOf(AllPasses(styles))) files.Reads("a file of a finish", file);
+  for (const std::string& file : MaskFilesOf(AllPasses(styles))) files.Reads("the mask of a finishing effect", file);
   files.ReadsStyles(styles);
   SCUMBLE_ASSIGN(const auto outputs, NamesOf(picture.output, sequence));
   return files.CheckOutputs(outputs);

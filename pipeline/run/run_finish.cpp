@@ -15,6 +15,7 @@
 #include "finish/finish.h"
 #include "pipeline/memory/memory_estimate.h"
 #include "pipeline/scene/run_inputs.h"
+#include "pipeline/style/finish_order.h"
 #include "pipeline/style/finish_set.h"
 
 namespace scumble {
@@ -98,8 +99,9 @@ Expected<FrameWrite> Finish(const FinishRequest& request, const FrameFiles& file
   times.emplace_back("read", watch.Lap());
   context.EndStage("read");
   const bool is_first = !std::exchange(state.told, true);
+  const Size size{picture->width, picture->height};
   const std::vector<FinishStep> steps =
-      FinishStepsOf(state.passes, guides ? &*guides : nullptr, [&](const std::string& text) {
+      FinishStepsOf(state.passes, size, guides ? &*guides : nullptr, [&](const std::string& text) {
         if (is_first) context.Warn(files.guides + ": " + text);
       });
   if (!state.measures && guides && LooksAtMeasures(state.passes)) {
@@ -146,6 +148,7 @@ Expected<RunReport> RunFinish(FinishRequest request, const SequenceListener& lis
   SCUMBLE_RETURN_IF_ERROR(ReadFinishFiles(nullptr, context, state.passes));
   state.required = LayersOf(state.passes), state.measures = request.measures;
   SCUMBLE_RETURN_IF_ERROR(CheckLayers(request, state));
+  for (const std::string& doubt : OrderDoubts(state.passes)) context.Warn(doubt);
   SCUMBLE_RETURN_IF_ERROR(CheckPictureTarget(request.output, {request.bits}));
   SCUMBLE_ASSIGN(const auto sequence, PlanSequence(request.sequence, request.frame, request.output));
   RunInputs inputs;
@@ -161,6 +164,7 @@ Expected<RunReport> RunFinish(FinishRequest request, const SequenceListener& lis
     }
   }
   for (const std::string& file : FilesOf(state.passes)) inputs.Reads("a file of a finish", file);
+  for (const std::string& file : MaskFilesOf(state.passes)) inputs.Reads("the mask of a finishing effect", file);
   if (!sequence) {
     SCUMBLE_ASSIGN(request.output, NameOfOne(request.output, request.frame));
   }

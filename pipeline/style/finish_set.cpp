@@ -16,6 +16,7 @@
 #include "core/io/picture_file.h"
 #include "core/style/finish_keys.h"
 #include "core/style/nearest_name.h"
+#include "finish/mask.h"
 #include "pipeline/style/assignments.h"
 
 namespace scumble {
@@ -215,6 +216,14 @@ Status ReadFinishFiles(const Style* style, const RunContext& context, std::vecto
   return Ok();
 }
 
+std::vector<std::string> MaskFilesOf(const std::vector<FinishPass>& passes) {
+  std::vector<std::string> files;
+  for (const FinishPass& pass : passes) {
+    if (!pass.mask.file.empty()) files.push_back(pass.mask.file.string());
+  }
+  return files;
+}
+
 std::vector<std::string> FilesOf(const std::vector<FinishPass>& passes) {
   std::vector<std::string> files;
   for (const FinishPass& pass : passes) {
@@ -285,6 +294,7 @@ std::vector<FinishStep> FinishStepsOf(const StyleSet& styles, const GuideSet& gu
       step.reference_height = styles.styles[i].transfer.reference_height;
       Focus(guides, tell, step.pass);
       LimitToNames(pass, guides, tell, step.only);
+      step.share = MaskShares(pass.mask, &guides, guides.width(), guides.height());
     }
   }
   std::vector<std::uint8_t> shows;
@@ -300,18 +310,21 @@ std::vector<FinishStep> FinishStepsOf(const StyleSet& styles, const GuideSet& gu
     step.reference_height = styles.first().transfer.reference_height;
     Focus(guides, tell, step.pass);
     LimitToNames(pass, guides, tell, step.only);
+    step.share = MaskShares(pass.mask, &guides, guides.width(), guides.height());
   }
   return steps;
 }
 
-std::vector<FinishStep> FinishStepsOf(const std::vector<FinishPass>& passes, const GuideSet* guides,
+std::vector<FinishStep> FinishStepsOf(const std::vector<FinishPass>& passes, const Size& size, const GuideSet* guides,
                                       const std::function<void(const std::string&)>& tell) {
   std::vector<FinishStep> steps;
   for (const FinishPass& pass : passes) {
     FinishStep& step = steps.emplace_back(FinishStep{pass, {}});
-    if (!guides) continue;
-    Focus(*guides, tell, step.pass);
-    LimitToNames(pass, *guides, tell, step.only);
+    if (guides) {
+      Focus(*guides, tell, step.pass);
+      LimitToNames(pass, *guides, tell, step.only);
+    }
+    step.share = MaskShares(pass.mask, guides, size.width, size.height);
   }
   return steps;
 }

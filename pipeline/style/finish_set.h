@@ -31,8 +31,9 @@ Expected<std::vector<FinishPass>> OpenFinish(const std::vector<std::string>& nam
 // for a painting then get none, and CheckFinish refuses them. kInput where a file cannot be read or a colour is none.
 Status ReadFinishFiles(const Style* style, const RunContext& context, std::vector<FinishPass>& passes);
 
-// The files that the passes name.
+// The files that the passes name: of palettes, and of masks.
 std::vector<std::string> FilesOf(const std::vector<FinishPass>& passes);
+std::vector<std::string> MaskFilesOf(const std::vector<FinishPass>& passes);
 
 // Applies "finish.NAME.KEY=VALUE" to the passes; an error where none has that name.
 Status SetFinish(const std::vector<std::string>& sets, std::vector<FinishPass>& passes);
@@ -42,13 +43,13 @@ std::vector<FinishPass> AllPasses(const StyleSet& styles);
 
 // The passes of these styles and of the run, in their order, each with the pixels that it is for: a style's passes are
 // for its own pixels and lengths, the run's for all that shows: not for shadow catchers, nor for objects that are left
-// as they are where nothing is `over`; `objects` and `materials` limit both. `map`: null where one style paints all.
-// The styles must be at the picture's frame. Names that fit nothing are told to `tell`.
+// as they are where nothing is `over`; `objects`, `materials` and masks limit both. `map`: null where one style paints
+// all. The styles must be at the picture's frame. Names that fit nothing are told to `tell`.
 std::vector<FinishStep> FinishStepsOf(const StyleSet& styles, const GuideSet& guides, const StyleMap* map, bool over,
                                       const std::function<void(const std::string&)>& tell);
 
-// One chain of passes without styles, likewise.
-std::vector<FinishStep> FinishStepsOf(const std::vector<FinishPass>& passes, const GuideSet* guides,
+// One chain of passes without styles, likewise, for a picture of that size. `guides`: null where no pass reads any.
+std::vector<FinishStep> FinishStepsOf(const std::vector<FinishPass>& passes, const Size& size, const GuideSet* guides,
                                       const std::function<void(const std::string&)>& tell);
 
 // "2.1,4,11,0.8,1": near, middle, far, bright, full, as --finish-measures takes them.

@@ -75,6 +75,35 @@ TEST_P(EveryEffect, OfNoPixelsChangesNone) {
   EXPECT_EQ(Finished(step, &guides_, picture_, measures_).rgba, picture_.rgba);
 }
 
+TEST_P(EveryEffect, OfFullSharesIsAsWithoutAndOfNoneChangesNothing) {
+  for (const double strength : {1.0, 0.3}) {
+    FinishStep step = Step(strength);
+    const Picture plain = Finished(step, &guides_, picture_, measures_);
+    step.share.assign(guides_.pixel_count(), 65535);
+    EXPECT_EQ(Finished(step, &guides_, picture_, measures_).rgba, plain.rgba);
+    step.share.assign(guides_.pixel_count(), 0);
+    EXPECT_EQ(Finished(step, &guides_, picture_, measures_).rgba, picture_.rgba);
+  }
+}
+
+// Texel by texel, within what 16 bits round, of opaque pixels: between what was and what would be.
+TEST_P(EveryEffect, OfHalfAShareLiesBetween) {
+  FinishStep step = Step();
+  const Picture whole = Finished(step, &guides_, picture_, measures_);
+  step.share.assign(guides_.pixel_count(), 32768);
+  const Picture half = Finished(step, &guides_, picture_, measures_);
+  EXPECT_NE(half.rgba, whole.rgba);
+  EXPECT_NE(half.rgba, picture_.rgba);
+  double apart = 0.0, to_whole = 0.0, to_given = 0.0;
+  for (std::size_t i = 0; i < half.rgba.size(); ++i) {
+    apart += std::fabs(double(whole.rgba[i]) - picture_.rgba[i]);
+    to_whole += std::fabs(double(whole.rgba[i]) - half.rgba[i]);
+    to_given += std::fabs(double(half.rgba[i]) - picture_.rgba[i]);
+  }
+  EXPECT_NEAR(to_whole / apart, 0.5, 0.15);
+  EXPECT_NEAR(to_given / apart, 0.5, 0.15);
+}
+
 TEST_P(EveryEffect, HalfStrengthLiesBetween) {
   const Picture half = Finished(Step(0.5), &guides_, picture_, measures_);
   EXPECT_NE(half.rgba, picture_.rgba);

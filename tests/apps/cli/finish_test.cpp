@@ -371,5 +371,71 @@ TEST_F(CliFinish, RefusesThinLinesWithoutPerspective) {
       {"finish outline", "orthographic", "thin to 0"});
 }
 
+TEST_F(CliFinish, MasksLimitAnEffect) {
+  RunOk({"guidegen", kToys, "--size", "96x64", "-o", "g.exr"});
+  ASSERT_TRUE(WritePicture(At("p.png"), [] {
+    Picture picture(96, 64);
+    for (std::size_t i = 0; i < picture.rgba.size(); ++i) picture.rgba[i] = i % 4 == 3 ? 65535 : 30000;
+    return picture;
+  }()));
+  Picture left(96, 64);
+  for (int i = 0; i < 96 * 64; ++i) {
+    if (i % 96 < 48) std::fill_n(left.At(i % 96, i / 96), 4, std::uint16_t{65535});
+  }
+  ASSERT_TRUE(WritePicture(At("left.png"), left));
+  const auto fill = [&](const Arguments& more) {
+    Arguments arguments{"finish", "p.png", "g.exr", "--finish", "fill", "--set", "finish.fill.color=#ff0000",
+                        "-o",     "o.png"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    RunOk(arguments);
+    const Picture made = Read("o.png");
+    std::size_t red = 0;
+    for (std::size_t i = 0; i < made.rgba.size(); i += 4) red += made.rgba[i] > 60000 && made.rgba[i + 1] < 5000;
+    return red;
+  };
+  EXPECT_EQ(fill({}), 96u * 64u);
+  EXPECT_EQ(fill({"--set", "finish.fill.mask=left.png"}), 48u * 64u);
+  EXPECT_EQ(Read("o.png").At(90, 30)[0], Read("p.png").At(90, 30)[0]);
+  const std::size_t near = fill({"--set", "finish.fill.mask_far=8"}), far = fill({"--set", "finish.fill.mask_near=8"});
+  EXPECT_EQ(near + far, 96u * 64u);
+  EXPECT_GT(near, 100u);
+  EXPECT_GT(far, 100u);
+  EXPECT_EQ(fill({"--set", "finish.fill.mask_far=8", "--set", "finish.fill.mask_invert=true"}), far);
+  const CommandResult missing =
+      Run({"finish", "p.png", "g.exr", "--finish", "fill", "--set", "finish.fill.mask=no.png", "-o", "o.png"});
+  EXPECT_EQ(missing.code, 2) << missing.err;
+  EXPECT_TRUE(Contains(missing.err, "no.png: there is no such file")) << missing.err;
+  const CommandResult over =
+      Run({"finish", "p.png", "g.exr", "--finish", "fill", "--set", "finish.fill.mask=left.png", "-o", "left.png"});
+  EXPECT_NE(over.code, 0);
+  EXPECT_TRUE(Contains(over.err, "left.png")) << over.err;
+  EXPECT_EQ(Read("left.png").rgba, left.rgba) << "the mask is still there";
+}
+
+TEST_F(CliFinish, WarnsOfOrderThatIsLikelyWrong) {
+  RunOk({"guidegen", kBall, "--size", "32", "--layers", "luminance,shadow,albedo", "-o", "g.exr"});
+  ASSERT_TRUE(WritePicture(At("p.png"), PlainBall()));
+  const auto warnings = [&](const Arguments& names) {
+    Arguments arguments{"finish", "p.png", "g.exr", "-o", "o.png"};
+    for (const std::string& name : names) arguments.insert(arguments.end(), {"--finish", name});
+    return RunOk(arguments).err;
+  };
+  EXPECT_TRUE(Contains(warnings({"outline", "smooth"}),
+                       "finish outline draws lines, which smooth then blurs: put smooth before it"));
+  EXPECT_TRUE(Contains(warnings({"hatch", "tones"}), "finish hatch draws lines, which tones then makes jagged"));
+  EXPECT_TRUE(Contains(warnings({"grade", "fill"}), "finish grade is covered by fill"));
+  EXPECT_FALSE(Contains(warnings({"smooth", "tones", "hatch", "outline"}), "draws lines"));
+  for (const char* preset : {"comic", "noir", "storybook", "blueprint", "charcoal-lines", "engraving"}) {
+    const std::string said = warnings({preset});
+    EXPECT_FALSE(Contains(said, "covered by") || Contains(said, "draws lines")) << preset << said;
+  }
+  WriteText("low.toml", "[[finish]]\neffect = \"outline\"\nobjects = \"Ball*\"\n[[finish]]\neffect = \"smooth\"\n");
+  EXPECT_FALSE(Contains(warnings({"low.toml"}), "then blurs")) << "they may not meet";
+  WriteStyle("painted", "[transfer]\nedge = \"exemplar\"\n");
+  const CommandResult edge =
+      RunOk({"stylize", kBall, "--size", "32", "--style", "painted", "--finish", "outline", "-o", "s.png"});
+  EXPECT_TRUE(Contains(edge.err, "transfer.edge of style painted is \"exemplar\"")) << edge.err;
+}
+
 }  // namespace
 }  // namespace scumble

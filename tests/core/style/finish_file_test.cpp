@@ -9,6 +9,7 @@
 
 #include "core/io/picture_file.h"
 #include "core/style/finish_keys.h"
+#include "core/style/finish_mask_keys.h"
 #include "core/style/style_file.h"
 #include "core/style/style_keyframes.h"
 #include "tests/support/temporary_folder.h"
@@ -247,6 +248,39 @@ TEST(FinishLayers, AreThoseThatItReads) {
   EXPECT_TRUE(RequiredLayers(tones).empty());
   tones.objects = {"Ball"};
   EXPECT_EQ(RequiredLayers(tones), LayerSet{Layer::kObject});
+}
+
+// A grey of two shares, and half clear.
+TEST_F(FinishFile, MasksAreReadBesideTheFile) {
+  Picture picture(3, 1);
+  const std::uint16_t texels[3][4] = {{65535, 65535, 65535, 65535}, {65535, 0, 0, 65535}, {65535, 65535, 65535, 32768}};
+  for (int x = 0; x < 3; ++x) std::copy_n(texels[x], 4, picture.At(x, 0));
+  ASSERT_TRUE(WritePicture(folder_ / "area.png", picture, {16}));
+  const auto preset = LoadFinishPreset(
+      Write("[[finish]]\neffect = \"grade\"\nmask = \"area.png\"\nmask_near = 2\nmask_far = 7.5\nmask_soft = 0.5\n"
+            "mask_invert = true\n[[finish]]\neffect = \"fill\"\nmask = \"radial\"\n"));
+  ASSERT_TRUE(preset) << preset.error().message;
+  const FinishMask& mask = preset->passes[0].mask;
+  EXPECT_EQ(mask.near, 2.0);
+  EXPECT_EQ(mask.far, 7.5);
+  EXPECT_EQ(mask.soft, 0.5);
+  EXPECT_TRUE(mask.invert);
+  EXPECT_EQ(mask.file, folder_ / "area.png");
+  ASSERT_TRUE(mask.picture);
+  EXPECT_EQ(mask.picture->rgba[0], 65535);
+  EXPECT_NEAR(mask.picture->rgba[4], 0.2126 * 65535, 0.51);
+  EXPECT_NEAR(mask.picture->rgba[8], 32768, 0.51);
+  EXPECT_EQ(preset->passes[1].mask.shape, "radial");
+  EXPECT_FALSE(preset->passes[1].mask.picture);
+  FinishPass other = preset->passes[0];
+  picture.At(0, 0)[0] = 0;
+  ASSERT_TRUE(WritePicture(folder_ / "area.png", picture, {16}));
+  ASSERT_TRUE(SetMaskShape("area.png", folder_.path(), other.mask));
+  EXPECT_NE(FinishText(other), FinishText(preset->passes[0])) << "another picture of the same name";
+  EXPECT_THAT(
+      ErrorOf("[[finish]]\neffect = \"fill\"\nmask = \"ara.png\"\n"),
+      AllOf(HasSubstr(":3: finish.mask"), HasSubstr("ara.png: there is no such file"), HasSubstr("\"radial\"")));
+  EXPECT_THAT(ErrorOf("[[finish]]\neffect = \"fill\"\nmask_near = -1\n"), HasSubstr("expected metres"));
 }
 
 }  // namespace

@@ -1,0 +1,81 @@
+#include "pipeline/style/finish_order.h"
+
+#include <algorithm>
+
+#include "core/style/finish_keys.h"
+#include "pipeline/style/finish_set.h"
+
+namespace scumble {
+namespace {
+
+bool IsLimited(const FinishPass& pass) {
+  return !pass.objects.empty() || !pass.materials.empty() || !pass.mask.empty();
+}
+
+bool DrawsLines(const FinishPass& pass) {
+  return std::holds_alternative<OutlinePass>(pass.effect) || std::holds_alternative<EdgesPass>(pass.effect) ||
+         std::holds_alternative<HatchPass>(pass.effect);
+}
+
+// What the pass does to lines that are there; null: nothing.
+const char* HarmToLines(const FinishPass& pass) {
+  if (std::holds_alternative<SmoothPass>(pass.effect)) return "blurs";
+  if (std::holds_alternative<TonesPass>(pass.effect)) return "makes jagged";
+  return nullptr;
+}
+
+// Whether nothing of what was on an object shows through.
+bool Covers(const FinishPass& pass) {
+  const auto* toon = std::get_if<ToonPass>(&pass.effect);
+  return !(pass.strength < 1.0) &&
+         (std::holds_alternative<FillPass>(pass.effect) || std::holds_alternative<RenderPass>(pass.effect) ||
+          (toon && toon->base == ToonPass::Color::kAlbedo));
+}
+
+}  // namespace
+
+std::vector<std::string> OrderDoubts(std::span<const FinishPass> passes) {
+  std::vector<std::string> doubts;
+  std::vector<FinishPass> chain;
+  for (const auto stage : {FinishPass::Stage::kPaint, FinishPass::Stage::kSheet}) {
+    for (const FinishPass& pass : passes) {
+      if (pass.at == stage && pass.strength > 0.0 && !IsLimited(pass)) chain.push_back(pass);
+    }
+  }
+  for (std::size_t later = 1; later < chain.size(); ++later) {
+    for (std::size_t i = 0; i < later; ++i) {
+      const std::string before = "finish " + chain[i].name, after = chain[later].name;
+      if (const char* harm = HarmToLines(chain[later]); harm && DrawsLines(chain[i])) {
+        doubts.push_back(before + " draws lines, which " + after + " then " + harm + ": put " + after + " before it");
+      } else if (Covers(chain[later]) && chain[i].at == chain[later].at) {
+        doubts.push_back(before + " is covered by " + after + ", which comes after it: put " + after +
+                         " first, or leave one out");
+      }
+    }
+  }
+  return doubts;
+}
+
+std::vector<std::string> OrderDoubts(const StyleSet& styles) {
+  std::vector<std::string> doubts;
+  const auto add = [&](const std::string& doubt) {
+    if (std::find(doubts.begin(), doubts.end(), doubt) == doubts.end()) doubts.push_back(doubt);
+  };
+  for (const Style& style : styles.styles) {
+    std::vector<FinishPass> chain = style.finish;
+    chain.insert(chain.end(), styles.finish.begin(), styles.finish.end());
+    for (const std::string& doubt : OrderDoubts(chain)) add(doubt);
+    if (style.transfer.edge != EdgeMode::kExemplar || !style.unpainted.empty()) continue;
+    for (const FinishPass& pass : chain) {
+      const auto* outline = std::get_if<OutlinePass>(&pass.effect);
+      if (!outline || !(pass.strength > 0.0) || !(outline->of_class[std::size_t(LineClass::kSilhouette)] > 0.0))
+        continue;
+      add("finish " + pass.name + " draws exact silhouettes, and transfer.edge of style " + style.name +
+          " is \"exemplar\", so the paint ends elsewhere: set transfer.edge to \"exact\", or finish." + pass.name +
+          ".silhouette to 0");
+    }
+  }
+  return doubts;
+}
+
+}  // namespace scumble
