@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "bench/finish_rivals.h"
 #include "core/image/stopwatch.h"
 #include "core/style/finish_file.h"
 #include "core/style/finish_keys.h"
@@ -59,14 +60,17 @@ int Run(int runs) {
     std::vector<FinishStep> steps;
     for (const FinishPass& pass : passes) steps.push_back({pass, {}});
     Picture picture = *painted;
-    print(name, Timed(runs, [&] {
-            picture.rgba = painted->rgba;
-            for (const auto stage : {FinishPass::Stage::kPaint, FinishPass::Stage::kSheet}) {
-              if (const Status done = ApplyFinish(steps, stage, frame, 0, {}, picture); !done)
-                std::fprintf(stderr, "%s: %s\n", name.c_str(), done.error().message.c_str()), std::exit(3);
-            }
-          }));
+    const Spread spread = Timed(runs, [&] {
+      picture.rgba = painted->rgba;
+      for (const auto stage : {FinishPass::Stage::kPaint, FinishPass::Stage::kSheet}) {
+        if (const Status done = ApplyFinish(steps, stage, frame, 0, {}, picture); !done)
+          std::fprintf(stderr, "%s: %s\n", name.c_str(), done.error().message.c_str()), std::exit(3);
+      }
+    });
+    print(name, spread);
+    return spread.median;
   };
+  const int picture_width = painted->width, picture_height = painted->height;
   for (const FinishEffect& effect : FinishEffects()) {
     if (effect.name == "render") continue;  // needs light paths
     FinishPass pass = *MakeFinishPass(effect.name);
@@ -84,6 +88,42 @@ int Run(int runs) {
     FinishPass outline = *MakeFinishPass("outline");
     std::get<OutlinePass>(outline.effect).width = width;
     measure("outline, width " + std::to_string(int(width)), {outline});
+  }
+  const auto smooth = [](SmoothPass::Filter filter, double radius, int times, bool borders) {
+    FinishPass pass = *MakeFinishPass("smooth");
+    auto& one = std::get<SmoothPass>(pass.effect);
+    one.filter = filter, one.radius = radius, one.passes = times, one.borders = borders;
+    return std::vector<FinishPass>{pass};
+  };
+  const auto edges = [](EdgesPass::Tone tone, double flow) {
+    FinishPass pass = *MakeFinishPass("edges");
+    std::get<EdgesPass>(pass.effect).tone = tone, std::get<EdgesPass>(pass.effect).flow = flow;
+    return std::vector<FinishPass>{pass};
+  };
+  using Filter = SmoothPass::Filter;
+  const double bilateral = measure("smooth bilateral, radius 3, 4 passes", smooth(Filter::kBilateral, 3, 4, false));
+  const double kuwahara = measure("smooth kuwahara, radius 6, 1 pass", smooth(Filter::kKuwahara, 6, 1, false));
+  const double guided = measure("smooth guided, radius 4, 1 pass", smooth(Filter::kGuided, 4, 1, false));
+  measure("smooth guided, radius 32, 1 pass", smooth(Filter::kGuided, 32, 1, false));
+  measure("smooth wavelets, radius 4, 1 pass", smooth(Filter::kWavelets, 4, 1, true));
+  const double dog = measure("edges of light", edges(EdgesPass::Tone::kLight, 0.0));
+  measure("edges of paint", edges(EdgesPass::Tone::kPaint, 0.0));
+  measure("edges of light, flow 3", edges(EdgesPass::Tone::kLight, 3.0));
+  measure("edges of paint, flow 3", edges(EdgesPass::Tone::kPaint, 3.0));
+  std::vector<float> rgb;
+  for (std::size_t i = 0; i < painted->rgba.size(); ++i)
+    if (i % 4 != 3) rgb.push_back(static_cast<float>(painted->rgba[i]) / 65535.0f);
+  const auto against = [&](const Rival& rival, double ours, const char* name) {
+    const Spread spread = Timed(std::min(runs, 5), rival.run);
+    print(rival.name, spread);
+    std::printf("  %s takes %.2f of that\n", name, ours / spread.median);
+  };
+  against(PlainKuwahara(picture_width, picture_height, rgb), kuwahara, "smooth kuwahara");
+  const auto rivals = OpenCvRivals(picture_width, picture_height, rgb);
+  if (rivals.size() == 3) {
+    against(rivals[0], bilateral, "smooth bilateral, 4 passes");
+    against(rivals[1], guided, "smooth guided");
+    against(rivals[2], dog, "edges of light");
   }
   for (const auto& file : FindFinishPresets(SCUMBLE_SOURCE_DIR "/finish/presets")) {
     const auto preset = LoadFinishPreset(file);

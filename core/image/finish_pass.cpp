@@ -27,7 +27,11 @@ LayerSet Of(const ToonPass& pass) {
   return layers;
 }
 
-LayerSet Of(const SmoothPass& pass) { return pass.borders ? LayerSet{Layer::kObject} : LayerSet(); }
+LayerSet Of(const SmoothPass& pass) {
+  if (!pass.borders) return {};
+  if (pass.filter == SmoothPass::Filter::kWavelets) return {Layer::kObject, Layer::kNormal, Layer::kDepth};
+  return {Layer::kObject};
+}
 
 LayerSet Of(const EdgesPass& pass) {
   switch (pass.tone) {

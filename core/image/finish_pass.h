@@ -101,12 +101,16 @@ struct DepthPass {
   std::string focus_on;  // a pattern of object names: the focus is their middle depth; empty: `focus` is
 };
 
-// Detail below a contrast is evened out; edges stay. A bilateral filter by rows, then by columns, several times.
+// Detail below a contrast is evened out; edges stay. finish/area/smooth_filters.h has the filters' papers.
 struct SmoothPass {
-  double radius = 4.0;  // 0.5 … 32 pixels at the reference height: sigma of the filter in space
-  double range = 0.08;  // 0.001 … 1: the Oklab distance whose share is halved
+  // By rows, then by columns; patches along the edges, as brushes leave them; box means, whatever the radius; wavelets
+  // that stop at normals and depths, too.
+  enum class Filter { kBilateral, kKuwahara, kGuided, kWavelets };
+  double radius = 4.0;  // 0.5 … 32 pixels at the reference height: sigma in space; of kKuwahara and kGuided the reach
+  double range = 0.08;  // 0.001 … 1: the Oklab distance whose share is halved; kKuwahara has none
   int passes = 2;       // 1 … 8
   bool borders = true;  // nothing is mixed between objects
+  Filter filter = Filter::kBilateral;
 };
 
 // Lines where the tone changes: the extended difference of Gaussians (Winnemöller, Kyprianidis, Olsen 2012).
@@ -118,8 +122,10 @@ struct EdgesPass {
   double threshold = 0.7;                       // 0 … 1: the tone below which ink begins
   double slope = 10.0;                          // 0.1 … 100: how fast ink gets dense below it
   double fill = 0.0;                            // 0 … 1: 1 fills what is dark, 0 draws lines alone
+  double flow = 0.0;  // 0 … 16 pixels: sigma along the edge, over which lines are evened out
   Tone tone = Tone::kLight;
   Draw draw = Draw::kInk;
+  OutlinePass::Color color = OutlinePass::Color::kInk;  // of draw = kInk
   Rgb16 ink = {0x1c1c, 0x1a1a, 0x1919};
   Rgb16 paper = {0xf4f4, 0xefef, 0xe6e6};
 };

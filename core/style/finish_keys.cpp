@@ -192,10 +192,13 @@ std::vector<FinishKey> ToonKeys() {
 
 std::vector<FinishKey> SmoothKeys() {
   using P = SmoothPass;
-  return {PassNumber("radius", &P::radius, 0.5, 32.0, "of the filter, sigma in pixels"),
-          PassNumber("range", &P::range, 0.001, 1.0, "difference of colours that counts half, in Oklab"),
-          PassWhole("passes", &P::passes, 1, 8, "times it is applied"),
-          PassFlag("borders", &P::borders, "objects are not mixed")};
+  return {
+      PassNumber("radius", &P::radius, 0.5, 32.0, "of the filter, pixels: sigma; of kuwahara and guided the reach"),
+      PassNumber("range", &P::range, 0.001, 1.0, "difference of colours that counts half, in Oklab; not of kuwahara"),
+      PassWhole("passes", &P::passes, 1, 8, "times it is applied"),
+      PassFlag("borders", &P::borders, "objects are not mixed; wavelets also stop at normals and depths"),
+      PassChoice("filter", &P::filter, {"bilateral", "kuwahara", "guided", "wavelets"},
+                 "bilateral; kuwahara: patches like brush marks; guided: fast at any radius; or wavelets")};
 }
 
 std::vector<FinishKey> EdgesKeys() {
@@ -205,10 +208,13 @@ std::vector<FinishKey> EdgesKeys() {
           PassNumber("threshold", &P::threshold, 0.0, 1.0, "tone below which ink begins"),
           PassNumber("slope", &P::slope, 0.1, 100.0, "how fast it gets dense below that"),
           PassNumber("fill", &P::fill, 0.0, 1.0, "1 fills what is dark with ink, 0 draws lines alone"),
+          PassNumber("flow", &P::flow, 0.0, 16.0, "lines are evened out along the edge: sigma, pixels"),
           PassChoice("tone", &P::tone, {"paint", "light", "albedo"},
                      "what is looked at: the paint, the light or base colours"),
           PassChoice("draw", &P::draw, {"ink", "paint"},
                      "ink over the paint, or the paint itself on paper where lines are"),
+          PassChoice("color", &P::color, {"ink", "paint", "complement"},
+                     "ink, or paint: the paint below it, darker; or complement: its opposite hue"),
           PassColor("ink", &P::ink, "the colour of ink"),
           PassColor("paper", &P::paper, "behind draw = paint")};
 }

@@ -10,9 +10,7 @@ namespace scumble::internal {
 
 // `strength` and `only` as FinishPass and FinishStep have them. The frame's guides must hold the pass's layers.
 //
-// A bilateral filter (Tomasi, Manduchi 1998) of Oklab colours, by rows and then by columns (Pham, van Vliet 2005). The
-// weight of a colour at distance d is (1 - d² / c²)², and 0 from c on, Tukey's biweight; of a place it is a Gaussian up
-// to two sigma. O(pixels · radius · passes).
+// The pass's filter of Oklab colours (finish/area/smooth_filters.h), several times.
 void Smooth(const SmoothPass& pass, double strength, std::span<const std::uint8_t> only, const FinishFrame& frame,
             Picture& picture);
 
@@ -20,7 +18,8 @@ void Smooth(const SmoothPass& pass, double strength, std::span<const std::uint8_
 // compendium", 2012, section 2.5): U = (1 + p) G(σ) - p G(1.6 σ) of a tone of 0 … 1; ink is 0 where U reaches the
 // threshold, and -tanh(slope · (U - threshold)) below. σ is width / 2.055: so wide is the dark side of a step, at half
 // its depth. With `fill` f below 1 the first term becomes f G(σ) + 1 - f, which keeps lines and fills less.
-// O(pixels · width).
+// With `flow` the difference is taken across edges and evened out along them (finish/area/edges_flow.h).
+// O(pixels · (width + flow)).
 void DrawEdges(const EdgesPass& pass, double strength, std::span<const std::uint8_t> only, const FinishFrame& frame,
                Picture& picture);
 

@@ -268,6 +268,28 @@ void AddPicture(const PictureWork& work, const PictureRequest& options, MemoryNe
   need.TakeTransient("picture file", encoded * pixels * larger);
 }
 
+namespace {
+
+constexpr Bytes kLab = 3 * kFloat;
+
+// Bytes of a pixel: the colours before, and with keys between objects, and what the filter needs besides.
+Bytes OfSmooth(const SmoothPass& pass) {
+  constexpr Bytes kPlanes = 2 * kLab + kFloat;
+  switch (pass.filter) {
+    case SmoothPass::Filter::kBilateral:
+      return kPlanes + kLab;
+    case SmoothPass::Filter::kKuwahara:
+      return kPlanes + 3 * kLab;  // the tensor, plain and blurred, and the directions
+    case SmoothPass::Filter::kGuided:
+      return kPlanes + 4 * 2 + 9 * kFloat;  // windows, two sets of four channels
+    case SmoothPass::Filter::kWavelets:
+      return kPlanes + kLab + 4 * kFloat;  // normals and depth
+  }
+  return 0;
+}
+
+}  // namespace
+
 void AddFinish(std::span<const FinishPass> passes, bool has_map, const Size& size, MemoryNeed& need) {
   // Borders by pixel, the share that strokes cover, and lines: a tenth of the pixels have a border, and each is a point
   // of 40 bytes and a piece of a stroke of 28, in lists that grow.
@@ -280,9 +302,11 @@ void AddFinish(std::span<const FinishPass> passes, bool has_map, const Size& siz
     masks += (has_map ? 1 : 0) + (has_names ? 2 : 0) + (pass.mask.empty() ? 0 : 2);
     if (pass.mask.picture) need.Take("mask", kPaint * pass.mask.picture->rgba.size() / 4);
     if (!pass.mask.empty()) mixes = std::max(mixes, pass.mask.picture ? 2 * kPaint : Bytes(kPaint));
-    if (std::holds_alternative<SmoothPass>(pass.effect)) transient = std::max(transient, 3 * kLab + 1);
+    if (const auto* smooth = std::get_if<SmoothPass>(&pass.effect)) transient = std::max(transient, OfSmooth(*smooth));
     if (std::holds_alternative<HatchPass>(pass.effect)) transient = std::max(transient, kFloat);
-    if (std::holds_alternative<EdgesPass>(pass.effect)) transient = std::max(transient, 2 * kLab + 5 * kFloat);
+    // The tone and the response; with flow the tone and the tensor, plain and blurred, and the directions.
+    if (const auto* edges = std::get_if<EdgesPass>(&pass.effect))
+      transient = std::max(transient, edges->flow > 0.0 ? kFloat + 3 * kLab : 2 * kFloat);
     // Two copies, sigmas, and a level of the picture's size.
     const auto* depth = std::get_if<DepthPass>(&pass.effect);
     if (depth && depth->blur > 0.0) transient = std::max(transient, 2 * kLab + kFloat + 5 * kFloat);

@@ -1,0 +1,23 @@
+// What others take for the work of `smooth` and `edges`, on the same number of threads: OpenCV's filters where it is
+// there, and a plain loop.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace scumble {
+
+struct Rival {
+  std::string name;
+  std::function<void()> run;
+};
+
+// Of a picture of that size. Empty without OpenCV.
+std::vector<Rival> OpenCvRivals(int width, int height, const std::vector<float>& rgb);
+
+// An anisotropic Kuwahara filter of radius 6 without borders, pixel by pixel and tap by tap, in floats, without the
+// structure tensor: every ellipse is a circle.
+Rival PlainKuwahara(int width, int height, const std::vector<float>& rgb);
+
+}  // namespace scumble

@@ -1,0 +1,22 @@
+// The difference of Gaussians across edges, evened out along them.
+#pragma once
+
+#include <vector>
+
+namespace scumble::internal {
+
+// The flow-based difference of Gaussians (Kyprianidis, Döllner 2008; the steps along the edge of Kang, Lee, Chui 2007):
+// narrow · G(sigma) + wide · G(1.6 sigma) + level of the tone along its gradient, then a Gaussian of `along` pixels
+// over the curve that follows the edge both ways, in steps of a pixel. Directions are those of the tone's structure
+// tensor under a Gaussian of `tensor_sigma`. Lengths are in pixels and above 0. Where no value within reach is below
+// `enough` the second step is left out: the result is not below it either. O(pixels · (sigma + along)).
+struct FlowLengths {
+  double sigma, along, tensor_sigma;
+};
+struct FlowFactors {
+  float narrow, wide, level, enough;
+};
+std::vector<float> FlowResponse(const std::vector<float>& tone, int width, int height, const FlowLengths& lengths,
+                                const FlowFactors& factors);
+
+}  // namespace scumble::internal

@@ -1,0 +1,135 @@
+#include "finish/area/gaussian_rows.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/image/exact_math.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "finish/area/gaussian_rows.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "core/filter/vector_lane-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace scumble::internal {
+namespace HWY_NAMESPACE {
+
+void SumSymmetricHere(std::span<const float> weights, const float* const* rows, std::size_t count, float* out) {
+  const Floats d;
+  const std::size_t reach = weights.size() - 1, lanes = hn::Lanes(d);
+  std::size_t i = 0;
+  for (; i + lanes <= count; i += lanes) {
+    auto sum = hn::Mul(hn::Set(d, weights[0]), hn::LoadU(d, rows[reach] + i));
+    for (std::size_t k = 1; k <= reach; ++k) {
+      const auto both = hn::Add(hn::LoadU(d, rows[reach - k] + i), hn::LoadU(d, rows[reach + k] + i));
+      sum = hn::Add(sum, hn::Mul(hn::Set(d, weights[k]), both));
+    }
+    hn::StoreU(sum, d, out + i);
+  }
+  for (; i < count; ++i) {
+    float sum = weights[0] * rows[reach][i];
+    for (std::size_t k = 1; k <= reach; ++k) sum = sum + weights[k] * (rows[reach - k][i] + rows[reach + k][i]);
+    out[i] = sum;
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace scumble::internal
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace scumble::internal {
+namespace {
+
+HWY_EXPORT(SumSymmetricHere);
+
+constexpr int kBand = 32;  // rows that are treated together: their blurred rows stay in the cache
+
+// Blurs rows of a band and calls row(y, blurred) for each, `blurred` by weights in turn.
+template <std::size_t kCount, class Row>
+void BlurBand(const std::vector<float>& plane, int width, int height, int first, int last,
+              const std::array<std::vector<float>, kCount>& weights, const Row& row) {
+  int reach = 0;
+  for (const auto& one : weights) reach = std::max(reach, static_cast<int>(one.size()) - 1);
+  const int top = std::max(0, first - reach), bottom = std::min(height, last + reach);
+  const auto columns = static_cast<std::size_t>(width);
+  std::vector<float> padded(columns + 2 * std::size_t(reach));
+  std::array<std::vector<float>, kCount> half, blurred;
+  for (std::size_t c = 0; c < kCount; ++c)
+    half[c].resize(columns * std::size_t(bottom - top)), blurred[c].resize(columns);
+  std::vector<const float*> taps;
+  for (int y = top; y < bottom; ++y) {
+    const float* const from = plane.data() + std::size_t(y) * columns;
+    std::fill_n(padded.begin(), reach, from[0]);
+    std::copy_n(from, width, padded.begin() + reach);
+    std::fill_n(padded.begin() + reach + width, reach, from[width - 1]);
+    for (std::size_t c = 0; c < kCount; ++c) {
+      const int own = static_cast<int>(weights[c].size()) - 1;
+      taps.clear();
+      for (int k = -own; k <= own; ++k) taps.push_back(padded.data() + reach + k);
+      SumSymmetric(weights[c], taps.data(), columns, half[c].data() + std::size_t(y - top) * columns);
+    }
+  }
+  for (int y = first; y < last; ++y) {
+    for (std::size_t c = 0; c < kCount; ++c) {
+      const int own = static_cast<int>(weights[c].size()) - 1;
+      taps.clear();
+      for (int k = -own; k <= own; ++k)
+        taps.push_back(half[c].data() + std::size_t(std::clamp(y + k, 0, height - 1) - top) * columns);
+      SumSymmetric(weights[c], taps.data(), columns, blurred[c].data());
+    }
+    row(y, blurred);
+  }
+}
+
+}  // namespace
+
+void SumSymmetric(std::span<const float> weights, const float* const* rows, std::size_t count, float* out) {
+  HWY_DYNAMIC_DISPATCH(SumSymmetricHere)(weights, rows, count, out);
+}
+
+std::vector<float> GaussianWeights(double sigma) {
+  const int reach = static_cast<int>(std::ceil(3.0 * sigma));
+  std::vector<double> exact;
+  double sum = 0.0;
+  for (int k = 0; k <= reach; ++k) {
+    exact.push_back(Exp2(-0.5 * k * k / (sigma * sigma) * 1.4426950408889634));
+    sum += k == 0 ? exact.back() : 2.0 * exact.back();
+  }
+  std::vector<float> weights;
+  for (const double weight : exact) weights.push_back(static_cast<float>(weight / sum));
+  return weights;
+}
+
+std::vector<float> Blurred(const std::vector<float>& plane, int width, int height, double sigma) {
+  const std::array<std::vector<float>, 1> weights = {GaussianWeights(sigma)};
+  std::vector<float> out(plane.size());
+  tbb::parallel_for(tbb::blocked_range<int>(0, height, kBand), [&](const auto& rows) {
+    BlurBand(plane, width, height, rows.begin(), rows.end(), weights, [&](int y, const auto& blurred) {
+      std::copy_n(blurred[0].data(), width, out.begin() + std::ptrdiff_t(y) * width);
+    });
+  });
+  return out;
+}
+
+std::vector<float> GaussianPair(const std::vector<float>& plane, int width, int height, double sigma, float narrow,
+                                float wide) {
+  const std::array<std::vector<float>, 2> weights = {GaussianWeights(sigma), GaussianWeights(1.6 * sigma)};
+  std::vector<float> out(plane.size());
+  tbb::parallel_for(tbb::blocked_range<int>(0, height, kBand), [&](const auto& rows) {
+    BlurBand(plane, width, height, rows.begin(), rows.end(), weights, [&](int y, const auto& blurred) {
+      float* const to = out.data() + std::size_t(y) * std::size_t(width);
+      for (int x = 0; x < width; ++x) to[x] = narrow * blurred[0][std::size_t(x)] + wide * blurred[1][std::size_t(x)];
+    });
+  });
+  return out;
+}
+
+}  // namespace scumble::internal
+#endif

@@ -1,0 +1,23 @@
+// Gaussians of planes for filters: by several threads, in floats, with the same bytes on any instruction set.
+#pragma once
+
+#include <span>
+#include <vector>
+
+namespace scumble::internal {
+
+// At 0, 1, … up to three sigma; with the other side they sum to 1.
+std::vector<float> GaussianWeights(double sigma);
+
+// out[i] = weights[0] rows[r][i] + Σ weights[k] (rows[r - k][i] + rows[r + k][i]), r = weights.size() - 1, for `count`
+// values. `rows` holds 2 r + 1 of them.
+void SumSymmetric(std::span<const float> weights, const float* const* rows, std::size_t count, float* out);
+
+// Rows, then columns. Beyond its edges the plane goes on with its last values. `sigma` is above 0. O(pixels · sigma).
+std::vector<float> Blurred(const std::vector<float>& plane, int width, int height, double sigma);
+
+// narrow · G(sigma) + wide · G(1.6 sigma), the difference of Gaussians of a plane if the factors are so.
+std::vector<float> GaussianPair(const std::vector<float>& plane, int width, int height, double sigma, float narrow,
+                                float wide);
+
+}  // namespace scumble::internal

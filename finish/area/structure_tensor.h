@@ -1,0 +1,22 @@
+// The directions along which a picture changes least.
+#pragma once
+
+#include <vector>
+
+namespace scumble::internal {
+
+// The structure tensor Σ ∇c ∇cᵀ of a picture's channels, by pixel: products of derivatives.
+struct StructureTensor {
+  std::vector<float> xx, xy, yy;
+};
+
+// By pixel: the direction of the smaller eigenvalue, of length 1, in pixels to the right and down, with a sign of no
+// meaning; and (l1 - l2) / (l1 + l2) of the eigenvalues, 0 where all directions are alike.
+struct EdgeFlow {
+  std::vector<float> x, y, anisotropy;
+};
+
+// Of the tensor under a Gaussian of `sigma` pixels.
+EdgeFlow FlowOf(const StructureTensor& tensor, int width, int height, double sigma);
+
+}  // namespace scumble::internal
