@@ -29,9 +29,9 @@ void ForEachEdgesBlock(std::size_t pixels, const Visit& visit) {
   });
 }
 
-std::vector<float> ToneOf(const EdgesPass& pass, const FinishFrame& frame, const Picture& picture) {
+FloatPlane ToneOf(const EdgesPass& pass, const FinishFrame& frame, const Picture& picture) {
   const std::size_t pixels = picture.rgba.size() / 4;
-  std::vector<float> tone(pixels);
+  FloatPlane tone(pixels);
   if (pass.tone == EdgesPass::Tone::kPaint) {
     ForEachEdgesBlock(pixels, [&](std::size_t first, std::size_t count) {
       OklabBlock block;
@@ -59,15 +59,14 @@ std::vector<float> ToneOf(const EdgesPass& pass, const FinishFrame& frame, const
 }
 
 // What ink is a function of, by pixel.
-std::vector<float> ResponseOf(const EdgesPass& pass, const FinishFrame& frame, const std::vector<float>& tone,
-                              int width, int height) {
+FloatPlane ResponseOf(const EdgesPass& pass, const FinishFrame& frame, const FloatPlane& tone, int width, int height) {
   const double sigma = pass.width * frame.scale / kWidthOfSigma;
   const auto sharpness = static_cast<float>(pass.sharpness), fill = static_cast<float>(pass.fill);
   if (pass.flow > 0.0) {
     return FlowResponse(tone, width, height, {sigma, pass.flow * frame.scale, kTensorSigma * frame.scale},
                         {fill + sharpness, -sharpness, 1.0f - fill, static_cast<float>(pass.threshold)});
   }
-  std::vector<float> response = GaussianPair(tone, width, height, sigma, fill + sharpness, -sharpness);
+  FloatPlane response = GaussianPair(tone, width, height, sigma, fill + sharpness, -sharpness);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, response.size(), 1 << 15), [&](const auto& part) {
     for (std::size_t i = part.begin(); i != part.end(); ++i) response[i] += 1.0f - fill;
   });
@@ -95,8 +94,8 @@ bool SharesOf(const EdgesPass& pass, const float* response, std::size_t count, f
 
 void DrawEdges(const EdgesPass& pass, double strength, std::span<const std::uint8_t> only, const FinishFrame& frame,
                Picture& picture) {
-  const std::vector<float> tone = ToneOf(pass, frame, picture);
-  const std::vector<float> response = ResponseOf(pass, frame, tone, picture.width, picture.height);
+  const FloatPlane tone = ToneOf(pass, frame, picture);
+  const FloatPlane response = ResponseOf(pass, frame, tone, picture.width, picture.height);
   const bool on_paper = pass.draw == EdgesPass::Draw::kPaint;
   const LabColor fixed = ToOklab(on_paper ? pass.paper : pass.ink);
   const bool of_paint = !on_paper && pass.color != OutlinePass::Color::kInk;

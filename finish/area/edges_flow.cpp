@@ -16,7 +16,7 @@ namespace {
 
 // A plane between its pixels, by bilinear interpolation; beyond its edges it goes on with its last values.
 struct FlowPlane {
-  const std::vector<float>& values;
+  const FloatPlane& values;
   int width, height;
 
   float At(float x, float y) const {
@@ -30,7 +30,7 @@ struct FlowPlane {
   }
 };
 
-EdgeFlow FlowOfTone(const std::vector<float>& tone, int width, int height, double sigma) {
+EdgeFlow FlowOfTone(const FloatPlane& tone, int width, int height, double sigma) {
   StructureTensor tensor;
   for (auto* plane : {&tensor.xx, &tensor.xy, &tensor.yy}) plane->resize(tone.size());
   tbb::parallel_for(tbb::blocked_range<int>(0, height, 16), [&](const auto& rows) {
@@ -84,8 +84,8 @@ void ForEachSquare(int width, int height, const Visit& visit) {
 
 }  // namespace
 
-std::vector<float> FlowResponse(const std::vector<float>& tone, int width, int height, const FlowLengths& lengths,
-                                const FlowFactors& factors) {
+FloatPlane FlowResponse(const FloatPlane& tone, int width, int height, const FlowLengths& lengths,
+                        const FlowFactors& factors) {
   const EdgeFlow flow = FlowOfTone(tone, width, height, lengths.tensor_sigma);
   const std::vector<float> narrow = GaussianWeights(lengths.sigma), wide = GaussianWeights(1.6 * lengths.sigma),
                            along = GaussianWeights(lengths.along);
@@ -93,7 +93,7 @@ std::vector<float> FlowResponse(const std::vector<float>& tone, int width, int h
   for (std::size_t k = 0; k < wide.size(); ++k)
     weights[k] = factors.wide * wide[k] + (k < narrow.size() ? factors.narrow * narrow[k] : 0.0f);
   const FlowPlane of_tone{tone, width, height};
-  std::vector<float> across(tone.size()), out(tone.size());
+  FloatPlane across(tone.size()), out(tone.size());
   const auto at = [&](int x, int y) { return std::size_t(y) * std::size_t(width) + std::size_t(x); };
   ForEachSquare(width, height, [&](int x0, int x1, int y0, int y1) {
     for (int y = y0; y < y1; ++y) {

@@ -1,7 +1,7 @@
 // The difference of Gaussians across edges, evened out along them.
 #pragma once
 
-#include <vector>
+#include "finish/area/float_plane.h"
 
 namespace scumble::internal {
 
@@ -16,7 +16,7 @@ struct FlowLengths {
 struct FlowFactors {
   float narrow, wide, level, enough;
 };
-std::vector<float> FlowResponse(const std::vector<float>& tone, int width, int height, const FlowLengths& lengths,
-                                const FlowFactors& factors);
+FloatPlane FlowResponse(const FloatPlane& tone, int width, int height, const FlowLengths& lengths,
+                        const FlowFactors& factors);
 
 }  // namespace scumble::internal

@@ -53,7 +53,7 @@ constexpr int kBand = 32;  // rows that are treated together: their blurred rows
 
 // Blurs rows of a band and calls row(y, blurred) for each, `blurred` by weights in turn.
 template <std::size_t kCount, class Row>
-void BlurBand(const std::vector<float>& plane, int width, int height, int first, int last,
+void BlurBand(const FloatPlane& plane, int width, int height, int first, int last,
               const std::array<std::vector<float>, kCount>& weights, const Row& row) {
   int reach = 0;
   for (const auto& one : weights) reach = std::max(reach, static_cast<int>(one.size()) - 1);
@@ -107,9 +107,9 @@ std::vector<float> GaussianWeights(double sigma) {
   return weights;
 }
 
-std::vector<float> Blurred(const std::vector<float>& plane, int width, int height, double sigma) {
+FloatPlane Blurred(const FloatPlane& plane, int width, int height, double sigma) {
   const std::array<std::vector<float>, 1> weights = {GaussianWeights(sigma)};
-  std::vector<float> out(plane.size());
+  FloatPlane out(plane.size());
   tbb::parallel_for(tbb::blocked_range<int>(0, height, kBand), [&](const auto& rows) {
     BlurBand(plane, width, height, rows.begin(), rows.end(), weights, [&](int y, const auto& blurred) {
       std::copy_n(blurred[0].data(), width, out.begin() + std::ptrdiff_t(y) * width);
@@ -118,10 +118,9 @@ std::vector<float> Blurred(const std::vector<float>& plane, int width, int heigh
   return out;
 }
 
-std::vector<float> GaussianPair(const std::vector<float>& plane, int width, int height, double sigma, float narrow,
-                                float wide) {
+FloatPlane GaussianPair(const FloatPlane& plane, int width, int height, double sigma, float narrow, float wide) {
   const std::array<std::vector<float>, 2> weights = {GaussianWeights(sigma), GaussianWeights(1.6 * sigma)};
-  std::vector<float> out(plane.size());
+  FloatPlane out(plane.size());
   tbb::parallel_for(tbb::blocked_range<int>(0, height, kBand), [&](const auto& rows) {
     BlurBand(plane, width, height, rows.begin(), rows.end(), weights, [&](int y, const auto& blurred) {
       float* const to = out.data() + std::size_t(y) * std::size_t(width);

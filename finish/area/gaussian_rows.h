@@ -4,6 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "finish/area/float_plane.h"
+
 namespace scumble::internal {
 
 // At 0, 1, … up to three sigma; with the other side they sum to 1.
@@ -14,10 +16,9 @@ std::vector<float> GaussianWeights(double sigma);
 void SumSymmetric(std::span<const float> weights, const float* const* rows, std::size_t count, float* out);
 
 // Rows, then columns. Beyond its edges the plane goes on with its last values. `sigma` is above 0. O(pixels · sigma).
-std::vector<float> Blurred(const std::vector<float>& plane, int width, int height, double sigma);
+FloatPlane Blurred(const FloatPlane& plane, int width, int height, double sigma);
 
 // narrow · G(sigma) + wide · G(1.6 sigma), the difference of Gaussians of a plane if the factors are so.
-std::vector<float> GaussianPair(const std::vector<float>& plane, int width, int height, double sigma, float narrow,
-                                float wide);
+FloatPlane GaussianPair(const FloatPlane& plane, int width, int height, double sigma, float narrow, float wide);
 
 }  // namespace scumble::internal

@@ -1,28 +1,37 @@
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <vector>
+#include <limits>
 
+#include "core/filter/oklab_rows.h"
 #include "finish/area/area_effects.h"
-#include "finish/area/lab_planes.h"
 #include "finish/area/smooth_filters.h"
 
 namespace scumble::internal {
-
-SmoothPlanes::SmoothPlanes(std::size_t columns, std::size_t rows, std::size_t around)
-    : width(columns), height(rows), pad(around) {
-  constexpr std::size_t kVector = 16;
-  stride = (pad + width + kVector + pad + kVector - 1) / kVector * kVector;
-  const std::size_t places = stride * (height + 2 * pad) + kVector;
-  lightness.resize(places), a.resize(places), b.resize(places);
-  key.resize(places, std::numeric_limits<float>::quiet_NaN());
-}
-
-float BiweightPerSquare(double half) {
-  return static_cast<float>(0.2928932188134524 / (half * half));  // a half at d = 0.5412 c
-}
-
 namespace {
+
+constexpr std::size_t kSpare = 16;  // places beyond a row that a vector may reach
+
+// Calls row(y), from several threads.
+template <class Row>
+void ForEachSmoothRow(std::size_t height, const Row& row) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, height, 16), [&](const auto& part) {
+    for (std::size_t y = part.begin(); y != part.end(); ++y) row(y);
+  });
+}
+
+// The size of a plane laid out like these, filled by several threads.
+FloatPlane FilledPlane(const SmoothPlanes& planes, float value) {
+  const std::size_t rows = planes.height + 2 * planes.pad;
+  FloatPlane plane(planes.stride * rows + kSpare);
+  ForEachSmoothRow(rows, [&](std::size_t y) {
+    std::fill_n(plane.data() + y * planes.stride, planes.stride + (y + 1 == rows ? kSpare : 0), value);
+  });
+  return plane;
+}
 
 std::size_t SmoothPad(SmoothPass::Filter filter, double sigma, std::size_t longer_side) {
   switch (filter) {
@@ -38,44 +47,96 @@ std::size_t SmoothPad(SmoothPass::Filter filter, double sigma, std::size_t longe
   return 0;
 }
 
-SmoothPlanes SmoothPlanesOf(const LabPlanes& given, const Picture& picture, std::span<const float> object,
-                            std::size_t pad) {
-  const auto width = static_cast<std::size_t>(picture.width), height = static_cast<std::size_t>(picture.height);
-  SmoothPlanes planes(width, height, pad);
-  for (std::size_t y = 0; y < height; ++y) {
-    const std::size_t i = y * width;
-    const auto at = static_cast<std::ptrdiff_t>(planes.At(0, y));
-    std::copy_n(given.lightness.data() + i, width, planes.lightness.begin() + at);
-    std::copy_n(given.a.data() + i, width, planes.a.begin() + at);
-    std::copy_n(given.b.data() + i, width, planes.b.begin() + at);
-    for (std::size_t x = 0; x < width; ++x) {
-      if (picture.rgba[4 * (i + x) + 3] != 0) planes.key[std::size_t(at) + x] = object.empty() ? 0.0f : object[i + x];
-    }
-  }
+// Calls visit(first, place, count) for the blocks of a row: the picture's pixel, the planes' place, and how many.
+template <class Visit>
+void ForEachBlockOf(const SmoothPlanes& planes, std::size_t y, const Visit& visit) {
+  for (std::size_t x = 0; x < planes.width; x += kOklabBlock)
+    visit(y * planes.width + x, planes.At(x, y), std::min(kOklabBlock, planes.width - x));
+}
+
+SmoothPlanes SmoothPlanesOf(const Picture& picture, std::span<const float> object, std::size_t pad) {
+  SmoothPlanes planes(static_cast<std::size_t>(picture.width), static_cast<std::size_t>(picture.height), pad);
+  ForEachSmoothRow(planes.height, [&](std::size_t y) {
+    ForEachBlockOf(planes, y, [&](std::size_t first, std::size_t place, std::size_t count) {
+      OklabBlock block;
+      OklabFromTexels(picture.rgba.data() + 4 * first, count, block);
+      std::copy_n(block.lightness.begin(), count, planes.lightness.data() + place);
+      std::copy_n(block.a.begin(), count, planes.a.data() + place);
+      std::copy_n(block.b.begin(), count, planes.b.data() + place);
+      for (std::size_t i = 0; i < count; ++i) {
+        if (picture.rgba[4 * (first + i) + 3] != 0) planes.key[place + i] = object.empty() ? 0.0f : object[first + i];
+      }
+    });
+  });
   return planes;
 }
 
 // A plane of the guides, laid out as the planes. What is not finite, the depth of nothing, becomes 0.
-std::vector<float> LaidOut(std::span<const float> plane, const SmoothPlanes& planes) {
-  std::vector<float> out(planes.size());
-  for (std::size_t y = 0; y < planes.height; ++y) {
+FloatPlane LaidOut(std::span<const float> plane, const SmoothPlanes& planes) {
+  FloatPlane out = FilledPlane(planes, 0.0f);
+  ForEachSmoothRow(planes.height, [&](std::size_t y) {
     for (std::size_t x = 0; x < planes.width; ++x) {
       const float value = plane[y * planes.width + x];
       out[planes.At(x, y)] = std::isfinite(value) ? value : 0.0f;
     }
-  }
+  });
   return out;
+}
+
+// Pixels of alpha 0, those outside `only`, and those whose colour did not change keep their bits.
+void PutSmoothed(const SmoothPlanes& planes, double strength, std::span<const std::uint8_t> only, Picture& picture) {
+  const auto share = static_cast<float>(strength);
+  ForEachSmoothRow(planes.height, [&](std::size_t y) {
+    ForEachBlockOf(planes, y, [&](std::size_t first, std::size_t place, std::size_t count) {
+      std::uint16_t* const texels = picture.rgba.data() + 4 * first;
+      OklabBlock given, block;
+      OklabFromTexels(texels, count, given);
+      const auto mix = [&](float from, float to) { return share >= 1.0f ? to : from + (to - from) * share; };
+      for (std::size_t i = 0; i < count; ++i) {
+        block.lightness[i] = mix(given.lightness[i], planes.lightness[place + i]);
+        block.a[i] = mix(given.a[i], planes.a[place + i]);
+        block.b[i] = mix(given.b[i], planes.b[place + i]);
+      }
+      std::uint16_t made[4 * kOklabBlock];
+      std::copy_n(texels, 4 * count, made);
+      TexelsFromOklab(block, count, made);
+      for (std::size_t i = 0; i < count; ++i) {
+        const bool same =
+            block.lightness[i] == given.lightness[i] && block.a[i] == given.a[i] && block.b[i] == given.b[i];
+        if (same || texels[4 * i + 3] == 0 || (!only.empty() && !only[first + i])) continue;
+        std::copy_n(made + 4 * i, 3, texels + 4 * i);
+      }
+    });
+  });
 }
 
 }  // namespace
 
+SmoothPlanes::SmoothPlanes(std::size_t columns, std::size_t rows, std::size_t around)
+    : width(columns), height(rows), pad(around) {
+  stride = (width + 2 * pad + kSpare + kSpare - 1) / kSpare * kSpare;
+  for (FloatPlane* const plane : {&lightness, &a, &b}) *plane = FilledPlane(*this, 0.0f);
+  key = FilledPlane(*this, std::numeric_limits<float>::quiet_NaN());
+}
+
+void SmoothPlanes::MakeNext() {
+  for (FloatPlane* const plane : {&next_lightness, &next_a, &next_b}) {
+    if (plane->empty()) *plane = FilledPlane(*this, 0.0f);
+  }
+}
+
+void SmoothPlanes::TakeNext() { lightness.swap(next_lightness), a.swap(next_a), b.swap(next_b); }
+
+float BiweightPerSquare(double half) {
+  return static_cast<float>(0.2928932188134524 / (half * half));  // a half at d = 0.5412 c
+}
+
 void Smooth(const SmoothPass& pass, double strength, std::span<const std::uint8_t> only, const FinishFrame& frame,
             Picture& picture) {
   const double sigma = pass.radius * frame.scale;
-  const LabPlanes given = PlanesOf(picture);
   const auto longer_side = static_cast<std::size_t>(std::max(picture.width, picture.height));
   SmoothPlanes planes =
-      SmoothPlanesOf(given, picture, pass.borders ? frame.guides->Plane(Layer::kObject) : std::span<const float>(),
+      SmoothPlanesOf(picture, pass.borders ? frame.guides->Plane(Layer::kObject) : std::span<const float>(),
                      SmoothPad(pass.filter, sigma, longer_side));
   WaveletStops stops;
   if (pass.filter == SmoothPass::Filter::kWavelets && pass.borders) {
@@ -99,14 +160,7 @@ void Smooth(const SmoothPass& pass, double strength, std::span<const std::uint8_
         break;
     }
   }
-  LabPlanes made = given;
-  for (std::size_t y = 0; y < planes.height; ++y) {
-    const std::size_t i = y * planes.width, at = planes.At(0, y);
-    std::copy_n(planes.lightness.data() + at, planes.width, made.lightness.data() + i);
-    std::copy_n(planes.a.data() + at, planes.width, made.a.data() + i);
-    std::copy_n(planes.b.data() + at, planes.width, made.b.data() + i);
-  }
-  PutPlanes(made, given, strength, only, picture);
+  PutSmoothed(planes, strength, only, picture);
 }
 
 }  // namespace scumble::internal

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 #include <vector>
 
 #include "core/image/exact_math.h"
@@ -85,15 +84,15 @@ void BilateralFilter(double sigma, double range, SmoothPlanes& planes) {
   std::vector<float> weights;
   for (std::size_t k = 0; k <= BilateralPad(sigma, std::max(planes.width, planes.height)); ++k)
     weights.push_back(static_cast<float>(Exp2(-0.5 * double(k) * double(k) / (sigma * sigma) * 1.4426950408889634)));
-  std::vector<float> l(planes.size()), a(planes.size()), b(planes.size());
+  planes.MakeNext();
   for (const bool rows : {true, false}) {
     const BilateralRun run{planes.lightness.data(),
                            planes.a.data(),
                            planes.b.data(),
                            planes.key.data(),
-                           l.data(),
-                           a.data(),
-                           b.data(),
+                           planes.next_lightness.data(),
+                           planes.next_a.data(),
+                           planes.next_b.data(),
                            rows ? 1 : std::ptrdiff_t(planes.stride),
                            weights,
                            BiweightPerSquare(range)};
@@ -109,7 +108,7 @@ void BilateralFilter(double sigma, double range, SmoothPlanes& planes) {
       }
     });
     // Around the picture stays 0 but for the rest of the last vectors, which nothing looks at.
-    std::swap(planes.lightness, l), std::swap(planes.a, a), std::swap(planes.b, b);
+    planes.TakeNext();
   }
 }
 

@@ -3,11 +3,8 @@
 #pragma once
 
 #include <cstddef>
-#include <limits>
-#include <span>
-#include <vector>
 
-#include "finish/finish.h"
+#include "finish/area/float_plane.h"
 
 namespace scumble::internal {
 
@@ -18,10 +15,15 @@ struct SmoothPlanes {
   std::size_t At(std::size_t x, std::size_t y) const { return (y + pad) * stride + pad + x; }
   std::size_t size() const { return key.size(); }
 
+  // Makes the next planes, unless they are there: of the same layout, 0 around.
+  void MakeNext();
+  void TakeNext();  // swaps both
+
   std::size_t width, height, pad, stride;
-  std::vector<float> lightness, a, b;  // Oklab; 0 around
+  FloatPlane lightness, a, b;  // Oklab; 0 around
+  FloatPlane next_lightness, next_a, next_b;
   // Places are mixed where their keys are equal. NaN, also around, is equal to nothing: such a place is not looked at.
-  std::vector<float> key;
+  FloatPlane key;
 };
 
 // The places around that each filter needs. `sigma` is the pass's radius in pixels of the picture.
@@ -47,7 +49,7 @@ void GuidedFilter(double sigma, double range, SmoothPlanes& planes);
 
 // What the wavelets stop at besides colours and keys, laid out as the planes; empty: nothing.
 struct WaveletStops {
-  std::vector<float> normal_x, normal_y, normal_z, depth;
+  FloatPlane normal_x, normal_y, normal_z, depth;
 };
 
 // Edge-avoiding à-trous wavelets without their details (Dammertz, Sewtz, Hanika, Lensch 2010): 5 × 5 taps at distances

@@ -13,53 +13,67 @@ namespace scumble::internal {
 namespace {
 
 using FourFloats = std::array<float, 4>;
+using FourPlane = std::vector<FourFloats, PlaneAllocator<FourFloats>>;
 using FourSums = std::array<double, 4>;
 
 // How far each pixel's window goes, in its row and in its column.
 struct GuidedWindows {
   std::size_t width, height;
-  std::vector<std::uint16_t> left, right, up, down;
-  std::vector<float> per_count;  // 1 / pixels of the window
+  std::vector<std::uint16_t, PlaneAllocator<std::uint16_t>> left, right, up, down;
+  FloatPlane per_count;  // 1 / pixels of the window
 };
 
-// Counts pixels with equal keys from the first of a line on to its last, `most` at most; `step` apart.
-void CountAlong(const float* key, std::size_t step, std::size_t count, std::uint16_t most, std::uint16_t* before,
-                std::uint16_t* after, std::size_t out_step) {
-  for (std::size_t i = 0; i < count; ++i) {
-    const bool goes_on = i > 0 && key[i * step] == key[(i - 1) * step];
-    before[i * out_step] = goes_on ? std::min<std::uint16_t>(most, before[(i - 1) * out_step] + 1) : 0;
-  }
-  for (std::size_t i = count; i-- > 0;) {
-    const bool goes_on = i + 1 < count && key[i * step] == key[(i + 1) * step];
-    after[i * out_step] = goes_on ? std::min<std::uint16_t>(most, after[(i + 1) * out_step] + 1) : 0;
-  }
+// One more than beside, up to `most`, where the key goes on.
+std::uint16_t CountOn(float key, float beside, std::uint16_t count, std::uint16_t most) {
+  return key == beside ? std::min(most, static_cast<std::uint16_t>(count + 1)) : std::uint16_t{0};
 }
 
-constexpr std::size_t kColumns = 4;  // side by side, so that whole cache lines are read
+constexpr std::size_t kStrip = 32;  // columns that are counted side by side
 
-GuidedWindows WindowsOf(const SmoothPlanes& planes, std::uint16_t radius) {
+GuidedWindows WindowsOf(const SmoothPlanes& planes, std::uint16_t most) {
   const std::size_t width = planes.width, height = planes.height, pixels = width * height;
   GuidedWindows windows{width, height, {}, {}, {}, {}, {}};
   for (auto* side : {&windows.left, &windows.right, &windows.up, &windows.down}) side->resize(pixels);
   windows.per_count.resize(pixels);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, height, 16), [&](const auto& part) {
-    for (std::size_t y = part.begin(); y != part.end(); ++y)
-      CountAlong(planes.key.data() + planes.At(0, y), 1, width, radius, windows.left.data() + y * width,
-                 windows.right.data() + y * width, 1);
+    for (std::size_t y = part.begin(); y != part.end(); ++y) {
+      const float* const key = planes.key.data() + planes.At(0, y);
+      std::uint16_t *const left = windows.left.data() + y * width, *const right = windows.right.data() + y * width;
+      left[0] = right[width - 1] = 0;
+      for (std::size_t x = 1; x < width; ++x) left[x] = CountOn(key[x], key[x - 1], left[x - 1], most);
+      for (std::size_t x = width - 1; x-- > 0;) right[x] = CountOn(key[x], key[x + 1], right[x + 1], most);
+    }
   });
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, width, 16), [&](const auto& part) {
-    std::vector<std::uint32_t> sum(height + 1);
-    for (std::size_t x = part.begin(); x != part.end(); ++x) {
-      CountAlong(planes.key.data() + planes.At(x, 0), planes.stride, height, radius, windows.up.data() + x,
-                 windows.down.data() + x, width);
-      for (std::size_t y = 0, i = x; y < height; ++y, i += width)
-        sum[y + 1] = sum[y] + windows.left[i] + windows.right[i] + 1u;
-      for (std::size_t y = 0, i = x; y < height; ++y, i += width)
-        windows.per_count[i] = 1.0f / static_cast<float>(sum[y + windows.down[i] + 1] - sum[y - windows.up[i]]);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, (width + kStrip - 1) / kStrip), [&](const auto& part) {
+    std::vector<std::uint32_t> sum((height + 1) * kStrip);
+    for (std::size_t strip = part.begin(); strip != part.end(); ++strip) {
+      const std::size_t first = strip * kStrip, count = std::min(kStrip, width - first);
+      for (std::size_t y = 0; y < height; ++y) {
+        const std::size_t i = y * width + first, p = planes.At(first, y);
+        for (std::size_t c = 0; c < count; ++c) {
+          windows.up[i + c] =
+              y == 0 ? std::uint16_t{0}
+                     : CountOn(planes.key[p + c], planes.key[p + c - planes.stride], windows.up[i + c - width], most);
+          sum[(y + 1) * kStrip + c] = sum[y * kStrip + c] + windows.left[i + c] + windows.right[i + c] + 1u;
+        }
+      }
+      for (std::size_t y = height; y-- > 0;) {
+        const std::size_t i = y * width + first, p = planes.At(first, y);
+        for (std::size_t c = 0; c < count; ++c) {
+          const std::uint16_t down = y + 1 == height ? std::uint16_t{0}
+                                                     : CountOn(planes.key[p + c], planes.key[p + c + planes.stride],
+                                                               windows.down[i + c + width], most);
+          windows.down[i + c] = down;
+          windows.per_count[i + c] =
+              1.0f / static_cast<float>(sum[(y + down + 1) * kStrip + c] - sum[(y - windows.up[i + c]) * kStrip + c]);
+        }
+      }
     }
   });
   return windows;
 }
+
+constexpr std::size_t kColumns = 4;  // side by side, so that whole cache lines are read
 
 FourFloats Difference(const FourSums& to, const FourSums& from) {
   FourFloats out;
@@ -75,7 +89,7 @@ void Accumulate(const FourSums& before, const FourFloats& value, FourSums& sum) 
 // below a float's. `value(x, y)` gives the channels of a pixel, `put(x, y, mean)` takes
 // the mean.
 template <class Value, class Put>
-void WindowMeans(const GuidedWindows& windows, std::vector<FourFloats>& by_row, const Value& value, const Put& put) {
+void WindowMeans(const GuidedWindows& windows, FourPlane& by_row, const Value& value, const Put& put) {
   const std::size_t width = windows.width, height = windows.height;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, height, 16), [&](const auto& part) {
     std::vector<FourSums> sum(width + 1);
@@ -113,7 +127,7 @@ void GuidedFilter(double sigma, double range, SmoothPlanes& planes) {
   const auto radius = static_cast<std::uint16_t>(std::clamp(std::floor(sigma + 0.5), 1.0, 32767.0));
   const GuidedWindows windows = WindowsOf(planes, radius);
   const auto flat = static_cast<float>(0.25 * range * range);  // the variance of two halves that lie `range` apart
-  std::vector<FourFloats> by_row(planes.width * planes.height), line(by_row.size());
+  FourPlane by_row(planes.width * planes.height), line(by_row.size());
   const auto squares = [](float l, float a, float b) { return l * l + a * a + b * b; };
   WindowMeans(
       windows, by_row,

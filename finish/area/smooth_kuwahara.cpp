@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 #include <vector>
 
 #include "finish/area/smooth_filters.h"
@@ -171,10 +170,12 @@ StructureTensor TensorOf(const SmoothPlanes& planes) {
         const auto beside = [&](std::size_t q) { return planes.key[q] == planes.key[p] ? q : p; };
         const std::size_t left = beside(p - 1), right = beside(p + 1), up = beside(p - planes.stride),
                           down = beside(p + planes.stride);
+        float xx = 0.0f, xy = 0.0f, yy = 0.0f;
         for (const auto* plane : {&planes.lightness, &planes.a, &planes.b}) {
           const float dx = (*plane)[right] - (*plane)[left], dy = (*plane)[down] - (*plane)[up];
-          tensor.xx[i] += dx * dx, tensor.xy[i] += dx * dy, tensor.yy[i] += dy * dy;
+          xx += dx * dx, xy += dx * dy, yy += dy * dy;
         }
+        tensor.xx[i] = xx, tensor.xy[i] = xy, tensor.yy[i] = yy;
       }
     }
   });
@@ -188,11 +189,9 @@ std::size_t KuwaharaPad(double sigma, std::size_t longer_side) {
 }
 
 void KuwaharaFilter(double sigma, double tensor_sigma, SmoothPlanes& planes) {
-  EdgeFlow flow =
+  const EdgeFlow flow =
       FlowOf(TensorOf(planes), static_cast<int>(planes.width), static_cast<int>(planes.height), tensor_sigma);
-  constexpr std::size_t kVector = 16;
-  for (auto* plane : {&flow.x, &flow.y, &flow.anisotropy}) plane->resize(plane->size() + kVector);
-  std::vector<float> l(planes.size()), a(planes.size()), b(planes.size());
+  planes.MakeNext();
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, planes.height, 4), [&](const auto& part) {
     for (std::size_t y = part.begin(); y != part.end(); ++y) {
       const std::size_t row = y * planes.width;
@@ -203,16 +202,16 @@ void KuwaharaFilter(double sigma, double tensor_sigma, SmoothPlanes& planes) {
                             flow.x.data() + row,
                             flow.y.data() + row,
                             flow.anisotropy.data() + row,
-                            l.data(),
-                            a.data(),
-                            b.data(),
+                            planes.next_lightness.data(),
+                            planes.next_a.data(),
+                            planes.next_b.data(),
                             std::ptrdiff_t(planes.stride),
                             static_cast<int>(planes.pad),
                             static_cast<float>(sigma)};
       HWY_DYNAMIC_DISPATCH(KuwaharaHere)(run, planes.At(0, y), planes.width);
     }
   });
-  std::swap(planes.lightness, l), std::swap(planes.a, a), std::swap(planes.b, b);
+  planes.TakeNext();
 }
 
 }  // namespace scumble::internal

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 #include <vector>
 
 #include "finish/area/smooth_filters.h"
@@ -105,10 +104,10 @@ std::size_t WaveletsPad(double sigma, std::size_t longer_side) {
 }
 
 void WaveletsFilter(double sigma, double range, const WaveletStops& stops, SmoothPlanes& planes) {
-  std::vector<float> l(planes.size()), a(planes.size()), b(planes.size());
+  planes.MakeNext();
   const int levels = WaveletLevels(sigma, std::max(planes.width, planes.height));
   const bool has_stops = !stops.depth.empty();
-  const auto stop = [&](const std::vector<float>& plane) { return has_stops ? plane.data() : nullptr; };
+  const auto stop = [&](const FloatPlane& plane) { return has_stops ? plane.data() : nullptr; };
   for (int level = 0; level < levels; ++level) {
     const std::ptrdiff_t apart = std::ptrdiff_t{1} << level;
     const WaveletRun run{planes.lightness.data(),
@@ -119,9 +118,9 @@ void WaveletsFilter(double sigma, double range, const WaveletStops& stops, Smoot
                          stop(stops.normal_y),
                          stop(stops.normal_z),
                          stop(stops.depth),
-                         l.data(),
-                         a.data(),
-                         b.data(),
+                         planes.next_lightness.data(),
+                         planes.next_a.data(),
+                         planes.next_b.data(),
                          apart,
                          apart * std::ptrdiff_t(planes.stride),
                          BiweightPerSquare(std::ldexp(range, -level)),
@@ -131,7 +130,7 @@ void WaveletsFilter(double sigma, double range, const WaveletStops& stops, Smoot
       for (std::size_t y = part.begin(); y != part.end(); ++y)
         HWY_DYNAMIC_DISPATCH(WaveletsHere)(run, planes.At(0, y), planes.width);
     });
-    std::swap(planes.lightness, l), std::swap(planes.a, a), std::swap(planes.b, b);
+    planes.TakeNext();
   }
 }
 

@@ -11,10 +11,13 @@
 namespace scumble::internal {
 
 EdgeFlow FlowOf(const StructureTensor& tensor, int width, int height, double sigma) {
-  const std::vector<float> xx = Blurred(tensor.xx, width, height, sigma), xy = Blurred(tensor.xy, width, height, sigma),
-                           yy = Blurred(tensor.yy, width, height, sigma);
+  const FloatPlane xx = Blurred(tensor.xx, width, height, sigma), xy = Blurred(tensor.xy, width, height, sigma),
+                   yy = Blurred(tensor.yy, width, height, sigma);
   EdgeFlow flow;
-  for (auto* plane : {&flow.x, &flow.y, &flow.anisotropy}) plane->resize(xx.size());
+  for (auto* plane : {&flow.x, &flow.y, &flow.anisotropy}) {
+    plane->resize(xx.size() + kFlowSpare);
+    std::fill(plane->end() - kFlowSpare, plane->end(), 0.0f);
+  }
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, xx.size(), 1 << 14), [&](const auto& part) {
     for (std::size_t i = part.begin(); i != part.end(); ++i) {
       const float difference = xx[i] - yy[i], sum = xx[i] + yy[i];

@@ -1,19 +1,23 @@
 // The directions along which a picture changes least.
 #pragma once
 
-#include <vector>
+#include <cstddef>
+
+#include "finish/area/float_plane.h"
 
 namespace scumble::internal {
 
 // The structure tensor Σ ∇c ∇cᵀ of a picture's channels, by pixel: products of derivatives.
 struct StructureTensor {
-  std::vector<float> xx, xy, yy;
+  FloatPlane xx, xy, yy;
 };
 
 // By pixel: the direction of the smaller eigenvalue, of length 1, in pixels to the right and down, with a sign of no
 // meaning; and (l1 - l2) / (l1 + l2) of the eigenvalues, 0 where all directions are alike.
+// Behind the last pixel are kFlowSpare more values, of no meaning, so that vectors may read beyond it.
+inline constexpr std::size_t kFlowSpare = 16;
 struct EdgeFlow {
-  std::vector<float> x, y, anisotropy;
+  FloatPlane x, y, anisotropy;
 };
 
 // Of the tensor under a Gaussian of `sigma` pixels.
