@@ -1,5 +1,5 @@
 // The time of each finishing effect at 1080p, as a ratio to a copy of the picture's bytes in the same run. Prints the
-// table of docs/finish.md.
+// table of docs/finish.md. Where OpenCV is installed (libopencv-imgproc-dev), its filters are timed, too.
 //   finish_bench [RUNS]
 #include <algorithm>
 #include <cstdio>
@@ -13,6 +13,7 @@
 #include "core/image/stopwatch.h"
 #include "core/style/finish_file.h"
 #include "core/style/finish_keys.h"
+#include "finish/area/gaussian_rows.h"
 #include "finish/finish.h"
 #include "pipeline/guide_layers.h"
 #include "scumble/stylizer.h"
@@ -124,6 +125,11 @@ int Run(int runs) {
     against(rivals[0], bilateral, "smooth bilateral, 4 passes");
     against(rivals[1], guided, "smooth guided");
     against(rivals[2], dog, "edges of light");
+    internal::FloatPlane plane(rgb.size() / 3);
+    for (std::size_t i = 0; i < plane.size(); ++i) plane[i] = rgb[3 * i];
+    const Spread pair = Timed(
+        runs, [&] { internal::GaussianPair(plane, picture_width, picture_height, 2.0 / 2.055, 21.0f, -20.0f, 1.0f); });
+    print("two Gaussians of edges alone", pair);
   }
   for (const auto& file : FindFinishPresets(SCUMBLE_SOURCE_DIR "/finish/presets")) {
     const auto preset = LoadFinishPreset(file);

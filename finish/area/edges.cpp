@@ -42,12 +42,12 @@ FloatPlane ToneOf(const EdgesPass& pass, const FinishFrame& frame, const Picture
   }
   const auto coverage = frame.guides->Plane(Layer::kCoverage);
   const bool of_light = pass.tone == EdgesPass::Tone::kLight;
+  const auto luminance = of_light ? frame.guides->Plane(Layer::kLuminance) : std::span<const float>();
   const auto per_bright = static_cast<float>(1.0 / frame.measures.bright);
   ForEachEdgesBlock(pixels, [&](std::size_t first, std::size_t count) {
     std::array<float, kOklabBlock> light;
     std::array<const float*, 3> planes{light.data(), light.data(), light.data()};
-    for (std::size_t i = 0; i < count && of_light; ++i)
-      light[i] = frame.guides->Plane(Layer::kLuminance)[first + i] * per_bright;
+    for (std::size_t i = 0; i < count && of_light; ++i) light[i] = luminance[first + i] * per_bright;
     for (std::size_t c = 0; c < 3 && !of_light; ++c)
       planes[c] = frame.guides->Plane(Layer::kAlbedo, static_cast<int>(c)).data() + first;
     OklabBlock block;
@@ -66,11 +66,7 @@ FloatPlane ResponseOf(const EdgesPass& pass, const FinishFrame& frame, const Flo
     return FlowResponse(tone, width, height, {sigma, pass.flow * frame.scale, kTensorSigma * frame.scale},
                         {fill + sharpness, -sharpness, 1.0f - fill, static_cast<float>(pass.threshold)});
   }
-  FloatPlane response = GaussianPair(tone, width, height, sigma, fill + sharpness, -sharpness);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, response.size(), 1 << 15), [&](const auto& part) {
-    for (std::size_t i = part.begin(); i != part.end(); ++i) response[i] += 1.0f - fill;
-  });
-  return response;
+  return GaussianPair(tone, width, height, sigma, fill + sharpness, -sharpness, 1.0f - fill);
 }
 
 float Tanh(float x) {

@@ -1,6 +1,7 @@
 #include "finish/area/gaussian_rows.h"
 
 #include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -51,19 +52,28 @@ HWY_EXPORT(SumSymmetricHere);
 
 constexpr int kBand = 32;  // rows that are treated together: their blurred rows stay in the cache
 
+// Of one thread, kept from band to band: large blocks are slow to get and to hand back.
+template <std::size_t kCount>
+struct BandScratch {
+  std::vector<float> padded;
+  std::array<std::vector<float>, kCount> half, blurred;
+  std::vector<const float*> taps;
+};
+
 // Blurs rows of a band and calls row(y, blurred) for each, `blurred` by weights in turn.
 template <std::size_t kCount, class Row>
 void BlurBand(const FloatPlane& plane, int width, int height, int first, int last,
-              const std::array<std::vector<float>, kCount>& weights, const Row& row) {
+              const std::array<std::vector<float>, kCount>& weights, BandScratch<kCount>& scratch, const Row& row) {
   int reach = 0;
   for (const auto& one : weights) reach = std::max(reach, static_cast<int>(one.size()) - 1);
   const int top = std::max(0, first - reach), bottom = std::min(height, last + reach);
   const auto columns = static_cast<std::size_t>(width);
-  std::vector<float> padded(columns + 2 * std::size_t(reach));
-  std::array<std::vector<float>, kCount> half, blurred;
-  for (std::size_t c = 0; c < kCount; ++c)
-    half[c].resize(columns * std::size_t(bottom - top)), blurred[c].resize(columns);
-  std::vector<const float*> taps;
+  auto& [padded, half, blurred, taps] = scratch;
+  padded.resize(columns + 2 * std::size_t(reach));
+  for (std::size_t c = 0; c < kCount; ++c) {
+    half[c].resize(columns * std::size_t(bottom - top));
+    blurred[c].resize(columns);
+  }
   for (int y = top; y < bottom; ++y) {
     const float* const from = plane.data() + std::size_t(y) * columns;
     std::fill_n(padded.begin(), reach, from[0]);
@@ -88,6 +98,20 @@ void BlurBand(const FloatPlane& plane, int width, int height, int first, int las
   }
 }
 
+template <std::size_t kCount, class Row>
+void ForEachBand(const FloatPlane& plane, int width, int height, const std::array<std::vector<float>, kCount>& weights,
+                 const Row& row) {
+  tbb::enumerable_thread_specific<BandScratch<kCount>> scratch;
+  tbb::parallel_for(
+      tbb::blocked_range<int>(0, (height + kBand - 1) / kBand),
+      [&](const auto& bands) {
+        for (int band = bands.begin(); band != bands.end(); ++band)
+          BlurBand(plane, width, height, band * kBand, std::min(height, band * kBand + kBand), weights, scratch.local(),
+                   row);
+      },
+      tbb::simple_partitioner());
+}
+
 }  // namespace
 
 void SumSymmetric(std::span<const float> weights, const float* const* rows, std::size_t count, float* out) {
@@ -110,22 +134,20 @@ std::vector<float> GaussianWeights(double sigma) {
 FloatPlane Blurred(const FloatPlane& plane, int width, int height, double sigma) {
   const std::array<std::vector<float>, 1> weights = {GaussianWeights(sigma)};
   FloatPlane out(plane.size());
-  tbb::parallel_for(tbb::blocked_range<int>(0, height, kBand), [&](const auto& rows) {
-    BlurBand(plane, width, height, rows.begin(), rows.end(), weights, [&](int y, const auto& blurred) {
-      std::copy_n(blurred[0].data(), width, out.begin() + std::ptrdiff_t(y) * width);
-    });
+  ForEachBand(plane, width, height, weights, [&](int y, const auto& blurred) {
+    std::copy_n(blurred[0].data(), width, out.begin() + std::ptrdiff_t(y) * width);
   });
   return out;
 }
 
-FloatPlane GaussianPair(const FloatPlane& plane, int width, int height, double sigma, float narrow, float wide) {
+FloatPlane GaussianPair(const FloatPlane& plane, int width, int height, double sigma, float narrow, float wide,
+                        float level) {
   const std::array<std::vector<float>, 2> weights = {GaussianWeights(sigma), GaussianWeights(1.6 * sigma)};
   FloatPlane out(plane.size());
-  tbb::parallel_for(tbb::blocked_range<int>(0, height, kBand), [&](const auto& rows) {
-    BlurBand(plane, width, height, rows.begin(), rows.end(), weights, [&](int y, const auto& blurred) {
-      float* const to = out.data() + std::size_t(y) * std::size_t(width);
-      for (int x = 0; x < width; ++x) to[x] = narrow * blurred[0][std::size_t(x)] + wide * blurred[1][std::size_t(x)];
-    });
+  ForEachBand(plane, width, height, weights, [&](int y, const auto& blurred) {
+    float* const to = out.data() + std::size_t(y) * std::size_t(width);
+    for (int x = 0; x < width; ++x)
+      to[x] = level + (narrow * blurred[0][std::size_t(x)] + wide * blurred[1][std::size_t(x)]);
   });
   return out;
 }

@@ -18,7 +18,8 @@ void SumSymmetric(std::span<const float> weights, const float* const* rows, std:
 // Rows, then columns. Beyond its edges the plane goes on with its last values. `sigma` is above 0. O(pixels · sigma).
 FloatPlane Blurred(const FloatPlane& plane, int width, int height, double sigma);
 
-// narrow · G(sigma) + wide · G(1.6 sigma), the difference of Gaussians of a plane if the factors are so.
-FloatPlane GaussianPair(const FloatPlane& plane, int width, int height, double sigma, float narrow, float wide);
+// level + narrow · G(sigma) + wide · G(1.6 sigma) of a plane.
+FloatPlane GaussianPair(const FloatPlane& plane, int width, int height, double sigma, float narrow, float wide,
+                        float level);
 
 }  // namespace scumble::internal
