@@ -21,13 +21,13 @@ constexpr double kFinest = 1.0;    // sigma of the finest level, at most, pixels
 constexpr double kSmallest = 1.0;  // sigma of a level in its own pixels, at least
 
 // Colours times weights, and the weights.
-using WeightedPlanes = std::array<Plane, 4>;
+using WeightedPlanes = std::array<FloatPlane, 4>;
 
 // How the pixels are blurred: sigma in pixels, below 0 before the focus.
-Plane SigmasOf(const DepthPass& pass, double most, const FinishFrame& frame) {
+FloatPlane SigmasOf(const DepthPass& pass, double most, const FinishFrame& frame) {
   const DepthScale scale(pass, frame.measures);
   const auto depth = frame.guides->Plane(Layer::kDepth);
-  Plane sigmas(depth.size());
+  FloatPlane sigmas(depth.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, depth.size(), 1 << 14), [&](const auto& part) {
     for (std::size_t i = part.begin(); i != part.end(); ++i) {
       const auto sigma = static_cast<float>(most * scale.Share(depth[i]));
@@ -41,7 +41,7 @@ Plane SigmasOf(const DepthPass& pass, double most, const FinishFrame& frame) {
 struct BlurSource {
   const LabPlanes& colors;
   const Picture& picture;  // its alpha
-  const Plane& sigmas;
+  const FloatPlane& sigmas;
   float side;     // 1: beyond the focus, -1: before it
   Region region;  // that holds all pixels on that side
 };
@@ -93,9 +93,9 @@ std::vector<float> SmallGaussian(double variance) {
 }
 
 // Along x, then along y; nothing lies beyond the edges. The sum of the weights does not matter.
-void BlurPlane(const std::vector<float>& weights, int width, int height, Plane& plane) {
+void BlurPlane(const std::vector<float>& weights, int width, int height, FloatPlane& plane) {
   const int reach = static_cast<int>(weights.size()) - 1;
-  Plane half(plane.size());
+  FloatPlane half(plane.size());
   tbb::parallel_for(tbb::blocked_range<int>(0, height, 8), [&](const auto& rows) {
     for (int y = rows.begin(); y != rows.end(); ++y) {
       const float* const row = plane.data() + std::size_t(y) * std::size_t(width);
@@ -194,7 +194,7 @@ void Gather(const BlurSource& source, const std::vector<BlurLevel>& levels, LabP
 }
 
 // The smallest region that holds all pixels on that side of the focus.
-Region RegionOf(const Plane& sigmas, float side, int width, int height) {
+Region RegionOf(const FloatPlane& sigmas, float side, int width, int height) {
   Region region{width, height, 0, 0};
   for (int y = 0; y < height; ++y) {
     const float* const row = sigmas.data() + std::size_t(y) * std::size_t(width);
@@ -215,7 +215,7 @@ void BlurByDepth(const DepthPass& pass, double strength, std::span<const std::ui
   const double most = pass.blur * frame.scale;
   int levels = 1;
   while (most > kFinest * double(1 << (levels - 1))) ++levels;
-  const Plane sigmas = SigmasOf(pass, most, frame);
+  const FloatPlane sigmas = SigmasOf(pass, most, frame);
   const LabPlanes given = PlanesOf(picture);
   LabPlanes made = given;
   for (const float side : {1.0f, -1.0f}) {

@@ -5,16 +5,13 @@
 #include <span>
 #include <vector>
 
-#include "core/image/plane_allocator.h"
+#include "finish/area/float_plane.h"
 #include "scumble/picture.h"
 
 namespace scumble::internal {
 
-// One number a pixel, not set at first. Fresh memory costs more than most filters; this is used again.
-using Plane = std::vector<float, PlaneAllocator<float>>;
-
 struct LabPlanes {
-  Plane lightness, a, b;
+  FloatPlane lightness, a, b;
 };
 
 LabPlanes PlanesOf(const Picture& picture);

@@ -19,7 +19,7 @@ namespace {
 float Rim(double x) { return static_cast<float>(x * Exp2((1.0 - x) * kLog2OfE)); }
 
 // By pixel of an object: how near its border is, by Rim of the distance over half the width.
-Plane RimsOf(double width, const GuideSet& guides) {
+FloatPlane RimsOf(double width, const GuideSet& guides) {
   const auto coverage = guides.Plane(Layer::kCoverage), object = guides.Plane(Layer::kObject);
   const int wide = guides.width(), high = guides.height();
   const auto shape_of = [&](std::size_t p) { return coverage[p] > 0.0f ? object[p] : -1.0f; };
@@ -30,7 +30,7 @@ Plane RimsOf(double width, const GuideSet& guides) {
            (y > 0 && shape_of(p - std::size_t(wide)) != shape) ||
            (y + 1 < high && shape_of(p + std::size_t(wide)) != shape);
   };
-  Plane rims(guides.pixel_count(), 0.0f);
+  FloatPlane rims(guides.pixel_count(), 0.0f);
   const double per_half = 2.0 / width;
   ForNearestFeature(wide, high, is_border, [&](std::size_t p, int x, int y, int u, int v) {
     if (!(coverage[p] > 0.0f)) return;
@@ -64,7 +64,7 @@ std::uint16_t Pigmented(std::uint16_t code, float density) {
 void LayPigment(const PigmentPass& pass, float strength, std::span<const std::uint8_t> only, const FinishFrame& frame,
                 Picture& picture) {
   const int width = picture.width, height = picture.height;
-  Plane rims;
+  FloatPlane rims;
   if (pass.edge > 0.0) rims = RimsOf(pass.edge_width * frame.scale, *frame.guides);
   const Clouds clouds(pass, frame, width, height);
   const NoiseField grains(Hash(frame.seed, 6), pass.grain_size * frame.scale, false, frame, width, height);

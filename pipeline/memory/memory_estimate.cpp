@@ -294,7 +294,6 @@ void AddFinish(std::span<const FinishPass> passes, bool has_map, const Size& siz
   // Borders by pixel, the share that strokes cover, and lines: a tenth of the pixels have a border, and each is a point
   // of 40 bytes and a piece of a stroke of 28, in lists that grow.
   constexpr Bytes kOutline = 2 + kFloat + (40 + 2 * 28 + 24) / 10;
-  constexpr Bytes kLab = 3 * kFloat;
   Bytes masks = 0, transient = 0, mixes = 0;
   for (const FinishPass& pass : passes) {
     if (!(pass.strength > 0.0)) continue;

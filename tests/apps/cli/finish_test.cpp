@@ -328,9 +328,9 @@ TEST_F(CliFinish, KeysMoveInSequences) {
 
 TEST_F(CliFinish, ListsEffectsKeysAndPresets) {
   const std::string all = RunOk({"finish", "--list"}).out;
-  for (const char* name :
-       {"comic", "ligne-claire", "noir", "chiaroscuro", "impression", "charcoal-lines", "storybook", "engraving",
-        "blueprint", "outline", "shadows", "tones", "depth", "grade", "fill", "strength"}) {
+  for (const char* name : {"comic", "ligne-claire", "noir", "chiaroscuro", "impression", "charcoal-lines", "storybook",
+                           "engraving", "pen-and-ink", "pencil-sketch", "blueprint", "outline", "shadows", "tones",
+                           "depth", "grade", "fill", "strength"}) {
     EXPECT_TRUE(Contains(all, name)) << name;
   }
   EXPECT_TRUE(Contains(RunOk({"finish", "--list", "--finish", "outline"}).out, "crease_angle"));
