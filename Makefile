@@ -74,12 +74,13 @@ tradeoff: build ## speed against accuracy on the sample scenes, into out/tradeof
 	@.ci/install test
 	@/usr/bin/python3 bench/tradeoff.py $(if $(WRITE_DOCS),--write-docs) $(TRADEOFF_ARGS)
 
-exemplars: ## repaint the bundled styles (libmypaint), their thumbnails and docs/exemplars.md
+exemplars: ## repaint the bundled styles and the strokes of hatching (libmypaint), thumbnails and docs/exemplars.md
 	@.ci/install test
 	@cmake --preset release
 	@cmake --build build --target paint_exemplars scumble -j $(JOBS)
 	@build/exemplars/paint/paint_exemplars --style all --seed 1 -o exemplars
-	@.ci/optimise_png exemplars
+	@build/exemplars/paint/paint_exemplars --hatching --seed 1 -o finish/hatching
+	@.ci/optimise_png exemplars finish/hatching
 	@.ci/traits
 
 traits: build ## measure the bundled styles: docs/exemplars.md, and thumbnails
