@@ -38,8 +38,8 @@ FinishMeasures MeasureFinish(const GuideSet& guides);
 ColorSpread MeasureColors(const Picture& picture, std::span<const std::uint8_t> only = {});
 
 // A threshold texture from the greys of a square picture that repeats, strokes along its rows: of pixels of equal grey
-// each has the mean of their ranks. Smaller levels are means of four, ranked anew. kInput where the picture is no square
-// of 16 pixels or more.
+// each has the mean of their ranks. Smaller levels are means of four, ranked anew. kInput where the picture is no
+// square of 16 pixels or more.
 Expected<HatchTexture> MakeHatchTexture(const Picture& picture);
 
 struct FinishStep {

@@ -16,8 +16,8 @@ class TextureStrokes {
   // `spacing`: from stroke to stroke, pixels.
   TextureStrokes(const HatchTexture& texture, double spacing);
 
-  // How much of the pixel around `at`, in pixels along and across the strokes, is ink, where `share` of all is. The mean
-  // over the texture is `share`.
+  // How much of the pixel around `at`, in pixels along and across the strokes, is ink, where `share` of all is. The
+  // mean over the texture is `share`.
   float Cover(glm::vec2 at, float share) const;
 
  private:
