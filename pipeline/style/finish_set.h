@@ -27,8 +27,9 @@ Expected<std::vector<FinishPreset>> FinishPresets(const RunContext& context);
 Expected<std::vector<FinishPass>> OpenFinish(const std::vector<std::string>& names, const RunContext& context);
 
 // Reads what passes name: measures the colours that palettes go by, of files, of colours, and of the style's painting,
-// the part of it on the sphere; makes the strokes of hatching. `style`: null where nothing is painted; palettes that ask
-// for a painting then get none, and CheckFinish refuses them. kInput where a file cannot be read or a colour is none.
+// the part of it on the sphere; makes the strokes of hatching. `style`: null where nothing is painted; palettes that
+// ask for a painting then get none, and CheckFinish refuses them. kInput where a file cannot be read or a colour is
+// none.
 Status ReadFinishFiles(const Style* style, const RunContext& context, std::vector<FinishPass>& passes);
 
 // The files that the passes name: of palettes, and of masks.
