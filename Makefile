@@ -57,7 +57,7 @@ fuzz: ## libFuzzer (clang) on everything that reads other people's files, 60 s e
 	@.ci/fuzz $(FUZZ)
 
 bench: ## measure speed against its targets, one table (docs/performance.md); BENCH=flicker runs another bench
-	@.ci/install test
+	@.ci/install bench
 	@cmake --preset release -DSCUMBLE_BENCH=ON > build.log 2>&1 || { cat build.log; rm -f build.log; exit 1; }
 	@rm -f build.log
 	@cmake --build build --target scumble benches -j $(JOBS)

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/image/finish_mask.h"
+#include "core/image/finish_pass.h"
 #include "core/image/guides.h"
 
 namespace scumble {

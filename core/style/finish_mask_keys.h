@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/image/finish_mask.h"
+#include "core/image/finish_pass.h"
 #include "core/image/status.h"
 #include "core/style/finish_keys.h"
 

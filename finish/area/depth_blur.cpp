@@ -5,12 +5,11 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <vector>
 
 #include "core/filter/region.h"
-#include "core/image/exact_math.h"
 #include "finish/area/area_effects.h"
+#include "finish/area/gaussian_rows.h"
 #include "finish/area/lab_planes.h"
 #include "finish/tone/depth_scale.h"
 
@@ -85,41 +84,6 @@ void Reduce(const BlurSource& source, BlurLevel& level) {
   });
 }
 
-std::vector<float> SmallGaussian(double variance) {
-  const int reach = static_cast<int>(std::ceil(3.0 * std::sqrt(variance)));
-  std::vector<float> weights;
-  for (int k = 0; k <= reach; ++k) weights.push_back(static_cast<float>(Exp2(-0.5 * k * k / variance * kLog2OfE)));
-  return weights;
-}
-
-// Along x, then along y; nothing lies beyond the edges. The sum of the weights does not matter.
-void BlurPlane(const std::vector<float>& weights, int width, int height, FloatPlane& plane) {
-  const int reach = static_cast<int>(weights.size()) - 1;
-  FloatPlane half(plane.size());
-  tbb::parallel_for(tbb::blocked_range<int>(0, height, 8), [&](const auto& rows) {
-    for (int y = rows.begin(); y != rows.end(); ++y) {
-      const float* const row = plane.data() + std::size_t(y) * std::size_t(width);
-      float* const out = half.data() + std::size_t(y) * std::size_t(width);
-      std::fill_n(out, width, 0.0f);
-      for (int k = -reach; k <= reach; ++k) {
-        const float weight = weights[std::size_t(std::abs(k))];
-        for (int x = std::max(0, -k); x < std::min(width, width - k); ++x) out[x] += weight * row[x + k];
-      }
-    }
-  });
-  tbb::parallel_for(tbb::blocked_range<int>(0, height, 8), [&](const auto& rows) {
-    for (int y = rows.begin(); y != rows.end(); ++y) {
-      float* const out = plane.data() + std::size_t(y) * std::size_t(width);
-      std::fill_n(out, width, 0.0f);
-      for (int v = std::max(0, y - reach); v <= std::min(height - 1, y + reach); ++v) {
-        const float weight = weights[std::size_t(std::abs(v - y))];
-        const float* const row = half.data() + std::size_t(v) * std::size_t(width);
-        for (int x = 0; x < width; ++x) out[x] += weight * row[x];
-      }
-    }
-  });
-}
-
 BlurLevel LevelOf(const BlurSource& source, double sigma) {
   BlurLevel level;
   level.sigma = sigma;
@@ -131,8 +95,7 @@ BlurLevel LevelOf(const BlurSource& source, double sigma) {
   // Blocks of f pixels, and straight lines between their middles, have a variance of their own.
   const double squared = double(f) * f;
   const double variance = (sigma * sigma - (squared - 1.0) / 12.0 - (f > 1 ? squared / 6.0 : 0.0)) / squared;
-  const std::vector<float> weights = SmallGaussian(variance);
-  for (auto& plane : level.planes) BlurPlane(weights, level.width, level.height, plane);
+  for (auto& plane : level.planes) plane = Blurred(plane, level.width, level.height, std::sqrt(variance));
   return level;
 }
 

@@ -1,16 +1,13 @@
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
 
-#include "core/filter/oklab_rows.h"
 #include "core/image/exact_math.h"
 #include "finish/area/area_effects.h"
 #include "finish/area/edges_flow.h"
 #include "finish/area/gaussian_rows.h"
+#include "finish/area/oklab_blocks.h"
 #include "finish/tone/point_effect.h"
 
 namespace scumble::internal {
@@ -19,21 +16,11 @@ namespace {
 constexpr double kWidthOfSigma = 2.055;  // of the dark side of a step's response, at half its depth
 constexpr double kTensorSigma = 3.0;     // of the directions of flow, pixels at the reference height
 
-// Calls visit(first, count) for blocks of up to kOklabBlock pixels, from several threads.
-template <class Visit>
-void ForEachEdgesBlock(std::size_t pixels, const Visit& visit) {
-  const std::size_t blocks = (pixels + kOklabBlock - 1) / kOklabBlock;
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, blocks, 16), [&](const auto& part) {
-    for (std::size_t i = part.begin(); i != part.end(); ++i)
-      visit(i * kOklabBlock, std::min(kOklabBlock, pixels - i * kOklabBlock));
-  });
-}
-
 FloatPlane ToneOf(const EdgesPass& pass, const FinishFrame& frame, const Picture& picture) {
   const std::size_t pixels = picture.rgba.size() / 4;
   FloatPlane tone(pixels);
   if (pass.tone == EdgesPass::Tone::kPaint) {
-    ForEachEdgesBlock(pixels, [&](std::size_t first, std::size_t count) {
+    ForEachOklabBlock(pixels, [&](std::size_t first, std::size_t count) {
       OklabBlock block;
       OklabFromTexels(picture.rgba.data() + 4 * first, count, block);
       std::copy_n(block.lightness.begin(), count, tone.begin() + std::ptrdiff_t(first));
@@ -44,7 +31,7 @@ FloatPlane ToneOf(const EdgesPass& pass, const FinishFrame& frame, const Picture
   const bool of_light = pass.tone == EdgesPass::Tone::kLight;
   const auto luminance = of_light ? frame.guides->Plane(Layer::kLuminance) : std::span<const float>();
   const auto per_bright = static_cast<float>(1.0 / frame.measures.bright);
-  ForEachEdgesBlock(pixels, [&](std::size_t first, std::size_t count) {
+  ForEachOklabBlock(pixels, [&](std::size_t first, std::size_t count) {
     std::array<float, kOklabBlock> light;
     std::array<const float*, 3> planes{light.data(), light.data(), light.data()};
     for (std::size_t i = 0; i < count && of_light; ++i) light[i] = luminance[first + i] * per_bright;
@@ -97,7 +84,7 @@ void DrawEdges(const EdgesPass& pass, double strength, std::span<const std::uint
   const bool of_paint = !on_paper && pass.color != OutlinePass::Color::kInk;
   // As outlines have it: a third as light and half as colourful.
   const float chroma = pass.color == OutlinePass::Color::kComplement ? -0.5f : 0.5f;
-  ForEachEdgesBlock(tone.size(), [&](std::size_t first, std::size_t count) {
+  ForEachOklabBlock(tone.size(), [&](std::size_t first, std::size_t count) {
     std::array<float, kOklabBlock> share;
     if (!SharesOf(pass, response.data() + first, count, share.data())) return;
     std::uint16_t* const texels = picture.rgba.data() + 4 * first;

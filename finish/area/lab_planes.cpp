@@ -1,31 +1,15 @@
 #include "finish/area/lab_planes.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 
-#include "core/filter/oklab_rows.h"
+#include "finish/area/oklab_blocks.h"
 
 namespace scumble::internal {
-namespace {
-
-// Calls visit(first, count) for blocks of up to kOklabBlock pixels, from several threads.
-template <class Visit>
-void ForEachBlock(const Picture& picture, const Visit& visit) {
-  const std::size_t pixels = picture.rgba.size() / 4, blocks = (pixels + kOklabBlock - 1) / kOklabBlock;
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, blocks, 16), [&](const auto& part) {
-    for (std::size_t i = part.begin(); i != part.end(); ++i)
-      visit(i * kOklabBlock, std::min(kOklabBlock, pixels - i * kOklabBlock));
-  });
-}
-
-}  // namespace
 
 LabPlanes PlanesOf(const Picture& picture) {
   LabPlanes planes;
   for (auto* plane : {&planes.lightness, &planes.a, &planes.b}) plane->resize(picture.rgba.size() / 4);
-  ForEachBlock(picture, [&](std::size_t first, std::size_t count) {
+  ForEachOklabBlock(picture.rgba.size() / 4, [&](std::size_t first, std::size_t count) {
     OklabBlock block;
     OklabFromTexels(picture.rgba.data() + 4 * first, count, block);
     std::copy_n(block.lightness.begin(), count, planes.lightness.begin() + std::ptrdiff_t(first));
@@ -35,29 +19,35 @@ LabPlanes PlanesOf(const Picture& picture) {
   return planes;
 }
 
+void PutBlock(const OklabBlock& before, float share, const std::uint8_t* only, std::size_t count, OklabBlock& after,
+              std::uint16_t* texels) {
+  const auto mix = [&](const auto& from, auto& to) {
+    for (std::size_t i = 0; i < count && share < 1.0f; ++i) to[i] = from[i] + (to[i] - from[i]) * share;
+  };
+  mix(before.lightness, after.lightness), mix(before.a, after.a), mix(before.b, after.b);
+  std::uint16_t made[4 * kOklabBlock];
+  std::copy_n(texels, 4 * count, made);
+  TexelsFromOklab(after, count, made);
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool same =
+        after.lightness[i] == before.lightness[i] && after.a[i] == before.a[i] && after.b[i] == before.b[i];
+    if (!same && texels[4 * i + 3] != 0 && (!only || only[i])) std::copy_n(made + 4 * i, 3, texels + 4 * i);
+  }
+}
+
 void PutPlanes(const LabPlanes& planes, const LabPlanes& before, double strength, std::span<const std::uint8_t> only,
                Picture& picture) {
-  const auto share = static_cast<float>(strength);
-  ForEachBlock(picture, [&](std::size_t first, std::size_t count) {
-    OklabBlock block{};
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::size_t p = first + i;
-      const auto mix = [&](float from, float to) { return share >= 1.0f ? to : from + (to - from) * share; };
-      block.lightness[i] = mix(before.lightness[p], planes.lightness[p]);
-      block.a[i] = mix(before.a[p], planes.a[p]);
-      block.b[i] = mix(before.b[p], planes.b[p]);
-    }
-    std::uint16_t* const texels = picture.rgba.data() + 4 * first;
-    std::uint16_t made[4 * kOklabBlock];
-    std::copy_n(texels, 4 * count, made);
-    TexelsFromOklab(block, count, made);
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::size_t p = first + i;
-      const bool same =
-          block.lightness[i] == before.lightness[p] && block.a[i] == before.a[p] && block.b[i] == before.b[p];
-      if (same || texels[4 * i + 3] == 0 || (!only.empty() && !only[p])) continue;
-      std::copy_n(made + 4 * i, 3, texels + 4 * i);
-    }
+  ForEachOklabBlock(picture.rgba.size() / 4, [&](std::size_t first, std::size_t count) {
+    const auto block_of = [&](const LabPlanes& from) {
+      OklabBlock block;
+      std::copy_n(from.lightness.data() + first, count, block.lightness.begin());
+      std::copy_n(from.a.data() + first, count, block.a.begin());
+      std::copy_n(from.b.data() + first, count, block.b.begin());
+      return block;
+    };
+    OklabBlock made = block_of(planes);
+    PutBlock(block_of(before), static_cast<float>(strength), only.empty() ? nullptr : only.data() + first, count, made,
+             picture.rgba.data() + 4 * first);
   });
 }
 

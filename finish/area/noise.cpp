@@ -19,29 +19,34 @@ float LatticeValue(std::uint64_t hash) { return 2.0f * UnitFloat(hash) - 1.0f; }
 // Pixels of an object whose right neighbour is of it too, at most so many: enough for a median.
 constexpr std::size_t kMostSteps = 4096;
 
-// |∂pref/∂x| / depth of every object.
-std::map<float, float> UnitsOf(const GuideSet& guides) {
+// What is known of an object.
+struct Steps {
+  std::size_t pixels = 0, seen = 0;
+  std::vector<float> lengths;  // |∂pref/∂x| / depth
+};
+
+// The median of |∂pref/∂x| / depth, by object.
+std::map<std::uint32_t, float> UnitsOf(const GuideSet& guides) {
   const auto coverage = guides.Plane(Layer::kCoverage), object = guides.Plane(Layer::kObject),
              depth = guides.Plane(Layer::kDepth);
-  std::map<float, std::size_t> pixels;
-  for (std::size_t i = 0; i < object.size(); ++i) pixels[object[i]] += coverage[i] > 0.0f;
-  std::map<float, std::vector<float>> steps;
-  std::map<float, std::size_t> seen;
+  std::map<std::uint32_t, Steps> objects;
+  for (std::size_t i = 0; i < object.size(); ++i) objects[IdOf(object[i])].pixels += coverage[i] > 0.0f;
   for (int y = 0; y < guides.height(); ++y) {
     for (int x = 0; x + 1 < guides.width(); ++x) {
       const std::size_t p = guides.Index(x, y);
       if (!(coverage[p] > 0.0f) || !(coverage[p + 1] > 0.0f) || object[p] != object[p + 1]) continue;
-      const std::size_t every = 1 + pixels[object[p]] / kMostSteps;
-      if (seen[object[p]]++ % every != 0) continue;
+      Steps& steps = objects[IdOf(object[p])];
+      if (steps.seen++ % (1 + steps.pixels / kMostSteps) != 0) continue;
       const glm::vec3 step = guides.Vec3(Layer::kPref, p + 1) - guides.Vec3(Layer::kPref, p);
       const float length = std::sqrt(step.x * step.x + step.y * step.y + step.z * step.z) / depth[p];
-      if (length > 0.0f && length < 1e30f) steps[object[p]].push_back(length);
+      if (length > 0.0f && length < 1e30f) steps.lengths.push_back(length);
     }
   }
-  std::map<float, float> units;
-  for (auto& [id, of_object] : steps) {
-    const auto middle = of_object.begin() + std::ptrdiff_t(of_object.size() / 2);
-    std::nth_element(of_object.begin(), middle, of_object.end());
+  std::map<std::uint32_t, float> units;
+  for (auto& [id, steps] : objects) {
+    if (steps.lengths.empty()) continue;
+    const auto middle = steps.lengths.begin() + std::ptrdiff_t(steps.lengths.size() / 2);
+    std::nth_element(steps.lengths.begin(), middle, steps.lengths.end());
     units[id] = *middle;
   }
   return units;
@@ -68,36 +73,38 @@ float Noise(std::uint64_t seed, glm::vec3 at) {
   return near + (far - near) * sw;
 }
 
-NoiseField::NoiseField(std::uint64_t seed, double wave, bool stick, const FinishFrame& frame, int width, int height)
+SurfaceScale::SurfaceScale(const GuideSet& guides) : guides_(&guides), reach_(guides.pixel_count(), 0.0f) {
+  const std::map<std::uint32_t, float> units = UnitsOf(guides);
+  const auto coverage = guides.Plane(Layer::kCoverage), object = guides.Plane(Layer::kObject),
+             depth = guides.Plane(Layer::kDepth);
+  tbb::parallel_for(0, guides.height(), [&](int y) {
+    float id = -1.0f, unit = 0.0f;
+    for (std::size_t p = guides.Index(0, y), end = p + std::size_t(guides.width()); p < end; ++p) {
+      if (!(coverage[p] > 0.0f)) continue;
+      if (object[p] != id) {
+        id = object[p];
+        const auto found = units.find(IdOf(id));
+        unit = found == units.end() ? 0.0f : found->second;
+      }
+      const float reach = unit * depth[p];
+      if (reach < 1e30f) reach_[p] = reach;
+    }
+  });
+}
+
+NoiseField::NoiseField(std::uint64_t seed, double wave, const SurfaceScale* surface, int width, int height)
     : seed_(seed),
-      per_wave_(static_cast<float>(1.0 / std::max(0.5, wave))),
+      wave_(static_cast<float>(std::max(0.5, wave))),
+      per_wave_(1.0f / wave_),
       width_(width),
-      columns_(static_cast<int>(static_cast<float>(width) * per_wave_) + 2) {
+      columns_(static_cast<int>(static_cast<float>(width) * per_wave_) + 2),
+      surface_(surface) {
   const int rows = static_cast<int>(static_cast<float>(height) * per_wave_) + 2;
   lattice_.resize(std::size_t(columns_) * std::size_t(rows));
   for (int v = 0; v < rows; ++v) {
     for (int u = 0; u < columns_; ++u)
       lattice_[std::size_t(v) * std::size_t(columns_) + std::size_t(u)] = LatticeValue(Hash(seed, u, v));
   }
-  if (!stick) return;
-  guides_ = frame.guides;
-  const std::map<float, float> units = UnitsOf(*guides_);
-  const auto coverage = guides_->Plane(Layer::kCoverage), object = guides_->Plane(Layer::kObject),
-             depth = guides_->Plane(Layer::kDepth);
-  wave_.resize(guides_->pixel_count());
-  tbb::parallel_for(0, height, [&](int y) {
-    float id = -1.0f, unit = 0.0f;
-    for (std::size_t p = guides_->Index(0, y), end = p + std::size_t(width); p < end; ++p) {
-      if (!(coverage[p] > 0.0f)) continue;
-      if (object[p] != id) {
-        id = object[p];
-        const auto found = units.find(id);
-        unit = found == units.end() ? 0.0f : found->second;
-      }
-      const float wave_there = unit * depth[p] / per_wave_;
-      if (wave_there < 1e30f) wave_[p] = wave_there;
-    }
-  });
 }
 
 float NoiseField::InPicture(glm::vec2 at) const {
@@ -113,13 +120,14 @@ float NoiseField::InPicture(glm::vec2 at) const {
 float NoiseField::At(int x, int y) const {
   const std::size_t p = std::size_t(y) * std::size_t(width_) + std::size_t(x);
   const glm::vec2 centre(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
-  if (!guides_ || !(wave_[p] > 1e-30f)) return InPicture(centre * per_wave_);
-  const double level = Log2(wave_[p]), octave = std::floor(level);
+  const float wave = surface_ ? surface_->At(p) * wave_ : 0.0f;
+  if (!(wave > 1e-30f)) return InPicture(centre * per_wave_);
+  const double level = Log2(wave), octave = std::floor(level);
   const auto share = static_cast<float>(level - octave);
   const auto per_octave = static_cast<float>(Exp2(-octave));
-  const glm::vec3 place = guides_->Vec3(Layer::kPref, p) * per_octave;
+  const glm::vec3 place = surface_->guides().Vec3(Layer::kPref, p) * per_octave;
   const auto number = static_cast<std::int64_t>(octave);
-  const std::uint64_t object = static_cast<std::uint64_t>(IdOf(guides_->Plane(Layer::kObject)[p]));
+  const std::uint64_t object = static_cast<std::uint64_t>(IdOf(surface_->guides().Plane(Layer::kObject)[p]));
   const float finer = Noise(Hash(seed_, object, number), place);
   const float coarser = Noise(Hash(seed_, object, number + 1), place * 0.5f);
   // A mean of two independent noises is fainter than either.

@@ -5,7 +5,8 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "finish/finish.h"
+#include "core/image/guides.h"
+#include "finish/area/float_plane.h"
 
 namespace scumble::internal {
 
@@ -14,16 +15,31 @@ float Noise(std::uint64_t seed, glm::vec2 at);
 // The same in space. Places beyond a thousand million cells, and those that are no numbers, are 0.
 float Noise(std::uint64_t seed, glm::vec3 at);
 
+// How far a pixel of the picture reaches on the surface that it shows, in units of the layer pref: one number an
+// object, the median of |∂pref/∂x| / depth, times the pixel's depth.
+class SurfaceScale {
+ public:
+  // The guides hold coverage, object, depth and pref, and must outlive this.
+  explicit SurfaceScale(const GuideSet& guides);
+
+  const GuideSet& guides() const { return *guides_; }
+  // 0 where nothing is, and on objects whose pref is the same everywhere.
+  float At(std::size_t pixel) const { return reach_[pixel]; }
+
+ private:
+  const GuideSet* guides_;
+  FloatPlane reach_;
+};
+
 // Noise over a whole picture, or over its surfaces, with waves of a given length in pixels.
 //
 // On surfaces it is a function of the place on the object (layer pref), so that it goes where the surface goes. Waves
 // keep their length in the picture: two octaves of noise are blended by depth ("Dynamic solid textures for real-time
-// coherent stylization", Bénard, Bousseau, Thollot 2009). How large an object's units are in the picture is one number
-// an object, the median of |∂pref/∂x| / depth. Where that is 0 and where nothing is, it is noise of the picture.
+// coherent stylization", Bénard, Bousseau, Thollot 2009). Where the surface's scale is 0 it is noise of the picture.
 class NoiseField {
  public:
-  // `stick`: on surfaces; the frame's guides then hold coverage, object, depth and pref.
-  NoiseField(std::uint64_t seed, double wave, bool stick, const FinishFrame& frame, int width, int height);
+  // `surface`: null for noise of the picture; it must outlive this.
+  NoiseField(std::uint64_t seed, double wave, const SurfaceScale* surface, int width, int height);
 
   float At(int x, int y) const;
 
@@ -31,11 +47,10 @@ class NoiseField {
   float InPicture(glm::vec2 at) const;
 
   std::uint64_t seed_;
-  float per_wave_;
+  float wave_, per_wave_;
   int width_, columns_;
-  std::vector<float> lattice_;        // of the picture's noise
-  const GuideSet* guides_ = nullptr;  // null: of the picture alone
-  std::vector<float> wave_;           // by pixel, in units of pref; 0: there is none
+  std::vector<float> lattice_;  // of the picture's noise
+  const SurfaceScale* surface_;
 };
 
 }  // namespace scumble::internal

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "core/filter/distance_transform.h"
@@ -44,10 +45,11 @@ FloatPlane RimsOf(double width, const GuideSet& guides) {
 // Three octaves, -1 … 1.
 class Clouds {
  public:
-  Clouds(const PigmentPass& pass, const FinishFrame& frame, int width, int height)
-      : large_(Hash(frame.seed, 5, 0), pass.turbulence_size * frame.scale, pass.stick, frame, width, height),
-        middle_(Hash(frame.seed, 5, 1), pass.turbulence_size * frame.scale / 2.0, pass.stick, frame, width, height),
-        small_(Hash(frame.seed, 5, 2), pass.turbulence_size * frame.scale / 4.0, pass.stick, frame, width, height) {}
+  // `size`: of the largest.
+  Clouds(double size, std::uint64_t seed, const SurfaceScale* surface, int width, int height)
+      : large_(Hash(seed, 5, 0), size, surface, width, height),
+        middle_(Hash(seed, 5, 1), size / 2.0, surface, width, height),
+        small_(Hash(seed, 5, 2), size / 4.0, surface, width, height) {}
   float At(int x, int y) const { return (large_.At(x, y) + 0.5f * middle_.At(x, y) + 0.25f * small_.At(x, y)) / 1.75f; }
 
  private:
@@ -66,8 +68,10 @@ void LayPigment(const PigmentPass& pass, float strength, std::span<const std::ui
   const int width = picture.width, height = picture.height;
   FloatPlane rims;
   if (pass.edge > 0.0) rims = RimsOf(pass.edge_width * frame.scale, *frame.guides);
-  const Clouds clouds(pass, frame, width, height);
-  const NoiseField grains(Hash(frame.seed, 6), pass.grain_size * frame.scale, false, frame, width, height);
+  std::optional<SurfaceScale> surface;
+  if (pass.stick) surface.emplace(*frame.guides);
+  const Clouds clouds(pass.turbulence_size * frame.scale, frame.seed, surface ? &*surface : nullptr, width, height);
+  const NoiseField grains(Hash(frame.seed, 6), pass.grain_size * frame.scale, nullptr, width, height);
   const auto edge = static_cast<float>(pass.edge), turbulence = static_cast<float>(pass.turbulence),
              granulation = static_cast<float>(pass.granulation), thin = static_cast<float>(pass.thin);
   tbb::parallel_for(tbb::blocked_range<int>(0, height, 8), [&](const auto& rows) {
@@ -117,8 +121,8 @@ void Tremble(const PigmentPass& pass, float strength, std::span<const std::uint8
   std::copy(picture.rgba.begin(), picture.rgba.end(), still.begin());
   const int width = picture.width, height = picture.height;
   const double size = pass.tremor_size * frame.scale;
-  const NoiseField across(Hash(frame.seed, 7, 0), size, false, frame, width, height);
-  const NoiseField down(Hash(frame.seed, 7, 1), size, false, frame, width, height);
+  const NoiseField across(Hash(frame.seed, 7, 0), size, nullptr, width, height);
+  const NoiseField down(Hash(frame.seed, 7, 1), size, nullptr, width, height);
   const float reach = static_cast<float>(pass.tremor * frame.scale) * strength;
   tbb::parallel_for(tbb::blocked_range<int>(0, height, 8), [&](const auto& rows) {
     for (int y = rows.begin(); y != rows.end(); ++y) {

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <limits>
 
-#include "core/filter/oklab_rows.h"
 #include "finish/area/area_effects.h"
+#include "finish/area/oklab_blocks.h"
 #include "finish/area/smooth_filters.h"
 
 namespace scumble::internal {
@@ -85,27 +85,15 @@ FloatPlane LaidOut(std::span<const float> plane, const SmoothPlanes& planes) {
 
 // Pixels of alpha 0, those outside `only`, and those whose colour did not change keep their bits.
 void PutSmoothed(const SmoothPlanes& planes, double strength, std::span<const std::uint8_t> only, Picture& picture) {
-  const auto share = static_cast<float>(strength);
   ForEachSmoothRow(planes.height, [&](std::size_t y) {
     ForEachBlockOf(planes, y, [&](std::size_t first, std::size_t place, std::size_t count) {
       std::uint16_t* const texels = picture.rgba.data() + 4 * first;
       OklabBlock given, block;
       OklabFromTexels(texels, count, given);
-      const auto mix = [&](float from, float to) { return share >= 1.0f ? to : from + (to - from) * share; };
-      for (std::size_t i = 0; i < count; ++i) {
-        block.lightness[i] = mix(given.lightness[i], planes.lightness[place + i]);
-        block.a[i] = mix(given.a[i], planes.a[place + i]);
-        block.b[i] = mix(given.b[i], planes.b[place + i]);
-      }
-      std::uint16_t made[4 * kOklabBlock];
-      std::copy_n(texels, 4 * count, made);
-      TexelsFromOklab(block, count, made);
-      for (std::size_t i = 0; i < count; ++i) {
-        const bool same =
-            block.lightness[i] == given.lightness[i] && block.a[i] == given.a[i] && block.b[i] == given.b[i];
-        if (same || texels[4 * i + 3] == 0 || (!only.empty() && !only[first + i])) continue;
-        std::copy_n(made + 4 * i, 3, texels + 4 * i);
-      }
+      std::copy_n(planes.lightness.data() + place, count, block.lightness.begin());
+      std::copy_n(planes.a.data() + place, count, block.a.begin());
+      std::copy_n(planes.b.data() + place, count, block.b.begin());
+      PutBlock(given, static_cast<float>(strength), only.empty() ? nullptr : only.data() + first, count, block, texels);
     });
   });
 }

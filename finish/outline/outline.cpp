@@ -40,11 +40,13 @@ void DrawOutline(const OutlinePass& pass, double strength, std::span<const std::
   BorderMap borders = FindBorders(pass, *frame.guides, only);
   const std::vector<LineChain> chains =
       TraceLines(borders, *frame.guides, std::max(kShortest, kShortest * frame.scale));
+  std::optional<SurfaceScale> surface;
   std::optional<NoiseField> across, down;
   if (pass.stick && pass.wobble > 0.0) {
+    surface.emplace(*frame.guides);
     const double wave = pass.wobble_length * frame.scale;
-    across.emplace(Hash(frame.seed, 1), wave, true, frame, width, height);
-    down.emplace(Hash(frame.seed, 2), wave, true, frame, width, height);
+    across.emplace(Hash(frame.seed, 1), wave, &*surface, width, height);
+    down.emplace(Hash(frame.seed, 2), wave, &*surface, width, height);
   }
   const Straying straying{across ? &*across : nullptr, down ? &*down : nullptr};
   std::vector<std::vector<StrokePiece>> strokes(chains.size());

@@ -105,8 +105,8 @@ TEST(SurfaceNoise, GoesWhereTheSurfaceGoes) {
     return guides;
   };
   const GuideSet still = guides_at(0.0f, 4.0f), moved = guides_at(17.0f, 4.0f);
-  const FinishFrame frame{&still, {}, 1.0, 7}, later{&moved, {}, 1.0, 7};
-  const internal::NoiseField one(3, 20.0, true, frame, 160, 48), other(3, 20.0, true, later, 160, 48);
+  const internal::SurfaceScale surface(still), later(moved);
+  const internal::NoiseField one(3, 20.0, &surface, 160, 48), other(3, 20.0, &later, 160, 48);
   float least = 1.0f, most = -1.0f;
   for (int y = 0; y < 48; ++y) {
     for (int x = 0; x + 17 < 160; ++x) {
@@ -125,14 +125,13 @@ TEST(SurfaceNoise, GoesWhereTheSurfaceGoes) {
     return count;
   };
   const GuideSet far = guides_at(0.0f, 8.0f);
-  const FinishFrame from_far{&far, {}, 1.0, 7};
-  const internal::NoiseField small(3, 20.0, true, from_far, 160, 48);
+  const internal::SurfaceScale from_far(far);
+  const internal::NoiseField small(3, 20.0, &from_far, 160, 48);
   EXPECT_NEAR(double(changes(small)) / changes(one), 1.0, 0.35);
 }
 
 TEST(SurfaceNoise, OfThePictureHasNoSeams) {
-  const FinishFrame frame{nullptr, {}, 1.0, 7};
-  const internal::NoiseField field(9, 13.0, false, frame, 301, 77);
+  const internal::NoiseField field(9, 13.0, nullptr, 301, 77);
   for (int y = 0; y < 77; ++y) {
     for (int x = 0; x + 1 < 301; ++x) {
       const float value = field.At(x, y);

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "bench/finish_rivals.h"
+#include "bench/finish/rivals.h"
 #include "core/image/stopwatch.h"
 #include "core/style/finish_file.h"
 #include "core/style/finish_keys.h"

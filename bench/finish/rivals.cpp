@@ -1,4 +1,4 @@
-#include "bench/finish_rivals.h"
+#include "bench/finish/rivals.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
