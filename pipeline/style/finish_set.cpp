@@ -5,15 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <memory>
-#include <optional>
 #include <set>
-#include <sstream>
 #include <system_error>
-#include <tuple>
 #include <utility>
 
-#include "core/io/picture_file.h"
 #include "core/style/finish_keys.h"
 #include "core/style/nearest_name.h"
 #include "finish/mask.h"
@@ -91,77 +86,6 @@ void LimitToNames(const FinishPass& pass, const GuideSet& guides, const std::fun
   }
 }
 
-// "#203050 #f0e0c0" as a row of pixels.
-Expected<Picture> Swatches(const std::string& text) {
-  std::vector<Rgb16> colors;
-  std::istringstream words(text);
-  for (std::string word; words >> word;) {
-    const auto color = ParseColor(word);
-    if (!color) return InputError(fmt::format("{} is no colour: {}, with blanks between several", word, kColorForm));
-    colors.push_back(*color);
-  }
-  Picture row(static_cast<int>(colors.size()), 1);
-  for (std::size_t i = 0; i < colors.size(); ++i) {
-    std::copy_n(colors[i].begin(), 3, row.rgba.begin() + std::ptrdiff_t(4 * i));
-    row.rgba[4 * i + 3] = 65535;
-  }
-  return row;
-}
-
-bool IsFile(const std::string& source) { return !source.empty() && source != kPaintingPalette && source[0] != '#'; }
-
-ColorSpread ColorsOfPainting(const Exemplar& exemplar) {
-  const Picture& picture = exemplar.picture;
-  if (!exemplar.is_sphere) return MeasureColors(picture);
-  std::vector<std::uint8_t> sphere(picture.rgba.size() / 4);
-  for (int y = 0; y < picture.height; ++y) {
-    for (int x = 0; x < picture.width; ++x) {
-      const double u = (x + 0.5) * 2.0 / picture.width - 1.0, v = (y + 0.5) * 2.0 / picture.height - 1.0;
-      sphere[std::size_t(y) * std::size_t(picture.width) + std::size_t(x)] = u * u + v * v < 1.0;
-    }
-  }
-  return MeasureColors(picture, sphere);
-}
-
-Expected<std::optional<ColorSpread>> ColorsOf(const std::string& source, const Style* style) {
-  if (source.empty()) return std::optional<ColorSpread>();
-  if (source == kPaintingPalette) {
-    if (!style || !style->unpainted.empty() || style->exemplars.empty()) return std::optional<ColorSpread>();
-    return std::optional(ColorsOfPainting(style->exemplars.front()));
-  }
-  SCUMBLE_ASSIGN(const Picture picture, IsFile(source) ? ReadPicture(source) : Swatches(source));
-  return std::optional(MeasureColors(picture));
-}
-
-// The bundled textures of hatching, by name.
-std::map<std::string, fs::path> HatchFiles(const RunContext& context) {
-  std::map<std::string, fs::path> files;
-  std::error_code failed;
-  for (const fs::path& folder : context.DataFolders("finish/hatching")) {
-    for (const auto& entry : fs::directory_iterator(folder, failed)) {
-      if (entry.path().extension() == ".png") files.emplace(entry.path().stem().string(), entry.path());
-    }
-  }
-  return files;
-}
-
-Expected<HatchTexture> StrokesOf(const std::string& name, const RunContext& context) {
-  const auto files = HatchFiles(context);
-  const auto found = files.find(name);
-  std::error_code failed;
-  if (found == files.end() && !fs::is_regular_file(name, failed)) {
-    std::vector<std::string> names{kPlainStrokes};
-    for (const auto& [one, file] : files) names.push_back(one);
-    return InputError(fmt::format("there are no strokes '{}'; there are {}, or name the file of a threshold texture",
-                                  name, fmt::join(names, ", ")));
-  }
-  const fs::path file = found == files.end() ? fs::path(name) : found->second;
-  SCUMBLE_ASSIGN(const Picture picture, ReadPicture(file));
-  Expected<HatchTexture> texture = MakeHatchTexture(picture);
-  if (!texture) return InputError(file.string() + ": " + texture.error().message);
-  return texture;
-}
-
 // The depth that half of the pixels of these objects are nearer than; 0: there are none.
 double MiddleDepth(const std::string& pattern, const GuideSet& guides) {
   if (!guides.Has(Layer::kObject) || !guides.Has(Layer::kDepth)) return 0.0;
@@ -193,49 +117,6 @@ void Focus(const GuideSet& guides, const std::function<void(const std::string&)>
 }
 
 }  // namespace
-
-Status ReadFinishFiles(const Style* style, const RunContext& context, std::vector<FinishPass>& passes) {
-  for (FinishPass& pass : passes) {
-    const auto of_key = [&](const char* key, const Error& error) {
-      return InputError(fmt::format("finish {}: {}: {}", pass.name, key, error.message));
-    };
-    if (auto* const palette = std::get_if<PalettePass>(&pass.effect)) {
-      for (const auto& [key, source, colors] :
-           {std::tuple("like", &palette->like, &palette->target), {"from", &palette->from, &palette->source}}) {
-        auto found = ColorsOf(*source, style);
-        if (!found) return of_key(key, found.error());
-        *colors = *std::move(found);
-      }
-    }
-    if (auto* const hatch = std::get_if<HatchPass>(&pass.effect); hatch && hatch->strokes != kPlainStrokes) {
-      Expected<HatchTexture> texture = StrokesOf(hatch->strokes, context);
-      if (!texture) return of_key("strokes", texture.error());
-      hatch->texture = std::make_shared<const HatchTexture>(*std::move(texture));
-    }
-  }
-  return Ok();
-}
-
-std::vector<std::string> MaskFilesOf(const std::vector<FinishPass>& passes) {
-  std::vector<std::string> files;
-  for (const FinishPass& pass : passes) {
-    if (!pass.mask.file.empty()) files.push_back(pass.mask.file.string());
-  }
-  return files;
-}
-
-std::vector<std::string> FilesOf(const std::vector<FinishPass>& passes) {
-  std::vector<std::string> files;
-  for (const FinishPass& pass : passes) {
-    const auto* palette = std::get_if<PalettePass>(&pass.effect);
-    for (const std::string& source : palette ? std::vector{palette->like, palette->from} : std::vector<std::string>()) {
-      if (IsFile(source)) files.push_back(source);
-    }
-    const auto* hatch = std::get_if<HatchPass>(&pass.effect);
-    if (std::error_code failed; hatch && fs::is_regular_file(hatch->strokes, failed)) files.push_back(hatch->strokes);
-  }
-  return files;
-}
 
 Expected<std::vector<FinishPreset>> FinishPresets(const RunContext& context) {
   std::vector<FinishPreset> presets;

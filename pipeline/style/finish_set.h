@@ -26,16 +26,6 @@ Expected<std::vector<FinishPreset>> FinishPresets(const RunContext& context);
 // kNoFinish adds nothing. A kInput error lists what there is.
 Expected<std::vector<FinishPass>> OpenFinish(const std::vector<std::string>& names, const RunContext& context);
 
-// Reads what passes name: measures the colours that palettes go by, of files, of colours, and of the style's painting,
-// the part of it on the sphere; makes the strokes of hatching. `style`: null where nothing is painted; palettes that
-// ask for a painting then get none, and CheckFinish refuses them. kInput where a file cannot be read or a colour is
-// none.
-Status ReadFinishFiles(const Style* style, const RunContext& context, std::vector<FinishPass>& passes);
-
-// The files that the passes name: of palettes, and of masks.
-std::vector<std::string> FilesOf(const std::vector<FinishPass>& passes);
-std::vector<std::string> MaskFilesOf(const std::vector<FinishPass>& passes);
-
 // Applies "finish.NAME.KEY=VALUE" to the passes; an error where none has that name.
 Status SetFinish(const std::vector<std::string>& sets, std::vector<FinishPass>& passes);
 

@@ -12,6 +12,7 @@
 #include "core/style/style_keyframes.h"
 #include "core/style/style_keys.h"
 #include "pipeline/style/assignments.h"
+#include "pipeline/style/finish_files.h"
 #include "pipeline/style/finish_set.h"
 #include "pipeline/style/style_locations.h"
 
