@@ -15,8 +15,8 @@
 #include "finish/finish.h"
 #include "pipeline/memory/memory_estimate.h"
 #include "pipeline/scene/run_inputs.h"
-#include "pipeline/style/finish_order.h"
 #include "pipeline/style/finish_files.h"
+#include "pipeline/style/finish_order.h"
 #include "pipeline/style/finish_set.h"
 
 namespace scumble {
