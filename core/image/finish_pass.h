@@ -27,40 +27,65 @@ enum class LineClass {
   kMaterial,    // between two materials
   kShadow,      // the contour of half shadow
   kTexture,     // a step in the base colour
+  kSuggestive,  // a valley of the surface that would be a silhouette from a little aside
 };
-inline constexpr int kLineClasses = 7;
+inline constexpr int kLineClasses = 8;
 
 // Lines along borders of the guides. Lengths are pixels at the style's reference height.
 struct OutlinePass {
   enum class Color { kInk, kPaint, kComplement };  // a fixed ink; the paint beside the line, darker; its opposite hue
   enum class Side { kCentre, kInside, kOutside };  // of the nearer surface
+  enum class Form { kStrokes, kField };            // traced and stroked; or inked by the distance to the border alone
   double width = 2.5;                              // 0 … 64
   double min_width = 0.7;                          // 0 … 64: no line gets thinner by depth or light
   std::array<double, kLineClasses> of_class = {1.0, 1.0, 1.0, 0.6,
-                                               0.0, 0.0, 0.0};  // factors of the width, 0 … 4; 0: none
-  double crease_angle = 40.0;                                   // degrees between normals, 0 … 180
-  double texture_step = 0.1;                                    // Oklab distance between base colours, 0 … 2
-  double thin = 0.0;            // 0 … 2: the width is multiplied by (thin_at / depth)^thin
-  double thin_at = 0.0;         // metres; 0: the middle depth of the first picture
-  double light = 0.0;           // -2 … 2: the width is multiplied by 1 + light · (1/2 - luminance)
-  double taper = 0.0;           // 0 … 512: ends grow thin over this length
-  double wobble = 0.0;          // 0 … 16: how far lines stray
-  double wobble_length = 24.0;  // 1 … 512: of the waves of that
-  bool stick = false;           // the waves stick to surfaces; false: to the picture
+                                               0.0, 0.0, 0.0, 0.0};  // factors of the width, 0 … 4; 0: none
+  double crease_angle = 40.0;                                        // degrees between normals, 0 … 180
+  double texture_step = 0.1;                                         // Oklab distance between base colours, 0 … 2
+  double suggestive_reach = 8.0;                                     // 1 … 64: across a valley, to either side
+  double suggestive_depth = 0.03;  // 0 … 1: what the cosine to the viewer must rise by over that reach
+  double thin = 0.0;               // 0 … 2: the width is multiplied by (thin_at / depth)^thin
+  double thin_at = 0.0;            // metres; 0: the middle depth of the first picture
+  double light = 0.0;              // -2 … 2: the width is multiplied by 1 + light · (1/2 - luminance)
+  double taper = 0.0;              // 0 … 512: ends grow thin over this length
+  double wobble = 0.0;             // 0 … 16: how far lines stray
+  double wobble_length = 24.0;     // 1 … 512: of the waves of that
+  double gaps = 0.0;               // 0 … 1: share of the line that is left out, here and there
+  double gap_length = 16.0;        // 1 … 512: of the largest of them, about
+  bool stick = false;              // waves and gaps stick to surfaces; false: to the picture
+  Form form = Form::kStrokes;
   Color color = Color::kInk;
   Rgb16 ink = {0x1c1c, 0x1a1a, 0x1919};
   Side side = Side::kCentre;
 };
 
+// Colours by tone and detail, for shading = ramp of ToonPass.
+struct ColorRamp {
+  int columns = 0, rows = 0;  // columns from dark to light, rows from near or facing to far or turned away
+  std::vector<Rgb16> colors;  // row by row
+};
+
 // Flat bands of light instead of the paint.
 struct ToonPass {
-  enum class Color { kAlbedo, kPaint };  // of the brightest band: the scene's base colour, or the paint's own
-  int bands = 3;                         // 1 … 64; 1: flat
-  double softness = 0.75;                // 0 … 16 pixels at the reference height: half the width of a band's border
-  double shade = 0.45;                   // 0 … 1: the darkest band's lightness, as a share of the brightest's
-  double tint = 0.3;                     // 0 … 1: how much of the hue of `color` the darkest band takes on
+  enum class Color { kAlbedo, kPaint };       // of the brightest band: the scene's base colour, or the paint's own
+  enum class Light { kLuminance, kWrapped };  // direct light; or the cosine to the key light, wrapped around the form
+  enum class Shading { kPlain, kGooch, kRamp };  // one darker tone; from cool to warm; colours of `ramp`
+  enum class Rows { kDepth, kFacing };           // of a ramp: by depth, or by how far surfaces turn from the viewer
+  int bands = 3;                                 // 1 … 64; 1: flat
+  double softness = 0.75;  // 0 … 16 pixels at the reference height: half the width of a band's border
+  double shade = 0.45;     // 0 … 1: the darkest band's lightness, as a share of the brightest's
+  double tint = 0.3;       // 0 … 1: how much of the hue of `color` the darkest band takes on
   Rgb16 color = {0x3838, 0x4444, 0x8080};
   Color base = Color::kAlbedo;
+  Light light = Light::kLuminance;
+  int wrap_power = 1;  // 1 … 2: wrapped light is ((1 + cosine) / 2)^wrap_power
+  double cast = 1.0;   // 0 … 1: how much cast shadow takes of wrapped light
+  Shading shading = Shading::kPlain;
+  Rgb16 warm = {0x4d4d, 0x4d4d, 0x0000}, cool = {0x0000, 0x0000, 0x8c8c};
+  double warm_base = 0.5, cool_base = 0.25;  // 0 … 1: how much of the base colour is added to them
+  std::string ramp;                          // colours, "#202040 #fff4d0 / #405060 #c0d0e0"; or a picture's file
+  Rows ramp_rows = Rows::kDepth;
+  std::shared_ptr<const ColorRamp> ramp_colors;  // of `ramp`, once it is read
 };
 
 // The light of the scene itself (layer lpe.full) instead of the paint, by an extended Reinhard curve.
@@ -81,6 +106,7 @@ struct ShadowsPass {
   enum class Source { kCast, kForm, kBoth };  // the layer `shadow`; faces turned from the light; the larger of them
   Mode mode = Mode::kDarker;
   Source source = Source::kBoth;
+  double soften = 0.0;  // 0 … 64 pixels at the reference height: sigma by which the shade's contour is evened out
   // Luminances, as shares of the picture's brightest tenth: form shade is full up to `full`, none from `none` on.
   double full = 0.1, none = 0.4;  // 0 … 4
   Rgb16 color = {0x2a2a, 0x3434, 0x6262};
@@ -123,6 +149,7 @@ struct EdgesPass {
   double threshold = 0.7;                       // 0 … 1: the tone below which ink begins
   double slope = 10.0;                          // 0.1 … 100: how fast ink gets dense below it
   double fill = 0.0;                            // 0 … 1: 1 fills what is dark, 0 draws lines alone
+  bool borders = false;                         // no line along the border of two objects
   double flow = 0.0;  // 0 … 16 pixels: sigma along the edge, over which lines are evened out
   Tone tone = Tone::kLight;
   Draw draw = Draw::kInk;
@@ -225,7 +252,9 @@ struct FinishMask {
 };
 
 struct FinishPass {
-  enum class Stage { kPaint, kSheet };  // before the paper is put behind, or after
+  // Before the paint is matched, on a guide; before the paper is put behind; after.
+  enum class Stage { kGuides, kPaint, kSheet };
+  enum class Guide { kAlbedo, kLuminance };  // that a pass of kGuides changes
   using Effect = std::variant<OutlinePass, SmoothPass, EdgesPass, HatchPass, ToonPass, RenderPass, TonesPass,
                               ShadowsPass, DepthPass, PalettePass, GradePass, PigmentPass, FillPass>;
   std::string name;  // for --set finish.NAME.KEY; the effect's if the user gives none
@@ -234,6 +263,7 @@ struct FinishPass {
   double strength = 1.0;                        // 0 … 1; 0 changes no byte
   std::vector<std::string> objects, materials;  // patterns of names; both empty: the whole picture
   FinishMask mask = {};                         // besides these
+  Guide guide = Guide::kAlbedo;                 // of kGuides
 };
 
 // The layers that the pass reads.

@@ -23,6 +23,8 @@ constexpr const char* kLpeLdeChannels[] = {"lpe.LDE.R", "lpe.LDE.G", "lpe.LDE.B"
 constexpr const char* kLpeLseChannels[] = {"lpe.LSE.R", "lpe.LSE.G", "lpe.LSE.B"};
 constexpr const char* kLpeLddeChannels[] = {"lpe.LDDE.R", "lpe.LDDE.G", "lpe.LDDE.B"};
 constexpr const char* kLpeLd12eChannels[] = {"lpe.LD12E.R", "lpe.LD12E.G", "lpe.LD12E.B"};
+constexpr const char* kCosineChannels[] = {"cosine.Y"};
+constexpr const char* kUvChannels[] = {"uv.U", "uv.V"};
 
 constexpr LayerInfo kLayers[kLayerCount] = {
     {Layer::kCoverage, "A", kCoverageChannels, false, "coverage, 0 to 1"},
@@ -41,6 +43,8 @@ constexpr LayerInfo kLayers[kLayerCount] = {
     {Layer::kLpeLSE, "lpe.LSE", kLpeLseChannels, true, "direct specular"},
     {Layer::kLpeLDDE, "lpe.LDDE", kLpeLddeChannels, true, "diffuse interreflection"},
     {Layer::kLpeLD12E, "lpe.LD12E", kLpeLd12eChannels, true, "first two diffuse bounces"},
+    {Layer::kCosine, "cosine", kCosineChannels, false, "signed cosine of the normal to the key light, -1 to 1"},
+    {Layer::kUv, "uv", kUvChannels, false, "texture coordinates, (0, 0) lower left"},
 };
 
 // Names that other programs use for these channels: Blender's passes and the names that compositors agree on.

@@ -308,8 +308,11 @@ std::vector<FinishKey> MakeCommonKeys() {
       FinishNumber(
           "strength", [](FinishPass& pass) -> double& { return pass.strength; }, 0.0, 1.0, "share of the effect"),
       FinishChoice(
-          "at", [](FinishPass& pass) -> FinishPass::Stage& { return pass.at; }, {"paint", "sheet"},
-          "paint: objects alone; sheet: the paper behind them, too")};
+          "at", [](FinishPass& pass) -> FinishPass::Stage& { return pass.at; }, {"guides", "paint", "sheet"},
+          "guides: before paint is matched; paint: objects alone; sheet: the paper behind them, too"),
+      FinishChoice(
+          "guide", [](FinishPass& pass) -> FinishPass::Guide& { return pass.guide; }, {"albedo", "luminance"},
+          "what a pass at guides changes: base colours, which colorize and albedo edges see, or the light")};
   for (FinishKey& key : FinishMaskKeys()) keys.push_back(std::move(key));
   const FinishPass defaults{"", OutlinePass(), FinishPass::Stage::kPaint, 1.0, {}, {}};
   for (FinishKey& key : keys) key.default_value = ToText(key.get(defaults));

@@ -28,8 +28,10 @@ enum class Layer {
   kLpeLSE,
   kLpeLDDE,
   kLpeLD12E,
+  kCosine,
+  kUv,
 };
-inline constexpr int kLayerCount = 16;
+inline constexpr int kLayerCount = 18;
 
 struct LayerInfo {
   Layer layer;
