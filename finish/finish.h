@@ -1,6 +1,7 @@
 // Finishing effects over a painted or rendered picture: the manual of this library.
 //
 //   MeasureFinish(guides)               what a sequence measures once, on its first picture
+//   ApplyToGuides(steps, frame, …)      applies the passes that change guides, before the paint is matched
 //   ApplyFinish(steps, stage, frame, …) applies the passes of one stage, in order, in place
 //
 // A pass (core/image/finish_pass.h) looks at guides and changes the picture. Neighbouring passes that treat each pixel
@@ -60,6 +61,15 @@ struct FinishFrame {
 // view, which has no sizes, where near is not before far, or where a palette has no example. The message names the
 // pass.
 Status CheckFinish(std::span<const FinishStep> steps, const GuideSet* guides, const FinishMeasures& measures = {});
+
+// Whether any of the steps is of the stage kGuides.
+bool ChangesGuides(std::span<const FinishStep> steps);
+
+// Applies the steps of the stage kGuides, in order, each to the layer that it names, as if that were the picture. What
+// follows sees the changed guides. Light is a grey in which the brightest tenth is white; what is brighter keeps its
+// ratio to that. Fragments keep their values. `frame.guides` is not looked at. As ApplyFinish otherwise.
+Status ApplyToGuides(std::span<const FinishStep> steps, const FinishFrame& frame, int threads, const Progress& progress,
+                     GuideSet& guides);
 
 // Applies the steps of that stage to a picture with straight alpha. Pixels of alpha 0 stay so, but where lines run. A
 // step of strength 0 changes nothing. The bytes depend on the arguments alone, not on threads (0: all) or machine.

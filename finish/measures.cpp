@@ -42,7 +42,9 @@ bool Looks(const FillPass&) { return false; }
 
 bool LooksAtMeasures(std::span<const FinishPass> passes) {
   return std::any_of(passes.begin(), passes.end(), [](const FinishPass& pass) {
-    return pass.strength > 0.0 && std::visit([](const auto& effect) { return Looks(effect); }, pass.effect);
+    const bool changes_light = pass.at == FinishPass::Stage::kGuides && pass.guide == FinishPass::Guide::kLuminance;
+    const bool looks = std::visit([](const auto& effect) { return Looks(effect); }, pass.effect);
+    return pass.strength > 0.0 && (changes_light || looks);
   });
 }
 

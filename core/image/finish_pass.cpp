@@ -10,7 +10,8 @@ LayerSet Of(const OutlinePass& pass) {
   if (is_on(LineClass::kTexture)) layers.Add(Layer::kAlbedo);
   if (is_on(LineClass::kShadow)) layers.Add(Layer::kShadow);
   if (pass.light != 0.0) layers.Add(Layer::kLuminance);
-  if (pass.stick && pass.wobble > 0.0) layers.Add(Layer::kPref);
+  const bool strays = pass.wobble > 0.0 && pass.form == OutlinePass::Form::kStrokes;
+  if (pass.stick && (strays || pass.gaps > 0.0)) layers.Add(Layer::kPref);
   return layers;
 }
 
@@ -71,12 +72,17 @@ LayerSet Of(const FillPass&) { return {}; }
 
 }  // namespace
 
+Layer ChangedLayer(FinishPass::Guide guide) {
+  return guide == FinishPass::Guide::kAlbedo ? Layer::kAlbedo : Layer::kLuminance;
+}
+
 LayerSet RequiredLayers(const FinishPass& pass) {
   if (!(pass.strength > 0.0)) return {};
   LayerSet layers = std::visit([](const auto& effect) { return Of(effect); }, pass.effect);
   if (!pass.objects.empty()) layers.Add(Layer::kObject);
   if (!pass.materials.empty()) layers.Add(Layer::kMaterial);
   if (pass.mask.HasDepth()) layers.Add(Layer::kDepth);
+  if (pass.at == FinishPass::Stage::kGuides) layers.Add({Layer::kCoverage, ChangedLayer(pass.guide)});
   return layers;
 }
 

@@ -266,6 +266,9 @@ struct FinishPass {
   Guide guide = Guide::kAlbedo;                 // of kGuides
 };
 
+// The layer that a pass of the stage kGuides changes.
+Layer ChangedLayer(FinishPass::Guide guide);
+
 // The layers that the pass reads.
 LayerSet RequiredLayers(const FinishPass& pass);
 

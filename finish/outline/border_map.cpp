@@ -9,6 +9,7 @@
 
 #include "core/filter/edge_test.h"
 #include "core/image/oklab.h"
+#include "finish/outline/valleys.h"
 
 namespace scumble::internal {
 namespace {
@@ -27,7 +28,7 @@ std::vector<glm::vec3> OklabOf(const GuideSet& guides) {
 
 class Classifier {
  public:
-  Classifier(const OutlinePass& pass, const GuideSet& guides, std::span<const std::uint8_t> only)
+  Classifier(const OutlinePass& pass, const GuideSet& guides, double scale, std::span<const std::uint8_t> only)
       : pass_(pass),
         only_(only),
         guides_(guides),
@@ -40,6 +41,7 @@ class Classifier {
     if (IsOn(LineClass::kMaterial)) material_ = guides.Plane(Layer::kMaterial);
     if (IsOn(LineClass::kShadow)) shadow_ = guides.Plane(Layer::kShadow);
     if (IsOn(LineClass::kTexture)) colors_ = OklabOf(guides);
+    if (IsOn(LineClass::kSuggestive)) valleys_.emplace(pass, guides, scale);
   }
 
   // Of the border between pixels p and q, the next one of a row or a column. `before` and `after`: the pixels beyond
@@ -88,6 +90,7 @@ class Classifier {
       const glm::vec3 step = colors_[q] - colors_[p];
       if (step.x * step.x + step.y * step.y + step.z * step.z > texture_step_) return LineClass::kTexture;
     }
+    if (valleys_ && valleys_->Between(p, q)) return LineClass::kSuggestive;
     return std::nullopt;
   }
 
@@ -99,12 +102,14 @@ class Classifier {
   std::span<const float> coverage_, depth_, object_, material_, shadow_;
   std::vector<glm::vec3> colors_;
   float texture_step_;
+  std::optional<Valleys> valleys_;
 };
 
 }  // namespace
 
-BorderMap FindBorders(const OutlinePass& pass, const GuideSet& guides, std::span<const std::uint8_t> only) {
-  const Classifier classifier(pass, guides, only);
+BorderMap FindBorders(const OutlinePass& pass, const GuideSet& guides, double scale,
+                      std::span<const std::uint8_t> only) {
+  const Classifier classifier(pass, guides, scale, only);
   BorderMap map{guides.width(), guides.height(), {}, {}};
   map.right.assign(guides.pixel_count(), 0), map.below.assign(guides.pixel_count(), 0);
   tbb::parallel_for(tbb::blocked_range<int>(0, map.height, 16), [&](const auto& rows) {

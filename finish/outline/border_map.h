@@ -18,7 +18,8 @@ struct BorderMap {
 };
 
 // A border counts where its class has a width. The guides must hold the pass's layers. `only`: by pixel; borders whose
-// nearer pixel has 0 do not count; empty: all do.
-BorderMap FindBorders(const OutlinePass& pass, const GuideSet& guides, std::span<const std::uint8_t> only);
+// nearer pixel has 0 do not count; empty: all do. `scale`: pixels for one of the reference height.
+BorderMap FindBorders(const OutlinePass& pass, const GuideSet& guides, double scale,
+                      std::span<const std::uint8_t> only);
 
 }  // namespace scumble::internal

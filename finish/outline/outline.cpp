@@ -32,30 +32,40 @@ void InkFromPaint(bool is_complement, std::uint16_t* texel) {
   for (int c = 0; c < 3; ++c) texel[c] = Srgb16FromLinear(linear[c]);
 }
 
+StrokeCover CoverByStrokes(const OutlinePass& pass, const FinishFrame& frame, const LineNoise& noise,
+                           BorderMap& borders, bool with_owner) {
+  const std::vector<LineChain> chains =
+      TraceLines(borders, *frame.guides, std::max(kShortest, kShortest * frame.scale));
+  std::vector<std::vector<StrokePiece>> strokes(chains.size());
+  tbb::parallel_for(std::size_t(0), chains.size(),
+                    [&](std::size_t i) { strokes[i] = StrokeOf(pass, frame, noise, chains[i]); });
+  std::vector<StrokePiece> pieces;
+  for (const auto& stroke : strokes) pieces.insert(pieces.end(), stroke.begin(), stroke.end());
+  return CoverOf(pieces, frame.guides->width(), frame.guides->height(), with_owner);
+}
+
 }  // namespace
 
 void DrawOutline(const OutlinePass& pass, double strength, std::span<const std::uint8_t> only,
                  std::span<const std::uint16_t> shares, const FinishFrame& frame, Picture& picture) {
   const int width = picture.width, height = picture.height;
-  BorderMap borders = FindBorders(pass, *frame.guides, only);
-  const std::vector<LineChain> chains =
-      TraceLines(borders, *frame.guides, std::max(kShortest, kShortest * frame.scale));
+  BorderMap borders = FindBorders(pass, *frame.guides, frame.scale, only);
+  const bool is_field = pass.form == OutlinePass::Form::kField, strays = pass.wobble > 0.0 && !is_field;
   std::optional<SurfaceScale> surface;
-  std::optional<NoiseField> across, down;
-  if (pass.stick && pass.wobble > 0.0) {
-    surface.emplace(*frame.guides);
+  std::optional<NoiseField> across, down, gaps;
+  if (pass.stick && (strays || pass.gaps > 0.0)) surface.emplace(*frame.guides);
+  if (pass.stick && strays) {
     const double wave = pass.wobble_length * frame.scale;
     across.emplace(Hash(frame.seed, 1), wave, &*surface, width, height);
     down.emplace(Hash(frame.seed, 2), wave, &*surface, width, height);
   }
-  const Straying straying{across ? &*across : nullptr, down ? &*down : nullptr};
-  std::vector<std::vector<StrokePiece>> strokes(chains.size());
-  tbb::parallel_for(std::size_t(0), chains.size(),
-                    [&](std::size_t i) { strokes[i] = StrokeOf(pass, frame, straying, chains[i]); });
-  std::vector<StrokePiece> pieces;
-  for (const auto& stroke : strokes) pieces.insert(pieces.end(), stroke.begin(), stroke.end());
-  const bool of_paint = pass.color != OutlinePass::Color::kInk;
-  const StrokeCover cover = CoverOf(pieces, width, height, of_paint || !shares.empty());
+  if (pass.gaps > 0.0) {
+    gaps.emplace(Hash(frame.seed, 3), pass.gap_length * frame.scale, surface ? &*surface : nullptr, width, height);
+  }
+  const LineNoise noise{across ? &*across : nullptr, down ? &*down : nullptr, gaps ? &*gaps : nullptr};
+  const bool of_paint = pass.color != OutlinePass::Color::kInk, with_owner = of_paint || !shares.empty();
+  const StrokeCover cover = is_field ? CoverByDistance(pass, frame, noise.gaps, borders, with_owner)
+                                     : CoverByStrokes(pass, frame, noise, borders, with_owner);
   std::vector<std::uint16_t> paint;  // as it was before the lines
   if (of_paint) paint = picture.rgba;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cover.share.size(), 1 << 14), [&](const auto& part) {

@@ -15,27 +15,31 @@ namespace {
 
 constexpr float kPieceError = 0.1f;  // pixels
 constexpr int kBandRows = 32;
+constexpr double kGapEnd = 0.25;  // of noise: over which a stroke thins into a gap
 
 // Widths before the taper.
-std::vector<float> WidthsOf(const OutlinePass& pass, const FinishFrame& frame, const LineChain& chain) {
-  const GuideSet& guides = *frame.guides;
-  const auto depth = guides.Plane(Layer::kDepth);
-  const auto light = pass.light != 0.0 ? guides.Plane(Layer::kLuminance) : std::span<const float>();
-  const double thin_at = pass.thin_at > 0.0 ? pass.thin_at : frame.measures.middle;
+std::vector<float> WidthsOf(const OutlinePass& pass, const FinishFrame& frame, const NoiseField* gaps,
+                            const LineChain& chain) {
+  const LineWidth width(pass, frame, gaps);
   std::vector<float> widths;
-  for (const LinePoint& point : chain.points) {
-    double width = pass.width;
-    if (pass.thin > 0.0 && thin_at > 0.0)
-      width *= Exp2(pass.thin * Log2(thin_at / std::max(depth[point.owner], 1e-9f)));
-    if (!light.empty()) {
-      const double share = std::clamp(double(light[point.owner]) / frame.measures.bright, 0.0, 1.0);
-      width *= std::max(0.0, 1.0 + pass.light * (0.5 - share));
-    }
-    width = std::clamp(width, std::min(pass.min_width, pass.width), 64.0);
-    widths.push_back(static_cast<float>(width * pass.of_class[std::size_t(point.line)] * frame.scale));
-  }
+  for (const LinePoint& point : chain.points) widths.push_back(width.At(point.owner, point.line));
   SmoothAlong(chain, widths);
   return widths;
+}
+
+// The value that a share of noise lies below.
+double NoiseBelow(double share) {
+  constexpr int kSide = 64;
+  static const std::vector<float> sorted = [] {
+    std::vector<float> values;
+    for (int i = 0; i < kSide * kSide; ++i) {
+      values.push_back(Noise(Hash(1, 1), glm::vec2(float(i % kSide) * 0.37f, float(i / kSide) * 0.37f)));
+    }
+    std::sort(values.begin(), values.end());
+    return values;
+  }();
+  if (share >= 1.0) return 2.0;
+  return sorted[static_cast<std::size_t>(share * double(sorted.size()))];
 }
 
 // Makes free ends thin.
@@ -70,7 +74,7 @@ struct Middle {
   std::vector<std::uint32_t> owner;
 };
 
-Middle MiddleOf(const OutlinePass& pass, const FinishFrame& frame, const Straying& straying, const LineChain& chain,
+Middle MiddleOf(const OutlinePass& pass, const FinishFrame& frame, const LineNoise& noise, const LineChain& chain,
                 const std::vector<float>& widths) {
   const auto& points = chain.points;
   const std::size_t count = points.size();
@@ -89,10 +93,10 @@ Middle MiddleOf(const OutlinePass& pass, const FinishFrame& frame, const Strayin
       if (Dot(across, points[i].to_owner) < 0.0f) across = -across;
       at += across * (side * widths[i]);
     }
-    if (wobble > 0.0f && straying.across) {
+    if (wobble > 0.0f && noise.across) {
       const auto width = static_cast<std::uint32_t>(frame.guides->width());
       const int x = static_cast<int>(points[i].owner % width), y = static_cast<int>(points[i].owner / width);
-      at += wobble * glm::vec2(straying.across->At(x, y), straying.down->At(x, y));
+      at += wobble * glm::vec2(noise.across->At(x, y), noise.down->At(x, y));
     } else if (wobble > 0.0f) {
       const glm::vec2 cell = at * per_wave;
       at += wobble * glm::vec2(Noise(Hash(frame.seed, 1), cell), Noise(Hash(frame.seed, 2), cell));
@@ -151,11 +155,38 @@ void Draw(const StrokePiece& piece, int y0, int y1, int width, StrokeCover& cove
 
 }  // namespace
 
-std::vector<StrokePiece> StrokeOf(const OutlinePass& pass, const FinishFrame& frame, const Straying& straying,
+LineWidth::LineWidth(const OutlinePass& pass, const FinishFrame& frame, const NoiseField* gaps)
+    : pass_(pass),
+      scale_(frame.scale),
+      bright_(frame.measures.bright),
+      thin_at_(pass.thin_at > 0.0 ? pass.thin_at : frame.measures.middle),
+      depth_(frame.guides->Plane(Layer::kDepth)),
+      gaps_(gaps),
+      width_(std::size_t(frame.guides->width())) {
+  if (pass.light != 0.0) light_ = frame.guides->Plane(Layer::kLuminance);
+  if (gaps) gap_from_ = NoiseBelow(pass.gaps);
+}
+
+float LineWidth::At(std::size_t owner, LineClass line) const {
+  double width = pass_.width;
+  if (pass_.thin > 0.0 && thin_at_ > 0.0) width *= Exp2(pass_.thin * Log2(thin_at_ / std::max(depth_[owner], 1e-9f)));
+  if (!light_.empty()) {
+    const double share = std::clamp(double(light_[owner]) / bright_, 0.0, 1.0);
+    width *= std::max(0.0, 1.0 + pass_.light * (0.5 - share));
+  }
+  width = std::clamp(width, std::min(pass_.min_width, pass_.width), 64.0);
+  if (gaps_) {
+    const double above = double(gaps_->At(int(owner % width_), int(owner / width_))) - gap_from_;
+    width *= std::clamp(0.5 + above / kGapEnd, 0.0, 1.0);
+  }
+  return static_cast<float>(width * pass_.of_class[std::size_t(line)] * scale_);
+}
+
+std::vector<StrokePiece> StrokeOf(const OutlinePass& pass, const FinishFrame& frame, const LineNoise& noise,
                                   const LineChain& chain) {
-  std::vector<float> widths = WidthsOf(pass, frame, chain);
+  std::vector<float> widths = WidthsOf(pass, frame, noise.gaps, chain);
   Taper(pass.taper * frame.scale, chain, widths);
-  const Middle middle = MiddleOf(pass, frame, straying, chain, widths);
+  const Middle middle = MiddleOf(pass, frame, noise, chain, widths);
   std::vector<StrokePiece> pieces;
   const std::size_t last = middle.at.size() - 1;
   for (std::size_t i = 0; i < last;) {

@@ -19,14 +19,30 @@ struct StrokePiece {
   std::uint32_t owner = 0;                   // the pixel that the line belongs to, at `from`
 };
 
-// What strokes stray by along each axis, where that sticks to surfaces. Null: it sticks to the picture.
-struct Straying {
-  const NoiseField *across = nullptr, *down = nullptr;
+// Null: there is none of it.
+struct LineNoise {
+  const NoiseField *across = nullptr, *down = nullptr;  // what strokes stray by, where that sticks to surfaces
+  const NoiseField* gaps = nullptr;                     // where they are left out
+};
+
+// How wide a line is by its class, depth, light and gaps, in pixels. Keeps references.
+class LineWidth {
+ public:
+  LineWidth(const OutlinePass& pass, const FinishFrame& frame, const NoiseField* gaps);
+  // `owner`: the pixel that the line belongs to.
+  float At(std::size_t owner, LineClass line) const;
+
+ private:
+  const OutlinePass& pass_;
+  double scale_, bright_, thin_at_, gap_from_ = -2.0;  // noise below that is a gap
+  std::span<const float> depth_, light_;
+  const NoiseField* gaps_;
+  std::size_t width_;
 };
 
 // One line's stroke: its widths by class, depth, light and taper, its wobble and side. Pieces are as long as they may
 // be without leaving the line by a tenth of a pixel.
-std::vector<StrokePiece> StrokeOf(const OutlinePass& pass, const FinishFrame& frame, const Straying& straying,
+std::vector<StrokePiece> StrokeOf(const OutlinePass& pass, const FinishFrame& frame, const LineNoise& noise,
                                   const LineChain& chain);
 
 // How much of each pixel the strokes cover, 0 … 1, and the owner of the piece that covers most of it.
@@ -38,5 +54,11 @@ struct StrokeCover {
 // Antialiased; a stroke thinner than a pixel is as faint as it is thin. Where strokes meet, the largest share counts.
 // `with_owner`: fills in `owner`. O(pixels + strokes' area). The result does not depend on threads.
 StrokeCover CoverOf(std::span<const StrokePiece> pieces, int width, int height, bool with_owner);
+
+// Lines without strokes: a pixel whose nearest pixel beside a border is d pixels away lies d + 1/2 from that line, and
+// is covered as far as the line is wide. Of a pixel with several borders the widest line counts. O(pixels), whatever
+// the width.
+StrokeCover CoverByDistance(const OutlinePass& pass, const FinishFrame& frame, const NoiseField* gaps,
+                            const BorderMap& borders, bool with_owner);
 
 }  // namespace scumble::internal

@@ -32,11 +32,16 @@ namespace {
 
 constexpr double kTransferShare = 0.7;  // of a frame's time that has a finish
 
-}  // namespace
+FinishFrame FrameOf(const FrameSettings& settings, const GuideSet& guides) {
+  const FrameFinish& finish = *settings.finish;
+  FinishFrame frame{&guides, finish.measures, 1.0, settings.seed};
+  if (finish.reference_height > 0) frame.scale = double(guides.height()) / finish.reference_height;
+  return frame;
+}
 
-Status PaintFrame(std::span<const PreparedStyle> prepared, const StyleMap* map, const GuideSet& guides,
-                  const FrameSettings& settings, const RunContext& context, const Progress& progress,
-                  TransferScratch& scratch, Picture& picture) {
+Status Paint(std::span<const PreparedStyle> prepared, const StyleMap* map, const GuideSet& guides,
+             const FrameSettings& settings, const RunContext& context, const Progress& progress,
+             TransferScratch& scratch, Picture& picture) {
   TransferOptions options;
   options.seed = settings.seed;
   options.frame = settings.frame;
@@ -57,14 +62,29 @@ Status PaintFrame(std::span<const PreparedStyle> prepared, const StyleMap* map, 
   if (!settings.finish) return Ok();
   Stopwatch watch;
   const FrameFinish& finish = *settings.finish;
-  FinishFrame frame{&guides, finish.measures, 1.0, settings.seed};
-  if (finish.reference_height > 0) frame.scale = double(guides.height()) / finish.reference_height;
+  const FinishFrame frame = FrameOf(settings, guides);
   SCUMBLE_RETURN_IF_ERROR(ApplyFinish(finish.steps, FinishPass::Stage::kPaint, frame, context.threads,
                                       Within(progress, kTransferShare, 1.0), picture));
   SCUMBLE_RETURN_IF_ERROR(PutBackground(prepared.front(), settings.over, context.threads, picture));
   SCUMBLE_RETURN_IF_ERROR(ApplyFinish(finish.steps, FinishPass::Stage::kSheet, frame, context.threads, {}, picture));
   if (settings.finish_ms) *settings.finish_ms += watch.Lap();
   return Ok();
+}
+
+}  // namespace
+
+Status PaintFrame(std::span<const PreparedStyle> prepared, const StyleMap* map, const GuideSet& guides,
+                  const FrameSettings& settings, const RunContext& context, const Progress& progress,
+                  TransferScratch& scratch, Picture& picture) {
+  if (!settings.finish || !ChangesGuides(settings.finish->steps)) {
+    return Paint(prepared, map, guides, settings, context, progress, scratch, picture);
+  }
+  Stopwatch watch;
+  GuideSet changed = guides;
+  SCUMBLE_RETURN_IF_ERROR(
+      ApplyToGuides(settings.finish->steps, FrameOf(settings, guides), context.threads, {}, changed));
+  if (settings.finish_ms) *settings.finish_ms += watch.Lap();
+  return Paint(prepared, map, changed, settings, context, progress, scratch, picture);
 }
 
 }  // namespace scumble

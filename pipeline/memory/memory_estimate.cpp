@@ -257,6 +257,11 @@ void AddPicture(const PictureWork& work, const PictureRequest& options, MemoryNe
   std::vector<FinishPass> passes(work.finish.begin(), work.finish.end());
   for (const Style& style : work.styles) passes.insert(passes.end(), style.finish.begin(), style.finish.end());
   AddFinish(passes, work.has_map, size, need);
+  if (std::any_of(passes.begin(), passes.end(), [](const FinishPass& pass) {
+        return pass.at == FinishPass::Stage::kGuides && pass.strength > 0.0;
+      })) {
+    need.Take("changed guides", (kFloat * ChannelsOf(Made(work.layers)) + kPaint) * pixels);
+  }
   if (options.show)
     need.TakeTransient("explaining", kExplained * pixels);
   else if (work.keeps_field)
@@ -314,8 +319,10 @@ void AddFinish(std::span<const FinishPass> passes, bool has_map, const Size& siz
     if (pigment) transient = std::max(transient, 2 + kFloat + 8 + (pigment->stick ? 3 : 1) * kFloat + kPaint);
     const auto* outline = std::get_if<OutlinePass>(&pass.effect);
     if (!outline) continue;
-    if (outline->stick && outline->wobble > 0.0) transient = std::max(transient, kOutline + 2 * kFloat);
+    const bool is_noisy = outline->wobble > 0.0 || outline->gaps > 0.0;
+    if (outline->stick && is_noisy) transient = std::max(transient, kOutline + 2 * kFloat);
     Bytes of_pixel = kOutline;
+    if (outline->of_class[std::size_t(LineClass::kSuggestive)] > 0.0) of_pixel += 4 * kFloat + 1;
     if (outline->color != OutlinePass::Color::kInk || !pass.mask.empty()) of_pixel += 4 + kPaint;
     if (outline->of_class[std::size_t(LineClass::kTexture)] > 0.0) of_pixel += 3 * kFloat;
     transient = std::max(transient, of_pixel);

@@ -110,6 +110,9 @@ Expected<FrameWrite> Finish(const FinishRequest& request, const FrameFiles& file
   }
   FinishFrame frame{guides ? &*guides : nullptr, state.measures.value_or(FinishMeasures()), 1.0, request.seed};
   if (request.reference_height > 0) frame.scale = double(picture->height) / request.reference_height;
+  if (guides && ChangesGuides(steps)) {
+    SCUMBLE_RETURN_IF_ERROR(ApplyToGuides(steps, frame, context.threads, {}, *guides));
+  }
   SCUMBLE_RETURN_IF_ERROR(ApplyFinish(steps, FinishPass::Stage::kPaint, frame, context.threads, progress, *picture));
   SCUMBLE_RETURN_IF_ERROR(ApplyFinish(steps, FinishPass::Stage::kSheet, frame, context.threads, {}, *picture));
   times.emplace_back("finish", watch.Lap());

@@ -8,6 +8,9 @@
 namespace scumble {
 namespace {
 
+constexpr FinishPass::Stage kStages[] = {FinishPass::Stage::kGuides, FinishPass::Stage::kPaint,
+                                         FinishPass::Stage::kSheet};
+
 bool IsLimited(const FinishPass& pass) {
   return !pass.objects.empty() || !pass.materials.empty() || !pass.mask.empty();
 }
@@ -32,12 +35,32 @@ bool Covers(const FinishPass& pass) {
           (toon && toon->base == ToonPass::Color::kAlbedo));
 }
 
+// Of passes that change a guide which nothing reads.
+std::vector<std::string> IdleGuides(const Style& style, std::span<const FinishPass> chain) {
+  std::vector<std::string> doubts;
+  LayerSet read = TransferLayers(style);
+  for (FinishPass pass : chain) {
+    if (pass.at != FinishPass::Stage::kGuides) read.Add(RequiredLayers(pass));
+  }
+  for (const FinishPass& pass : chain) {
+    const Layer layer = ChangedLayer(pass.guide);
+    if (pass.at != FinishPass::Stage::kGuides || !(pass.strength > 0.0) || read.Has(layer)) continue;
+    doubts.push_back("finish " + pass.name + " changes the guide " + Info(layer).name + ", which style " + style.name +
+                     " does not look at: set " +
+                     (layer == Layer::kAlbedo ? "transfer.colorize, or a weight of albedo in transfer.guide_weights"
+                                              : "a weight of luminance in transfer.guide_weights, or give exemplars of "
+                                                "several lights") +
+                     ", or leave it out");
+  }
+  return doubts;
+}
+
 }  // namespace
 
 std::vector<std::string> OrderDoubts(std::span<const FinishPass> passes) {
   std::vector<std::string> doubts;
   std::vector<FinishPass> chain;
-  for (const auto stage : {FinishPass::Stage::kPaint, FinishPass::Stage::kSheet}) {
+  for (const auto stage : kStages) {
     for (const FinishPass& pass : passes) {
       if (pass.at == stage && pass.strength > 0.0 && !IsLimited(pass)) chain.push_back(pass);
     }
@@ -45,6 +68,10 @@ std::vector<std::string> OrderDoubts(std::span<const FinishPass> passes) {
   for (std::size_t later = 1; later < chain.size(); ++later) {
     for (std::size_t i = 0; i < later; ++i) {
       const std::string before = "finish " + chain[i].name, after = chain[later].name;
+      if (chain[i].at == FinishPass::Stage::kGuides &&
+          (chain[later].at != chain[i].at || chain[later].guide != chain[i].guide)) {
+        continue;  // of another picture
+      }
       if (const char* harm = HarmToLines(chain[later]); harm && DrawsLines(chain[i])) {
         doubts.push_back(before + " draws lines, which " + after + " then " + harm + ": put " + after + " before it");
       } else if (Covers(chain[later]) && chain[i].at == chain[later].at) {
@@ -65,6 +92,7 @@ std::vector<std::string> OrderDoubts(const StyleSet& styles) {
     std::vector<FinishPass> chain = style.finish;
     chain.insert(chain.end(), styles.finish.begin(), styles.finish.end());
     for (const std::string& doubt : OrderDoubts(chain)) add(doubt);
+    for (const std::string& doubt : IdleGuides(style, chain)) add(doubt);
     if (style.transfer.edge != EdgeMode::kExemplar || !style.unpainted.empty()) continue;
     for (const FinishPass& pass : chain) {
       const auto* outline = std::get_if<OutlinePass>(&pass.effect);

@@ -145,6 +145,11 @@ Status SetFinish(const std::vector<std::string>& sets, std::vector<FinishPass>& 
   return Ok();
 }
 
+FinishMeasures MeasuresOf(const StyleSet& styles, const GuideSet& guides) {
+  if (styles.options.finish_measures) return *styles.options.finish_measures;
+  return LooksAtMeasures(AllPasses(styles)) ? MeasureFinish(guides) : FinishMeasures();
+}
+
 std::vector<FinishPass> AllPasses(const StyleSet& styles) {
   std::vector<FinishPass> passes;
   for (const Style& style : styles.styles) {

@@ -29,6 +29,9 @@ Expected<std::vector<FinishPass>> OpenFinish(const std::vector<std::string>& nam
 // Applies "finish.NAME.KEY=VALUE" to the passes; an error where none has that name.
 Status SetFinish(const std::vector<std::string>& sets, std::vector<FinishPass>& passes);
 
+// What was given with the styles, or is measured on these guides where a pass looks at it.
+FinishMeasures MeasuresOf(const StyleSet& styles, const GuideSet& guides);
+
 // All passes of the styles and of the run, without their pixels.
 std::vector<FinishPass> AllPasses(const StyleSet& styles);
 

@@ -376,11 +376,11 @@ class Trade {
   }
 
   Status MeasurePaint(VariantPainter& painter, TradeMeasure& measure) {
-    std::optional<Picture> untinted;
-    if (painter.is_tinted()) {
-      SCUMBLE_ASSIGN(untinted, painter.PaintUntinted());
+    std::optional<Picture> bare;
+    if (!painter.is_bare()) {
+      SCUMBLE_ASSIGN(bare, painter.PaintBare());
     }
-    const Picture& picture = untinted ? *untinted : painter.picture();
+    const Picture& picture = bare ? *bare : painter.picture();
     if (painter.field()) {
       SCUMBLE_RETURN_IF_ERROR(reference_->MeasureMosaic(picture, *painter.field(), measure));
     } else {

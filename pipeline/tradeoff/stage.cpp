@@ -10,6 +10,7 @@
 #include "core/style/style_keyframes.h"
 #include "pipeline/frame/frame_painter.h"
 #include "pipeline/shell_quote.h"
+#include "pipeline/style/finish_set.h"
 #include "pipeline/style/style_set.h"
 #include "pipeline/tradeoff/peak_process.h"
 #include "pipeline/variant/quality_ladder.h"
@@ -27,6 +28,7 @@ Expected<Style> OpenStyleWith(const TradeSetup& setup, const std::vector<std::st
   one.sets.insert(one.sets.end(), settings.begin(), settings.end());
   SCUMBLE_ASSIGN(StyleSet styles, OpenStyles(one, context));
   Style style = std::move(styles.styles.front());
+  style.finish.insert(style.finish.end(), styles.finish.begin(), styles.finish.end());
   SCUMBLE_RETURN_IF_ERROR(SetStyleFrame(style, setup.frame.value_or(0)));
   return style;
 }
@@ -93,6 +95,7 @@ RepeatOptions RepeatVariant(const TradeSetup& setup, const TradeStage& stage, co
   const auto add = [&](const std::string& option, const std::string& value) {
     text += " " + option + " " + Quoted(value);
   };
+  for (const std::string& finish : setup.style.finishes) add("--finish", finish);
   for (const std::string& set : setup.style.sets) add("--set", set);
   for (const std::string& set : variant.settings) add("--set", set);
   if (stage.has_paper) add("--set", kNoPaper);
@@ -132,13 +135,20 @@ Expected<VariantPainter> VariantPainter::Prepare(const TradeSetup& setup, const 
       ExposureOf(setup.exposure, {&painter.prepared_, 1}, painter.guides_->ForExposure(), context.threads),
       nullptr,
       false};
+  StyleSet styles;
+  styles.styles = {style}, styles.options = setup.style;
+  painter.finish_.steps = FinishStepsOf(styles, painter.guides_->guides, nullptr, false, [](const auto&) {});
+  if (painter.is_finished()) {
+    painter.finish_.measures = MeasuresOf(styles, painter.guides_->ForExposure());
+    painter.finish_.reference_height = style.transfer.reference_height;
+  }
   painter.context_ = context;
   painter.super_ = SupersampleOf(variant), painter.upscale_ = PictureFactorOf(variant);
   return painter;
 }
 
 Expected<double> VariantPainter::Paint(bool keep_field) {
-  settings_.keep_field = keep_field;
+  settings_.keep_field = keep_field, settings_.finish = is_finished() ? &finish_ : nullptr;
   scratch_ = TransferScratch(), picture_ = Picture();  // what the run before leaves would be a sequence's
   Stopwatch watch;
   SCUMBLE_RETURN_IF_ERROR(
@@ -148,11 +158,11 @@ Expected<double> VariantPainter::Paint(bool keep_field) {
   return watch.Lap();
 }
 
-Expected<Picture> VariantPainter::PaintUntinted() {
+Expected<Picture> VariantPainter::PaintBare() {
   PreparedStyle untinted = prepared_;
   untinted.settings.colorize = 0.0;
   FrameSettings settings = settings_;
-  settings.keep_field = false;
+  settings.keep_field = false, settings.finish = nullptr;
   TransferScratch scratch;
   Picture picture;
   SCUMBLE_RETURN_IF_ERROR(

@@ -45,13 +45,15 @@ class VariantPainter {
   static Expected<VariantPainter> Prepare(const TradeSetup& setup, const Variant& variant, const Style& style,
                                           std::shared_ptr<const VariantGuides> guides, const RunContext& context);
 
-  // Returns the milliseconds of wall clock that the transfer took, into new memory, as the first picture of a run of
-  // stylize is painted. Nothing that a sequence keeps from frame to frame is used.
+  // Returns the milliseconds of wall clock that the transfer and its finishing effects took, into new memory, as the
+  // first picture of a run of stylize is painted. Nothing that a sequence keeps from frame to frame is used.
   Expected<double> Paint(bool keep_field = false);
 
-  // The picture without base colours of the scene, which no exemplar has. Only for measures of the paint.
-  bool is_tinted() const { return prepared_.settings.colorize > 0.0; }
-  Expected<Picture> PaintUntinted();
+  bool is_finished() const { return !finish_.steps.empty(); }
+  // Whether the picture shows anything but paint: base colours of the scene, or finishing effects, which no exemplar
+  // has. PaintBare paints without them. Only for measures of the paint.
+  bool is_bare() const { return !(prepared_.settings.colorize > 0.0) && !is_finished(); }
+  Expected<Picture> PaintBare();
 
   const Picture& picture() const { return super_ > 1 ? small_ : picture_; }
   const SourceField* field() const {
@@ -68,6 +70,7 @@ class VariantPainter {
   std::shared_ptr<const VariantGuides> guides_;
   PreparedStyle prepared_;
   FrameSettings settings_;
+  FrameFinish finish_;
   RunContext context_;
   TransferScratch scratch_;
   double prepare_ms_ = 0.0;

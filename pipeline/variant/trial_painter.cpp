@@ -4,6 +4,7 @@
 #include "core/io/picture_file.h"
 #include "core/style/style_keyframes.h"
 #include "pipeline/frame/frame_painter.h"
+#include "pipeline/style/finish_set.h"
 #include "pipeline/variant/quality_ladder.h"
 #include "transfer/upsample_guides.h"
 
@@ -11,10 +12,10 @@ namespace scumble {
 
 Status TrialPainter::Prepare(const Variant& variant, const GuideSet& guides, int upsample) {
   if (prepared_for_ == variant.name) return Ok();
-  StyleSet styles = styles_;
-  SCUMBLE_RETURN_IF_ERROR(ApplyVariant(variant, styles));
+  variant_ = styles_;
+  SCUMBLE_RETURN_IF_ERROR(ApplyVariant(variant, variant_));
   prepared_.clear();
-  for (Style& style : styles.styles) {
+  for (Style& style : variant_.styles) {
     SCUMBLE_RETURN_IF_ERROR(SetStyleFrame(style, frame_.value_or(0)));
     SCUMBLE_ASSIGN(PreparedStyle one, PrepareStyle(style, guides.height() * upsample, context_));
     prepared_.push_back(std::move(one));
@@ -50,8 +51,15 @@ Expected<double> TrialPainter::Paint(const Variant& variant, const GuideSet& giv
     SCUMBLE_ASSIGN(map, MapStyles(styles_, guides, name_));
   }
   SCUMBLE_ASSIGN(const Picture* const over, Over(guides));
-  const FrameSettings settings{picture_.seed, frame_.value_or(0),   RateOf(picture_.fps, guides), exposure_,
-                               over,          picture_.KeepsField()};
+  FrameSettings settings{picture_.seed, frame_.value_or(0),   RateOf(picture_.fps, guides), exposure_,
+                         over,          picture_.KeepsField()};
+  FrameFinish finish;
+  finish.steps = FinishStepsOf(variant_, guides, needs_map ? &map : nullptr, over != nullptr, [](const auto&) {});
+  if (!finish.steps.empty()) {
+    if (!measures_) measures_ = MeasuresOf(styles_, given);
+    finish.measures = *measures_, finish.reference_height = variant_.first().transfer.reference_height;
+    settings.finish = &finish;
+  }
   TransferScratch scratch;
   Picture picture;
   watch.Lap();

@@ -26,9 +26,9 @@ class TrialPainter {
       : styles_(styles), picture_(picture), frame_(frame), name_(name), over_file_(over), context_(context) {}
 
   // Upsamples the guides or scales up the picture, if the variant or the request asks for it, and paints into new
-  // memory, as the first picture of a run is painted. Returns the milliseconds of wall clock that all of it took.
-  // Preparing the style and reading the picture underneath are not counted. One of another size is left out; the run
-  // will refuse it.
+  // memory, with its finishing effects, as the first picture of a run is painted. Returns the milliseconds of wall
+  // clock that all of it took. Preparing the style and reading the picture underneath are not counted. One of another
+  // size is left out; the run will refuse it.
   Expected<double> Paint(const Variant& variant, const GuideSet& guides);
 
  private:
@@ -43,6 +43,8 @@ class TrialPainter {
   const RunContext& context_;
   std::string prepared_for_;  // that variant's name
   std::vector<PreparedStyle> prepared_;
+  StyleSet variant_;  // the styles with the variant's settings, at the frame
+  std::optional<FinishMeasures> measures_;
   double exposure_ = 0.0;
   std::optional<Picture> over_;
 };

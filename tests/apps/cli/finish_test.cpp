@@ -1,7 +1,10 @@
 // Finishing effects from the command line: with a transfer, after one, and on pictures of any renderer.
 #include <algorithm>
+#include <array>
 #include <filesystem>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/support/cli_harness.h"
@@ -286,6 +289,32 @@ TEST_F(CliFinish, CatchersHaveNoLines) {
          "rendered.png"});
   const Picture nothing = Read("rendered.png");
   EXPECT_EQ(std::count(nothing.rgba.begin(), nothing.rgba.end(), 0), std::ptrdiff_t(nothing.rgba.size()));
+}
+
+// Light that a pass has flattened is matched as flat light is, and base colours tint as they are then.
+TEST_F(CliFinish, ChangesGuidesBeforePaintIsMatched) {
+  WriteStyle("tinted", "[transfer]\ncolorize = 1\n");
+  const auto paint = [&](const Arguments& more, const std::string& name) {
+    Arguments arguments{"stylize", kToys, "--size", "64x48", "--style", "tinted", "-o", name};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const std::string errors = RunOk(arguments).err;
+    return std::pair(Read(name), errors);
+  };
+  const auto [plain, silent] = paint({}, "plain.png");
+  const auto [grey, also_silent] = paint(
+      {"--finish", "fill", "--set", "finish.fill.at=\"guides\"", "--set", "finish.fill.color=\"#404040\""}, "grey.png");
+  EXPECT_NE(plain.rgba, grey.rgba);
+  EXPECT_FALSE(Contains(also_silent, "does not look at"));
+  std::set<std::array<std::uint16_t, 3>> colors;
+  for (std::size_t i = 0; i < grey.rgba.size(); i += 4) {
+    if (grey.rgba[i + 3] == 65535) colors.insert({grey.rgba[i], grey.rgba[i + 1], grey.rgba[i + 2]});
+  }
+  EXPECT_LE(colors.size(), 3u) << "one base colour, one paint";
+  const auto [idle, warned] =
+      paint({"--finish", "tones", "--set", "finish.tones.at=\"guides\"", "--set", "finish.tones.guide=\"luminance\""},
+            "idle.png");
+  EXPECT_EQ(idle.rgba, plain.rgba);
+  EXPECT_TRUE(Contains(warned, "changes the guide luminance, which style tinted does not look at"));
 }
 
 TEST_F(CliFinish, UpsampledGuidesAreWarnedOf) {

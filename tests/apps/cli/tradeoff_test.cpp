@@ -508,5 +508,20 @@ TEST_F(Tradeoff, GuidesWithoutRobustModeSaySo) {
   EXPECT_LE(different, 3u);
 }
 
+// Pictures and times are those with the effects; figures of the paint are those without, which no exemplar has.
+TEST_F(Tradeoff, KnowsFinishingEffects) {
+  const Arguments more{"--only", "levels 1", "--json"};
+  const CommandResult plain = RunOk(With(Small(Scene("suzanne.glb"), more), {"-o", "plain"}));
+  const CommandResult inked =
+      RunOk(With(Small(Scene("suzanne.glb"), more), {"-o", "inked", "--finish", "fill", "--finish", "outline"}));
+  const nlohmann::json before = plain.Json()["ways"][0], after = inked.Json()["ways"][0];
+  for (const char* key : {"texture", "energy", "missing", "guide_degrees"}) EXPECT_EQ(before[key], after[key]) << key;
+  EXPECT_TRUE(Contains(after["options"].get<std::string>(), "--finish fill --finish outline")) << after["options"];
+  const auto first = ReadPicture(At("plain/" + before["picture"].get<std::string>()));
+  const auto second = ReadPicture(At("inked/" + after["picture"].get<std::string>()));
+  ASSERT_TRUE(first && second);
+  EXPECT_NE(first->rgba, second->rgba);
+}
+
 }  // namespace
 }  // namespace scumble
