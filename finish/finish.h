@@ -55,6 +55,9 @@ struct FinishFrame {
   FinishMeasures measures;
   double scale = 1.0;      // pixels of the picture for one of the reference height
   std::uint64_t seed = 0;  // of all that is left to chance
+  // Where `guides` were upsampled: what they were made of, a whole number of times smaller, with their layers. Strokes
+  // are traced on these, which have no blocks.
+  const GuideSet* small_guides = nullptr;
 };
 
 // kInput where the guides lack a layer that a step reads, or where a width is to follow the depth of an orthographic

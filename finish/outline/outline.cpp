@@ -32,40 +32,70 @@ void InkFromPaint(bool is_complement, std::uint16_t* texel) {
   for (int c = 0; c < 3; ++c) texel[c] = Srgb16FromLinear(linear[c]);
 }
 
-StrokeCover CoverByStrokes(const OutlinePass& pass, const FinishFrame& frame, const LineNoise& noise,
+// `frame`: with the guides of the borders, which are `factor` times smaller than the picture.
+StrokeCover CoverByStrokes(const OutlinePass& pass, const FinishFrame& frame, int factor, const LineNoise& noise,
                            BorderMap& borders, bool with_owner) {
-  const std::vector<LineChain> chains =
-      TraceLines(borders, *frame.guides, std::max(kShortest, kShortest * frame.scale));
+  std::vector<LineChain> chains =
+      TraceLines(borders, *frame.guides, std::max(kShortest, kShortest * frame.scale / factor));
+  for (LineChain& chain : chains) {
+    const auto times = static_cast<float>(factor);
+    for (LinePoint& point : chain.points) point.at *= times;
+    chain.first *= times, chain.last *= times;
+  }
   std::vector<std::vector<StrokePiece>> strokes(chains.size());
   tbb::parallel_for(std::size_t(0), chains.size(),
                     [&](std::size_t i) { strokes[i] = StrokeOf(pass, frame, noise, chains[i]); });
   std::vector<StrokePiece> pieces;
   for (const auto& stroke : strokes) pieces.insert(pieces.end(), stroke.begin(), stroke.end());
-  return CoverOf(pieces, frame.guides->width(), frame.guides->height(), with_owner);
+  return CoverOf(pieces, frame.guides->width() * factor, frame.guides->height() * factor, with_owner);
 }
+
+// The pixel in the middle of a block of factor × factor, which a pixel of a smaller picture stands for.
+class BlockMiddle {
+ public:
+  BlockMiddle(int small_width, int factor) : width_(std::size_t(small_width)), factor_(std::size_t(factor)) {}
+  std::size_t operator()(std::size_t small) const {
+    const std::size_t x = small % width_, y = small / width_;
+    return (y * factor_ + factor_ / 2) * (width_ * factor_) + x * factor_ + factor_ / 2;
+  }
+
+ private:
+  std::size_t width_, factor_;
+};
 
 }  // namespace
 
 void DrawOutline(const OutlinePass& pass, double strength, std::span<const std::uint8_t> only,
                  std::span<const std::uint16_t> shares, const FinishFrame& frame, Picture& picture) {
-  const int width = picture.width, height = picture.height;
-  BorderMap borders = FindBorders(pass, *frame.guides, frame.scale, only);
   const bool is_field = pass.form == OutlinePass::Form::kField, strays = pass.wobble > 0.0 && !is_field;
+  FinishFrame traced = frame;
+  if (frame.small_guides && !is_field) traced.guides = frame.small_guides;
+  const GuideSet& guides = *traced.guides;
+  const int width = guides.width(), height = guides.height(), factor = picture.width / width;
+  const double scale = frame.scale / factor;  // pixels of those guides for one of the reference height
+  const BlockMiddle middle(width, factor);
+  std::vector<std::uint8_t> small_only;
+  if (factor > 1 && !only.empty()) {
+    small_only.resize(guides.pixel_count());
+    for (std::size_t i = 0; i < small_only.size(); ++i) small_only[i] = only[middle(i)];
+    only = small_only;
+  }
+  BorderMap borders = FindBorders(pass, guides, scale, only);
   std::optional<SurfaceScale> surface;
   std::optional<NoiseField> across, down, gaps;
-  if (pass.stick && (strays || pass.gaps > 0.0)) surface.emplace(*frame.guides);
+  if (pass.stick && (strays || pass.gaps > 0.0)) surface.emplace(guides);
   if (pass.stick && strays) {
-    const double wave = pass.wobble_length * frame.scale;
+    const double wave = pass.wobble_length * scale;
     across.emplace(Hash(frame.seed, 1), wave, &*surface, width, height);
     down.emplace(Hash(frame.seed, 2), wave, &*surface, width, height);
   }
   if (pass.gaps > 0.0) {
-    gaps.emplace(Hash(frame.seed, 3), pass.gap_length * frame.scale, surface ? &*surface : nullptr, width, height);
+    gaps.emplace(Hash(frame.seed, 3), pass.gap_length * scale, surface ? &*surface : nullptr, width, height);
   }
   const LineNoise noise{across ? &*across : nullptr, down ? &*down : nullptr, gaps ? &*gaps : nullptr};
   const bool of_paint = pass.color != OutlinePass::Color::kInk, with_owner = of_paint || !shares.empty();
-  const StrokeCover cover = is_field ? CoverByDistance(pass, frame, noise.gaps, borders, with_owner)
-                                     : CoverByStrokes(pass, frame, noise, borders, with_owner);
+  const StrokeCover cover = is_field ? CoverByDistance(pass, traced, noise.gaps, borders, with_owner)
+                                     : CoverByStrokes(pass, traced, factor, noise, borders, with_owner);
   std::vector<std::uint16_t> paint;  // as it was before the lines
   if (of_paint) paint = picture.rgba;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cover.share.size(), 1 << 14), [&](const auto& part) {
@@ -78,13 +108,13 @@ void DrawOutline(const OutlinePass& pass, double strength, std::span<const std::
       if (of_paint) {
         const std::uint32_t owner = cover.owner[i];
         if (!has_last || owner != last_owner) {
-          std::copy_n(paint.data() + 4 * std::size_t(owner), 4, last_ink);
+          std::copy_n(paint.data() + 4 * middle(owner), 4, last_ink);
           InkFromPaint(pass.color == OutlinePass::Color::kComplement, last_ink);
           last_owner = owner, has_last = true;
         }
         std::copy_n(last_ink, 3, texel);
       }
-      const float share = shares.empty() ? 1.0f : static_cast<float>(shares[cover.owner[i]]) / 65535.0f;
+      const float share = shares.empty() ? 1.0f : static_cast<float>(shares[middle(cover.owner[i])]) / 65535.0f;
       texel[3] = static_cast<std::uint16_t>(cover.share[i] * static_cast<float>(strength) * share * 65535.0f + 0.5f);
       if (texel[3] == 0) continue;
       std::uint16_t* const pixel = picture.rgba.data() + 4 * i;

@@ -33,7 +33,8 @@ FrameRate RateOf(std::optional<FrameRate> given, const GuideSet& guides);
 struct FrameFinish {
   std::vector<FinishStep> steps;
   FinishMeasures measures;
-  int reference_height = 0;  // of lengths; 0: they are pixels
+  int reference_height = 0;                // of lengths; 0: they are pixels
+  const GuideSet* small_guides = nullptr;  // as FinishFrame has them
 };
 
 struct FrameSettings {

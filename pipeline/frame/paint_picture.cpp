@@ -113,12 +113,6 @@ void WarnOfIdleOptions(const StyleSet& styles, const PictureRequest& request, co
     context.Warn(fmt::format("--exposure {}", *request.exposure) + " changes nothing: style " + styles.first().name +
                  " has one exemplar and no weight for light, so it does not look at it");
   }
-  if (request.GuideFactor() > 1 && !AllPasses(styles).empty()) {
-    context.Warn(
-        fmt::format("--upsample {}: finishing effects see the guides as they were made, so lines and bands are "
-                    "in blocks of {} pixels; give --upscale too, or leave it out",
-                    request.upsample, request.upsample));
-  }
   if (request.fast_io && !HasEnding(request.output, {".exr"})) {
     context.Warn("--fast-io changes nothing: " + request.output +
                  " is no .exr; --png-level 1 makes PNG quick to write");
@@ -179,6 +173,7 @@ FrameFinish FinishOf(const StyleSet& styles, const GuideSet& given, const GuideS
   finish.reference_height = styles.first().transfer.reference_height;
   MeasureFinishOf(styles, given, context, state);
   if (state.finish_measures) finish.measures = *state.finish_measures;
+  if (&given != &guides) finish.small_guides = &given;
   return finish;
 }
 

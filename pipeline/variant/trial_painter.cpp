@@ -58,6 +58,7 @@ Expected<double> TrialPainter::Paint(const Variant& variant, const GuideSet& giv
   if (!finish.steps.empty()) {
     if (!measures_) measures_ = MeasuresOf(styles_, given);
     finish.measures = *measures_, finish.reference_height = variant_.first().transfer.reference_height;
+    if (larger) finish.small_guides = &given;
     settings.finish = &finish;
   }
   TransferScratch scratch;

@@ -72,6 +72,44 @@ TEST(Outline, HardCoverageGivesASmoothRingToo) {
   EXPECT_LT(ring.deviation, 0.25);
 }
 
+// Guides of a third of the size, in blocks: traced there, lines are as smooth and as wide as elsewhere.
+TEST(Outline, OfUpsampledGuidesHasNoBlocks) {
+  const GuideSet small = BallGuides(110, 40.0f);
+  GuideSet large(330, 330);
+  for (const Layer layer : {Layer::kCoverage, Layer::kNormal, Layer::kDepth, Layer::kObject}) {
+    large.Add(layer);
+    for (int c = 0; c < ChannelCount(layer); ++c) {
+      for (int i = 0; i < 330 * 330; ++i) {
+        large.Plane(layer, c)[std::size_t(i)] = small.Plane(layer, c)[small.Index(i % 330 / 3, i / 330 / 3)];
+      }
+    }
+  }
+  FinishStep step = StepOf(OutlinePass());
+  FinishFrame frame{&large, {}, 2.0, 8, &small};
+  const auto draw = [&] {
+    Picture picture(330, 330);
+    EXPECT_TRUE(ApplyFinish(std::span(&step, 1), FinishPass::Stage::kPaint, frame, 0, {}, picture));
+    std::vector<double> ink;
+    for (std::size_t i = 3; i < picture.rgba.size(); i += 4) ink.push_back(picture.rgba[i] / 65535.0);
+    return ink;
+  };
+  const Ring ring = RingOf(draw(), 330, {165, 165});
+  EXPECT_NEAR(ring.radius, 120.0, 0.3);
+  EXPECT_LT(ring.deviation, 0.3);
+  EXPECT_NEAR(ring.area / (2.0 * std::numbers::pi * 120.0 * 5.0), 1.0, 0.02);
+  frame.small_guides = nullptr;
+  EXPECT_GT(RingOf(draw(), 330, {165, 165}).deviation, 0.5) << "the blocks";
+  // The right half alone, and that at half the strength.
+  frame.small_guides = &small;
+  step.only.resize(330 * 330), step.share.resize(330 * 330);
+  for (std::size_t i = 0; i < step.only.size(); ++i) step.only[i] = i % 330 >= 165, step.share[i] = 32768;
+  const std::vector<double> half = draw();
+  double left = 0.0, area = 0.0;
+  for (std::size_t i = 0; i < half.size(); ++i) (i % 330 < 159 ? left : area) += half[i];
+  EXPECT_EQ(left, 0.0);
+  EXPECT_NEAR(area / (std::numbers::pi * 120.0 * 2.5), 1.0, 0.05);
+}
+
 TEST(Outline, ThinnerThanAPixelIsFainter) {
   OutlinePass pass;
   pass.width = 0.4, pass.min_width = 0.0;
