@@ -145,9 +145,10 @@ Status SetFinish(const std::vector<std::string>& sets, std::vector<FinishPass>& 
   return Ok();
 }
 
-FinishMeasures MeasuresOf(const StyleSet& styles, const GuideSet& guides) {
-  if (styles.options.finish_measures) return *styles.options.finish_measures;
-  return LooksAtMeasures(AllPasses(styles)) ? MeasureFinish(guides) : FinishMeasures();
+FinishMeasures MeasuresOf(std::span<const FinishPass> passes, const std::optional<FinishMeasures>& given,
+                          const GuideSet& guides) {
+  if (given) return *given;
+  return LooksAtMeasures(passes) ? MeasureFinish(guides) : FinishMeasures();
 }
 
 std::vector<FinishPass> AllPasses(const StyleSet& styles) {

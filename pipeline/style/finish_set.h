@@ -2,6 +2,8 @@
 #pragma once
 
 #include <functional>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -29,8 +31,9 @@ Expected<std::vector<FinishPass>> OpenFinish(const std::vector<std::string>& nam
 // Applies "finish.NAME.KEY=VALUE" to the passes; an error where none has that name.
 Status SetFinish(const std::vector<std::string>& sets, std::vector<FinishPass>& passes);
 
-// What was given with the styles, or is measured on these guides where a pass looks at it.
-FinishMeasures MeasuresOf(const StyleSet& styles, const GuideSet& guides);
+// What was given, or is measured on these guides where a pass looks at it.
+FinishMeasures MeasuresOf(std::span<const FinishPass> passes, const std::optional<FinishMeasures>& given,
+                          const GuideSet& guides);
 
 // All passes of the styles and of the run, without their pixels.
 std::vector<FinishPass> AllPasses(const StyleSet& styles);

@@ -7,6 +7,7 @@
 
 #include "pipeline/scene/blender_process.h"
 #include "pipeline/scene/scene_guides.h"
+#include "pipeline/style/finish_set.h"
 
 namespace scumble {
 
@@ -16,6 +17,15 @@ namespace {
 constexpr std::string_view kPeakLine = "{\"peak_bytes\": ";
 
 }  // namespace
+
+std::vector<std::pair<std::string, std::string>> FinishArguments(const TradeSetup& setup) {
+  std::vector<std::pair<std::string, std::string>> given;
+  for (const std::string& finish : setup.style.finishes) given.emplace_back("--finish", finish);
+  if (setup.style.finish_measures) {
+    given.emplace_back("--finish-measures", MeasuresText(*setup.style.finish_measures));
+  }
+  return given;
+}
 
 std::vector<std::pair<std::string, std::string>> SceneArguments(const TradeSetup& setup) {
   const SceneRequest& scene = setup.scene;
@@ -49,6 +59,7 @@ std::vector<std::string> TradeArguments(const TradeSetup& setup, const RunContex
   const std::string& scene = setup.scene.scene;
   words.push_back(scene.starts_with("-") ? "./" + scene : scene);
   add("--style", setup.style.style);
+  for (const auto& [option, value] : FinishArguments(setup)) add(option, value);
   for (const std::string& set : setup.style.sets) add("--set", set);
   add("--size", SizeToText(setup.scene.size));
   for (const auto& [option, value] : SceneArguments(setup)) words.push_back(option + "=" + value);

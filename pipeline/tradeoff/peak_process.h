@@ -15,6 +15,9 @@ namespace scumble {
 // are not the usual ones.
 std::vector<std::pair<std::string, std::string>> SceneArguments(const TradeSetup& setup);
 
+// Options of finishing effects, with their values.
+std::vector<std::pair<std::string, std::string>> FinishArguments(const TradeSetup& setup);
+
 // The command's arguments that set this up, behind the program's name. No option of output is among them.
 std::vector<std::string> TradeArguments(const TradeSetup& setup, const RunContext& context);
 

@@ -95,7 +95,7 @@ RepeatOptions RepeatVariant(const TradeSetup& setup, const TradeStage& stage, co
   const auto add = [&](const std::string& option, const std::string& value) {
     text += " " + option + " " + Quoted(value);
   };
-  for (const std::string& finish : setup.style.finishes) add("--finish", finish);
+  for (const auto& [option, value] : FinishArguments(setup)) add(option, value);
   for (const std::string& set : setup.style.sets) add("--set", set);
   for (const std::string& set : variant.settings) add("--set", set);
   if (stage.has_paper) add("--set", kNoPaper);
@@ -135,13 +135,10 @@ Expected<VariantPainter> VariantPainter::Prepare(const TradeSetup& setup, const 
       ExposureOf(setup.exposure, {&painter.prepared_, 1}, painter.guides_->ForExposure(), context.threads),
       nullptr,
       false};
-  StyleSet styles;
-  styles.styles = {style}, styles.options = setup.style;
-  painter.finish_.steps = FinishStepsOf(styles, painter.guides_->guides, nullptr, false, [](const auto&) {});
-  if (painter.is_finished()) {
-    painter.finish_.measures = MeasuresOf(styles, painter.guides_->ForExposure());
-    painter.finish_.reference_height = style.transfer.reference_height;
-  }
+  const GuideSet& seen = painter.guides_->guides;
+  painter.finish_.steps = FinishStepsOf(style.finish, {seen.width(), seen.height()}, &seen, [](const auto&) {});
+  painter.finish_.measures = MeasuresOf(style.finish, setup.style.finish_measures, painter.guides_->ForExposure());
+  painter.finish_.reference_height = style.transfer.reference_height;
   painter.context_ = context;
   painter.super_ = SupersampleOf(variant), painter.upscale_ = PictureFactorOf(variant);
   return painter;

@@ -20,6 +20,7 @@ Status TrialPainter::Prepare(const Variant& variant, const GuideSet& guides, int
     SCUMBLE_ASSIGN(PreparedStyle one, PrepareStyle(style, guides.height() * upsample, context_));
     prepared_.push_back(std::move(one));
   }
+  for (Style& style : variant_.styles) style.exemplars.clear(), style.paper = {};  // what is large, and prepared
   exposure_ = ExposureOf(picture_.exposure, prepared_, guides, context_.threads);
   prepared_for_ = variant.name;
   return Ok();
@@ -56,7 +57,7 @@ Expected<double> TrialPainter::Paint(const Variant& variant, const GuideSet& giv
   FrameFinish finish;
   finish.steps = FinishStepsOf(variant_, guides, needs_map ? &map : nullptr, over != nullptr, [](const auto&) {});
   if (!finish.steps.empty()) {
-    if (!measures_) measures_ = MeasuresOf(styles_, given);
+    if (!measures_) measures_ = MeasuresOf(AllPasses(styles_), styles_.options.finish_measures, given);
     finish.measures = *measures_, finish.reference_height = variant_.first().transfer.reference_height;
     if (larger) finish.small_guides = &given;
     settings.finish = &finish;

@@ -43,7 +43,7 @@ class TrialPainter {
   const RunContext& context_;
   std::string prepared_for_;  // that variant's name
   std::vector<PreparedStyle> prepared_;
-  StyleSet variant_;  // the styles with the variant's settings, at the frame
+  StyleSet variant_;  // the styles with the variant's settings, at the frame, without pictures
   std::optional<FinishMeasures> measures_;
   double exposure_ = 0.0;
   std::optional<Picture> over_;

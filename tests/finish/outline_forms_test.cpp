@@ -147,7 +147,8 @@ TEST(LineField, RingHasTheWidthOfStrokes) {
   const GuideSet guides = BallGuides(220, 80.0f);
   for (const double width : {3.0, 8.0, 20.0}) {
     pass.width = width;
-    EXPECT_NEAR(Total(ShareOfInk(pass, guides)) / (2.0 * std::numbers::pi * 80.0 * width), 1.0, 0.03 + 0.2 / width) << width;
+    EXPECT_NEAR(Total(ShareOfInk(pass, guides)) / (2.0 * std::numbers::pi * 80.0 * width), 1.0, 0.03 + 0.2 / width)
+        << width;
   }
   pass.width = 8.0;
   EXPECT_EQ(ShareOfInk(pass, guides, 1), ShareOfInk(pass, guides, 4));

@@ -219,7 +219,9 @@ void AddTradeoffVerb(CLI::App& app, Globals& globals, Action& chosen) {
       "5 s is not repeated. Memory is the peak of a process that makes the one picture, and is not measured of a "
       ".blend,\n"
       "which would be exported for each way. Everything is measured without paper, and in the one style, whatever the\n"
-      "scene says; colorized styles are measured before the scene's colours are on them.\n");
+      "scene says; colorized styles are measured before the scene's colours are on them, and finished ones before "
+      "their\n"
+      "effects, which pictures and times are with.\n");
   AddViewOptions(*sub, verb->scene);
   sub->add_option(
          "--frame", verb->setup.frame,
@@ -240,6 +242,7 @@ void AddTradeoffVerb(CLI::App& app, Globals& globals, Action& chosen) {
   AddCastOptions(*sub, verb->scene);
   AddSampleOptions(*sub, verb->scene);
   AddOneStyleOptions(*sub, verb->setup.style, true);
+  AddFinishOptions(*sub, verb->setup.style.finishes, verb->setup.style.finish_measures);
   sub->add_option(
          "--only", verb->setup.only,
          "these axes alone, as levels,nearest, or ways by name, * stands for any text: 'levels*'; the style itself is "

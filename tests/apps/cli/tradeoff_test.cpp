@@ -517,8 +517,8 @@ TEST_F(Tradeoff, KnowsFinishingEffects) {
   const nlohmann::json before = plain.Json()["ways"][0], after = inked.Json()["ways"][0];
   for (const char* key : {"texture", "energy", "missing", "guide_degrees"}) EXPECT_EQ(before[key], after[key]) << key;
   EXPECT_TRUE(Contains(after["options"].get<std::string>(), "--finish fill --finish outline")) << after["options"];
-  const auto first = ReadPicture(At("plain/" + before["picture"].get<std::string>()));
-  const auto second = ReadPicture(At("inked/" + after["picture"].get<std::string>()));
+  const auto first = ReadPicture(At("plain/pictures/" + before["picture"].get<std::string>()));
+  const auto second = ReadPicture(At("inked/pictures/" + after["picture"].get<std::string>()));
   ASSERT_TRUE(first && second);
   EXPECT_NE(first->rgba, second->rgba);
 }
