@@ -57,8 +57,8 @@ struct FinishFrame {
 };
 
 // kInput where the guides lack a layer that a step reads, or where a width is to follow the depth of an orthographic
-// view, which has no sizes, where near is not before far, or where a palette has no example. The message names the
-// pass.
+// view, which has no sizes, where near is not before far, or where a palette has no example and a ramp no colours. The
+// message names the pass.
 Status CheckFinish(std::span<const FinishStep> steps, const GuideSet* guides, const FinishMeasures& measures = {});
 
 // Applies the steps of that stage to a picture with straight alpha. Pixels of alpha 0 stay so, but where lines run. A
