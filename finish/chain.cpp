@@ -230,6 +230,13 @@ Status CheckDepths(const FinishPass& pass, const FinishMeasures& measures) {
                     pass.name + ".far");
 }
 
+Status CheckRamp(const FinishPass& pass) {
+  const auto* toon = std::get_if<ToonPass>(&pass.effect);
+  if (!toon || toon->shading != ToonPass::Shading::kRamp || toon->ramp_colors) return Ok();
+  return InputError("finish " + pass.name + ": shading is \"ramp\", and there are no colours for it: set finish." +
+                    pass.name + ".ramp to colours from dark to light, \"#202040 #fff4d0\", or to a picture's file");
+}
+
 Status CheckMask(const FinishPass& pass) {
   const FinishMask& mask = pass.mask;
   if (!(mask.near > 0.0) || !(mask.far > 0.0) || mask.near < mask.far) return Ok();
@@ -252,6 +259,7 @@ Status CheckFinish(std::span<const FinishStep> steps, const GuideSet* guides, co
       return InputError("finish " + step.pass.name + ": there is no painting whose palette it could take: set finish." +
                         step.pass.name + ".like to a picture's file, or to colours, \"#203050 #f0e0c0\"");
     }
+    SCUMBLE_RETURN_IF_ERROR(CheckRamp(step.pass));
     SCUMBLE_RETURN_IF_ERROR(CheckMask(step.pass));
     const auto* outline = std::get_if<OutlinePass>(&step.pass.effect);
     if (outline && outline->thin > 0.0 && guides && guides->camera && guides->camera->IsOrthographic()) {

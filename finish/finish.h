@@ -61,8 +61,8 @@ struct FinishFrame {
 };
 
 // kInput where the guides lack a layer that a step reads, or where a width is to follow the depth of an orthographic
-// view, which has no sizes, where near is not before far, or where a palette has no example. The message names the
-// pass.
+// view, which has no sizes, where near is not before far, or where a palette has no example and a ramp no colours. The
+// message names the pass.
 Status CheckFinish(std::span<const FinishStep> steps, const GuideSet* guides, const FinishMeasures& measures = {});
 
 // Whether any of the steps is of the stage kGuides.

@@ -29,7 +29,10 @@ bool Looks(const ShadowsPass& pass) { return pass.source != ShadowsPass::Source:
 bool Looks(const SmoothPass&) { return false; }
 bool Looks(const EdgesPass& pass) { return pass.tone == EdgesPass::Tone::kLight; }
 bool Looks(const HatchPass& pass) { return pass.tone == HatchPass::Tone::kLight; }
-bool Looks(const ToonPass&) { return true; }
+bool Looks(const ToonPass& pass) {
+  const bool by_depth = pass.shading == ToonPass::Shading::kRamp && pass.ramp_rows == ToonPass::Rows::kDepth;
+  return pass.light == ToonPass::Light::kLuminance || by_depth;
+}
 bool Looks(const RenderPass&) { return true; }
 bool Looks(const DepthPass& pass) { return pass.near == 0.0 || pass.far == 0.0; }
 bool Looks(const TonesPass&) { return false; }

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "guidegen/guidegen.h"
+#include "guidegen/light/key_lamp.h"
 #include "guidegen/light/path_layers.h"
 #include "guidegen/scene_textures.h"
 
@@ -55,12 +56,16 @@ std::string LayerCost(Layer layer, const Scene& scene, const GuidegenOptions& op
     case Layer::kPosition:
     case Layer::kPref:
     case Layer::kMotion:
+    case Layer::kUv:
       return "none: follows from the primary rays";
     case Layer::kAlbedo:
       return HasTexturedColor(scene) ? "1 texture lookup per covered pixel" : "none: no material has a texture";
     case Layer::kLuminance:
     case Layer::kShadow:
       return SupplyOf(scene).light ? "shadow rays" : "none: the scene has no light, so it is 0";
+    case Layer::kCosine:
+      return FindKeyLamp(scene) ? "none: follows from the primary rays and the place of the brightest lamp"
+                                : "none: the scene has no lamp, so it is 0";
     default:
       return PathCost(layer, scene, options);
   }

@@ -49,7 +49,8 @@ void CheckTextures(const Scene& scene, const GuidegenOptions& options) {
 
 bool NeedsLight(const LayerSet& layers) {
   for (const LayerInfo& info : AllLayers()) {
-    const bool lit = info.layer == Layer::kLuminance || info.layer == Layer::kShadow || PathLayerExpression(info.layer);
+    const bool lit = info.layer == Layer::kLuminance || info.layer == Layer::kShadow || info.layer == Layer::kCosine ||
+                     PathLayerExpression(info.layer);
     if (lit && layers.Has(info.layer)) return true;
   }
   return false;
@@ -122,6 +123,14 @@ bool SameTriangles(const Mesh& now, const Mesh& next) {
     }
   }
   return true;
+}
+
+// The lamp is chosen in the world, so that the camera has no say in which of equal ones it is.
+void PlaceKeyLamp(const Scene& scene, View& view) {
+  view.key_lamp = FindKeyLamp(scene);
+  if (!view.key_lamp) return;
+  glm::dvec3& at = view.key_lamp->at;
+  at = view.key_lamp->endless ? view.camera.DirectionToView(at) : view.camera.ViewFromWorld(at);
 }
 
 // The instances of the next frame in the order of this one's.
@@ -230,6 +239,7 @@ struct RayCast {
       view.world_radiance = scene.world_radiance;
       view.supply = SupplyOf(scene);
       SCUMBLE_RETURN_IF_ERROR(CheckOpenEnd(options, view.supply));
+      if (options.layers.Has(Layer::kCosine)) PlaceKeyLamp(scene, view);
     }
     if (next && options.layers.Has(Layer::kMotion)) {
       for (const Mesh& mesh : next->scene.meshes) CheckMesh(mesh, next->scene);

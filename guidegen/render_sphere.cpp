@@ -46,6 +46,7 @@ Expected<GuidegenResult> RenderSphereGuides(const SphereOptions& options) {
   view.bends_normals = false;  // a sphere is its own geometry
   SCUMBLE_ASSIGN(view.camera, CameraRays::Make(SphereCamera(), options.size, options.size));
   SCUMBLE_ASSIGN(view.lights, PlaceLights({SphereSun(options)}, view.camera));
+  view.key_lamp = KeyLamp{true, -view.lights[0].axis};
   Material material;
   material.bsdf = Bsdf::kDiffuse;
   view.supply.light = view.supply.diffuse = true;

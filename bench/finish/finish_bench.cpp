@@ -5,12 +5,14 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "bench/finish/rivals.h"
 #include "core/image/stopwatch.h"
+#include "core/style/color_ramp.h"
 #include "core/style/finish_file.h"
 #include "core/style/finish_keys.h"
 #include "finish/area/gaussian_rows.h"
@@ -41,7 +43,7 @@ int Run(int runs) {
   Stylizer stylizer;
   SceneSettings scene;
   scene.file = SCUMBLE_SOURCE_DIR "/scenes/stilllife.glb", scene.width = 1920, scene.height = 1080;
-  const auto layers = stylizer.Guides(scene, {Layer::kLuminance, Layer::kShadow, Layer::kAlbedo});
+  const auto layers = stylizer.Guides(scene, {Layer::kLuminance, Layer::kShadow, Layer::kAlbedo, Layer::kCosine});
   const auto painted = stylizer.Paint(scene, {.style = SCUMBLE_SOURCE_DIR "/exemplars/oil"});
   if (!layers || !painted) {
     return std::fprintf(stderr, "%s\n", (layers ? painted.error() : layers.error()).message.c_str()), 3;
@@ -78,6 +80,17 @@ int Run(int runs) {
     if (auto* const palette = std::get_if<PalettePass>(&pass.effect)) palette->target = MeasureColors(*painted);
     measure(effect.name, {pass});
   }
+  const auto toon = [](ToonPass::Shading shading, ToonPass::Rows rows, int bands) {
+    FinishPass pass = *MakeFinishPass("toon");
+    auto& one = std::get<ToonPass>(pass.effect);
+    one.light = ToonPass::Light::kWrapped, one.shading = shading, one.ramp_rows = rows, one.bands = bands;
+    one.ramp_colors = std::make_shared<const ColorRamp>(*ParseColorRamp("#202040 #fff4d0 / #405060 #c0d0e0"));
+    return std::vector<FinishPass>{pass};
+  };
+  measure("toon, wrapped", toon(ToonPass::Shading::kPlain, ToonPass::Rows::kDepth, 3));
+  measure("toon, gooch, 1 band", toon(ToonPass::Shading::kGooch, ToonPass::Rows::kDepth, 1));
+  measure("toon, ramp by depth, 1 band", toon(ToonPass::Shading::kRamp, ToonPass::Rows::kDepth, 1));
+  measure("toon, ramp by facing, 3 bands", toon(ToonPass::Shading::kRamp, ToonPass::Rows::kFacing, 3));
   for (const double blur : {4.0, 32.0}) {
     FinishPass depth = *MakeFinishPass("depth");
     std::get<DepthPass>(depth.effect).blur = blur;

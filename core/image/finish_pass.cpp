@@ -23,8 +23,18 @@ LayerSet Of(const ShadowsPass& pass) {
 }
 
 LayerSet Of(const ToonPass& pass) {
-  LayerSet layers{Layer::kCoverage, Layer::kObject, Layer::kLuminance};
-  if (pass.base == ToonPass::Color::kAlbedo) layers.Add(Layer::kAlbedo);
+  LayerSet layers{Layer::kCoverage, Layer::kObject};
+  if (pass.light == ToonPass::Light::kLuminance) {
+    layers.Add(Layer::kLuminance);
+  } else {
+    layers.Add(Layer::kCosine);
+    if (pass.cast > 0.0) layers.Add(Layer::kShadow);
+  }
+  if (pass.shading == ToonPass::Shading::kRamp) {
+    layers.Add(pass.ramp_rows == ToonPass::Rows::kDepth ? Layer::kDepth : Layer::kNormal);
+  } else if (pass.base == ToonPass::Color::kAlbedo) {
+    layers.Add(Layer::kAlbedo);
+  }
   return layers;
 }
 

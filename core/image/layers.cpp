@@ -118,6 +118,7 @@ Expected<LayerSet> ParseLayers(std::string_view comma_separated) {
 }
 
 std::optional<ChannelMeaning> ParseChannelName(std::string_view name) {
+  if (EndsIn(name, "UV.A")) return std::nullopt;  // the third channel of Blender's UV pass, no coverage
   std::optional<ChannelMeaning> best;
   std::size_t best_length = 0;
   auto consider = [&](std::string_view suffix, Layer layer, int component) {

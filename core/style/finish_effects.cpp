@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/style/color_ramp.h"
 #include "core/style/finish_keys.h"
 #include "core/style/finish_mask_keys.h"
 
@@ -184,6 +185,20 @@ std::vector<FinishKey> OutlineKeys() {
       PassChoice("side", &P::side, {"centre", "inside", "outside"}, "of the nearer surface's border")};
 }
 
+FinishKey RampKey() {
+  FinishKey key = PassText("ramp", &ToonPass::ramp,
+                           "from dark to light, rows with / between: \"#202040 #fff4d0\"; or a picture's file");
+  key.set = [set = key.set](FinishPass& pass, const KeyValue& value) -> Status {
+    const auto* text = std::get_if<std::string>(&value);
+    if (text && IsRampText(*text)) {
+      const Expected<ColorRamp> ramp = ParseColorRamp(*text);
+      if (!ramp) return ramp.error();
+    }
+    return set(pass, value);
+  };
+  return key;
+}
+
 std::vector<FinishKey> ToonKeys() {
   using P = ToonPass;
   return {
@@ -192,7 +207,22 @@ std::vector<FinishKey> ToonKeys() {
       PassNumber("shade", &P::shade, 0.0, 1.0, "lightness of the darkest band, as a share of the brightest's"),
       PassNumber("tint", &P::tint, 0.0, 1.0, "how much of the colour's hue the darkest band takes on"),
       PassColor("color", &P::color, "of tint"),
-      PassChoice("base", &P::base, {"albedo", "paint"}, "what the bands shade: the scene's base colour, or the paint")};
+      PassChoice("base", &P::base, {"albedo", "paint"}, "what the bands shade: the scene's base colour, or the paint"),
+      PassChoice(
+          "light", &P::light, {"luminance", "wrapped"},
+          "direct light; or wrapped: by the angle to the key light, around the form, (1/2 + cosine/2)^wrap_power"),
+      PassWhole("wrap_power", &P::wrap_power, 1, 2, "of wrapped light; 2 is darker"),
+      PassNumber("cast", &P::cast, 0.0, 1.0, "how much cast shadow takes of wrapped light"),
+      PassChoice(
+          "shading", &P::shading, {"plain", "gooch", "ramp"},
+          "plain: by shade and tint; gooch: from cool to warm; or the colours of a ramp; bands = 1 is then smooth"),
+      PassColor("warm", &P::warm, "of gooch, in the light"),
+      PassColor("cool", &P::cool, "of gooch, in shade"),
+      PassNumber("warm_base", &P::warm_base, 0.0, 1.0, "share of the base colour that is added to warm"),
+      PassNumber("cool_base", &P::cool_base, 0.0, 1.0, "the same of cool"),
+      RampKey(),
+      PassChoice("ramp_rows", &P::ramp_rows, {"depth", "facing"},
+                 "what a ramp's rows go by: distance, or how far surfaces turn from the viewer")};
 }
 
 std::vector<FinishKey> SmoothKeys() {

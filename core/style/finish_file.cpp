@@ -4,6 +4,7 @@
 #include <system_error>
 
 #include "core/io/file/atomic_file.h"
+#include "core/style/color_ramp.h"
 #include "core/style/finish_keys.h"
 #include "core/style/finish_mask_keys.h"
 #include "core/style/finish_tables.h"
@@ -31,6 +32,8 @@ void ResolveFiles(const std::filesystem::path& folder, FinishPass& pass) {
   // Without an ending it is the name of bundled strokes.
   if (auto* const hatch = std::get_if<HatchPass>(&pass.effect); hatch && hatch->strokes.find('.') != std::string::npos)
     hatch->strokes = (folder / hatch->strokes).string();
+  if (auto* const toon = std::get_if<ToonPass>(&pass.effect); toon && !toon->ramp.empty() && !IsRampText(toon->ramp))
+    toon->ramp = (folder / toon->ramp).string();
   auto* const palette = std::get_if<PalettePass>(&pass.effect);
   if (!palette) return;
   for (std::string* const source : {&palette->like, &palette->from}) {

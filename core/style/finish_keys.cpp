@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/image/hash.h"
+#include "core/style/color_ramp.h"
 #include "core/style/finish_mask_keys.h"
 #include "core/style/nearest_name.h"
 
@@ -111,6 +112,17 @@ namespace {
 
 double UpTo(double most, double value) { return std::clamp(value, 0.0, most); }
 
+// Gooch's cool side, `factor` times as far from the warm one.
+void TurnCool(double factor, ToonPass& toon) {
+  if (factor == 1.0) return;
+  for (std::size_t c = 0; c < toon.cool.size(); ++c) {
+    const double warm = toon.warm[c] / 257u, cool = toon.cool[c] / 257u;  // whole steps of 1/255, which text can hold
+    const double turned = UpTo(255.0, warm + (cool - warm) * factor);
+    toon.cool[c] = static_cast<std::uint16_t>(257u * static_cast<unsigned>(turned + 0.5));
+  }
+  toon.cool_base = UpTo(1.0, toon.warm_base + (toon.cool_base - toon.warm_base) * factor);
+}
+
 // `factor` is 0 … 2.
 void TurnDial(const std::string& dial, double factor, FinishPass& pass) {
   if (dial == "lines") {
@@ -141,6 +153,7 @@ void TurnDial(const std::string& dial, double factor, FinishPass& pass) {
     if (auto* const toon = std::get_if<ToonPass>(&pass.effect)) {
       toon->shade = UpTo(1.0, 1.0 - (1.0 - toon->shade) * factor);
       toon->tint = UpTo(1.0, toon->tint * factor);
+      TurnCool(factor, *toon);
     }
   } else if (auto* const depth = std::get_if<DepthPass>(&pass.effect)) {
     for (double* const part : {&depth->desaturate, &depth->tint, &depth->air}) *part = UpTo(1.0, *part * factor);
@@ -181,6 +194,11 @@ std::string FinishText(const FinishPass& pass) {
   if (const auto* hatch = std::get_if<HatchPass>(&pass.effect); hatch && hatch->texture) {
     const auto& finest = hatch->texture->levels.front().thresholds;
     text += " " + ToText(KeyValue(std::int64_t(HashBytes(std::span<const float>(finest)) >> 1)));
+  }
+  const auto* toon = std::get_if<ToonPass>(&pass.effect);
+  if (toon && toon->ramp_colors && !IsRampText(toon->ramp)) {
+    const auto& colors = toon->ramp_colors->colors;
+    text += " " + ToText(KeyValue(std::int64_t(HashBytes(std::span<const Rgb16>(colors)) >> 1)));
   }
   for (const std::string& name : pass.objects) text += " object " + name;
   for (const std::string& name : pass.materials) text += " material " + name;

@@ -1,95 +1,115 @@
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <span>
+#include <memory>
 #include <utility>
 
 #include "finish/tone/point_effect.h"
+#include "finish/tone/toon_bands.h"
+#include "finish/tone/toon_ramp.h"
 
 namespace scumble::internal {
 namespace {
 
-// Which band a pixel lies in: 0 the darkest … bands - 1, and between two of them where their border is soft.
-class BandOf {
+// One darker tone of the base colour.
+class PlainShading {
  public:
-  BandOf(const ToonPass& pass, const FinishFrame& frame)
-      : light_(frame.guides->Plane(Layer::kLuminance)),
-        object_(frame.guides->Plane(Layer::kObject)),
-        width_(static_cast<std::size_t>(frame.guides->width())),
-        bands_(static_cast<float>(pass.bands)),
-        per_light_(static_cast<float>(pass.bands / frame.measures.bright)),
-        softness_(static_cast<float>(pass.softness * frame.scale)) {}
+  explicit PlainShading(const ToonPass& pass)
+      : color_(ToOklab(pass.color)), darkest_(static_cast<float>(pass.shade)), tint_(static_cast<float>(pass.tint)) {}
 
-  float At(std::size_t pixel) const {
-    if (bands_ < 2.0f) return 0.0f;
-    const float at = light_[pixel] * per_light_;
-    const float border = std::clamp(std::floor(at + 0.5f), 1.0f, bands_ - 1.0f);
-    // Half the border's width, in bands: the tone's slope makes it so many pixels wide.
-    const float half = softness_ * Slope(pixel) * per_light_;
-    const bool is_soft = std::fabs(at - border) < half && Crosses(pixel, border);
-    const float share = is_soft ? 0.5f + 0.5f * (at - border) / half : at >= border ? 1.0f : 0.0f;
-    return border - 1.0f + share * share * (3.0f - 2.0f * share);
+  void Apply(float light, std::size_t, std::size_t i, OklabBlock& block) const {
+    // Scaling all of Oklab scales linear colours by the cube: the hue and the saturation stay.
+    const float factor = darkest_ + (1.0f - darkest_) * light, share = tint_ * (1.0f - light);
+    const float a = block.a[i] * factor, b = block.b[i] * factor;
+    block.lightness[i] *= factor;
+    block.a[i] = a + (color_.a - a) * share, block.b[i] = b + (color_.b - b) * share;
   }
 
  private:
-  // Whether the border lies between the pixel and one of its object within the softness, along a row or a column. Where
-  // the light only bends nearby, nothing softens.
-  bool Crosses(std::size_t pixel, float border) const {
-    const auto x = static_cast<std::ptrdiff_t>(pixel % width_), y = static_cast<std::ptrdiff_t>(pixel / width_);
-    const auto width = static_cast<std::ptrdiff_t>(width_), height = static_cast<std::ptrdiff_t>(light_.size()) / width;
-    const bool is_above = light_[pixel] * per_light_ >= border;
-    const auto reach = static_cast<std::ptrdiff_t>(std::ceil(softness_));
-    for (std::ptrdiff_t k = 1; k <= reach; ++k) {
-      for (const auto& [dx, dy] : {std::pair(-k, std::ptrdiff_t(0)), {k, 0}, {0, -k}, {0, k}}) {
-        if (x + dx < 0 || y + dy < 0 || x + dx >= width || y + dy >= height) continue;
-        const auto other = static_cast<std::size_t>((y + dy) * width + x + dx);
-        if (object_[other] == object_[pixel] && (light_[other] * per_light_ >= border) != is_above) return true;
-      }
-    }
-    return false;
-  }
-
-  // The larger difference to a neighbour of the same object, along each axis.
-  float Slope(std::size_t pixel) const {
-    const std::size_t x = pixel % width_, size = light_.size();
-    const auto step = [&](bool is_inside, std::size_t other) {
-      return is_inside && object_[other] == object_[pixel] ? std::fabs(light_[other] - light_[pixel]) : 0.0f;
-    };
-    const float along_x = std::max(step(x > 0, pixel - 1), step(x + 1 < width_, pixel + 1));
-    const float along_y = std::max(step(pixel >= width_, pixel - width_), step(pixel + width_ < size, pixel + width_));
-    return std::sqrt(along_x * along_x + along_y * along_y);
-  }
-
-  std::span<const float> light_, object_;
-  std::size_t width_;
-  float bands_, per_light_, softness_;
+  LabColor color_;
+  float darkest_, tint_;
 };
+
+// From cool to warm (Gooch, Gooch, Shirley, Cohen, "A non-photorealistic lighting model for automatic technical
+// illustration", 1998), in Oklab: light · (warm + warm_base · base) + (1 - light) · (cool + cool_base · base). A
+// lightness above 1 becomes 1; chroma that sRGB lacks is lost where all colours lose it, when they are encoded.
+class GoochShading {
+ public:
+  explicit GoochShading(const ToonPass& pass)
+      : warm_(ToOklab(pass.warm)),
+        cool_(ToOklab(pass.cool)),
+        warm_base_(static_cast<float>(pass.warm_base)),
+        cool_base_(static_cast<float>(pass.cool_base)) {}
+
+  void Apply(float light, std::size_t, std::size_t i, OklabBlock& block) const {
+    const float base = cool_base_ + (warm_base_ - cool_base_) * light;
+    const auto sum = [&](float warm, float cool, float of_base) {
+      return cool + (warm - cool) * light + base * of_base;
+    };
+    block.lightness[i] = std::min(sum(warm_.lightness, cool_.lightness, block.lightness[i]), 1.0f);
+    block.a[i] = sum(warm_.a, cool_.a, block.a[i]);
+    block.b[i] = sum(warm_.b, cool_.b, block.b[i]);
+  }
+
+ private:
+  LabColor warm_, cool_;
+  float warm_base_, cool_base_;
+};
+
+// Colours of a ramp instead of the base colour. Copies share the tables.
+class RampShading {
+ public:
+  RampShading(const ToonPass& pass, const FinishFrame& frame)
+      : colors_(std::make_shared<const RampColors>(*pass.ramp_colors)) {
+    if (pass.ramp_colors->rows > 1) rows_ = std::make_shared<const RampRows>(pass, frame);
+  }
+
+  void Apply(float light, std::size_t pixel, std::size_t i, OklabBlock& block) const {
+    const LabColor color = colors_->At(light, rows_ ? rows_->At(pixel) : 0.0f);
+    block.lightness[i] = color.lightness, block.a[i] = color.a, block.b[i] = color.b;
+  }
+
+ private:
+  std::shared_ptr<const RampColors> colors_;
+  std::shared_ptr<const RampRows> rows_;  // null: there is one
+};
+
+template <class Light, class Shading>
+PointEffect ToonOf(const ToonPass& pass, const FinishFrame& frame, const Light& of_light, const Shading& shading) {
+  const BandOf<Light> band_of(pass, frame, of_light);
+  const bool is_plain = pass.shading == ToonPass::Shading::kPlain, has_bands = pass.bands > 1;
+  const bool from_albedo = pass.base == ToonPass::Color::kAlbedo && pass.shading != ToonPass::Shading::kRamp;
+  const float per_band = has_bands ? 1.0f / static_cast<float>(pass.bands - 1) : 0.0f;
+  std::array<const float*, 3> albedo{};
+  if (from_albedo) {
+    for (int c = 0; c < 3; ++c) albedo[std::size_t(c)] = frame.guides->Plane(Layer::kAlbedo, c).data();
+  }
+  return [=](std::size_t first, std::size_t count, OklabBlock& block) {
+    if (from_albedo) OklabFromPlanes({albedo[0] + first, albedo[1] + first, albedo[2] + first}, count, block);
+    for (std::size_t i = 0; i < count; ++i) {
+      const float light = has_bands ? band_of.At(first + i) * per_band : is_plain ? 1.0f : band_of.Tone(first + i);
+      shading.Apply(light, first + i, i, block);
+    }
+  };
+}
+
+template <class Light>
+PointEffect ShadedToon(const ToonPass& pass, const FinishFrame& frame, const Light& light) {
+  switch (pass.shading) {
+    case ToonPass::Shading::kGooch:
+      return ToonOf(pass, frame, light, GoochShading(pass));
+    case ToonPass::Shading::kRamp:
+      return ToonOf(pass, frame, light, RampShading(pass, frame));
+    case ToonPass::Shading::kPlain:
+      break;
+  }
+  return ToonOf(pass, frame, light, PlainShading(pass));
+}
 
 }  // namespace
 
 PointEffect MakeToon(const ToonPass& pass, const FinishFrame& frame) {
-  const BandOf band_of(pass, frame);
-  const GuideSet& guides = *frame.guides;
-  const bool from_albedo = pass.base == ToonPass::Color::kAlbedo;
-  const LabColor color = ToOklab(pass.color);
-  const float darkest = static_cast<float>(pass.shade), tint = static_cast<float>(pass.tint);
-  const float per_band = pass.bands > 1 ? 1.0f / static_cast<float>(pass.bands - 1) : 0.0f;
-  std::array<const float*, 3> albedo{};
-  if (from_albedo) {
-    for (int c = 0; c < 3; ++c) albedo[std::size_t(c)] = guides.Plane(Layer::kAlbedo, c).data();
-  }
-  const int bands = pass.bands;
-  return [=](std::size_t first, std::size_t count, OklabBlock& block) {
-    if (from_albedo) OklabFromPlanes({albedo[0] + first, albedo[1] + first, albedo[2] + first}, count, block);
-    for (std::size_t i = 0; i < count; ++i) {
-      const float light = bands > 1 ? band_of.At(first + i) * per_band : 1.0f;
-      // Scaling all of Oklab scales linear colours by the cube: the hue and the saturation stay.
-      const float factor = darkest + (1.0f - darkest) * light, share = tint * (1.0f - light);
-      const float a = block.a[i] * factor, b = block.b[i] * factor;
-      block.lightness[i] *= factor;
-      block.a[i] = a + (color.a - a) * share, block.b[i] = b + (color.b - b) * share;
-    }
-  };
+  return pass.light == ToonPass::Light::kWrapped ? ShadedToon(pass, frame, WrappedLight(pass, frame))
+                                                 : ShadedToon(pass, frame, DirectLight(frame));
 }
 
 }  // namespace scumble::internal

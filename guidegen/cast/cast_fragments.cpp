@@ -80,6 +80,12 @@ void FragmentCaster::Add(const PrimaryRays::Beside& beside, FoundFragments& foun
       case Layer::kAlbedo:
         put_all(glm::dvec3(SurfaceColor(object, beside.primitive, point.barycentric)));
         break;
+      case Layer::kCosine:
+        put(point_values_.Cosine(point));
+        break;
+      case Layer::kUv:
+        put_all(point_values_.Uv(beside.object, beside.primitive, point.barycentric));
+        break;
       default:
         for (int i = 0; i < ChannelCount(info.layer); ++i) put(0.0);
     }

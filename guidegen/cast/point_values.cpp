@@ -1,5 +1,6 @@
 #include "guidegen/cast/point_values.h"
 
+#include <algorithm>
 #include <optional>
 
 namespace scumble {
@@ -36,6 +37,16 @@ glm::dvec2 PointValues::Motion(std::uint32_t object, std::uint32_t primitive, co
   const std::optional<glm::dvec2> from = seen_at(scene_.objects()[object], view_.camera);
   const std::optional<glm::dvec2> to = seen_at(next, view_.next_camera);
   return from && to ? *to - *from : glm::dvec2(0.0);
+}
+
+double PointValues::Cosine(const SurfacePoint& point) const {
+  if (!view_.key_lamp) return 0.0;
+  return std::clamp(glm::dot(point.normal, view_.key_lamp->Towards(point.position)), -1.0, 1.0);
+}
+
+glm::dvec2 PointValues::Uv(std::uint32_t object, std::uint32_t primitive, const glm::dvec2& barycentric) const {
+  const std::optional<glm::vec2> uv = SurfaceUv(scene_.objects()[object], primitive, barycentric);
+  return uv ? glm::dvec2(uv->x, 1.0 - double(uv->y)) : glm::dvec2(0.0);
 }
 
 }  // namespace scumble

@@ -22,6 +22,10 @@ class PointValues {
   glm::dvec3 Rest(std::uint32_t object, std::uint32_t primitive, const SurfacePoint& point, const ViewRay& ray) const;
   // The movement in the picture until the next frame, in pixels; 0 if the point is not in view then.
   glm::dvec2 Motion(std::uint32_t object, std::uint32_t primitive, const glm::dvec2& barycentric) const;
+  // The cosine between the shading normal and the direction to the key lamp; 0 without one.
+  double Cosine(const SurfacePoint& point) const;
+  // Texture coordinates, (0, 0) lower left; (0, 0) where there are none.
+  glm::dvec2 Uv(std::uint32_t object, std::uint32_t primitive, const glm::dvec2& barycentric) const;
 
  private:
   const EmbreeScene& scene_;

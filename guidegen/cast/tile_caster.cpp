@@ -60,6 +60,8 @@ TileCaster::TileCaster(const EmbreeScene& scene, const View& view, const Guidege
   planes_.pref = PlanesOrNull(guides, Layer::kPref);
   planes_.albedo = PlanesOrNull(guides, Layer::kAlbedo);
   planes_.motion = {PlaneOrNull(guides, Layer::kMotion, 0), PlaneOrNull(guides, Layer::kMotion, 1)};
+  if (view.key_lamp) planes_.cosine = PlaneOrNull(guides, Layer::kCosine);
+  planes_.uv = {PlaneOrNull(guides, Layer::kUv, 0), PlaneOrNull(guides, Layer::kUv, 1)};
   const LayerSet whole = AlwaysWritten();
   for (const LayerInfo& info : AllLayers()) {
     if (!guides.Has(info.layer) || whole.Has(info.layer)) continue;
@@ -69,7 +71,7 @@ TileCaster::TileCaster(const EmbreeScene& scene, const View& view, const Guidege
   }
   lit_ = (planes_.luminance || planes_.shadow) && !lights_.empty();
   points_ = lit_ || planes_.position[0] || planes_.pref[0] || planes_.albedo[0] || planes_.motion[0] ||
-            options.normal_frame == NormalFrame::kEye;
+            planes_.cosine || planes_.uv[0] || options.normal_frame == NormalFrame::kEye;
 }
 
 TileCaster::Scratch::Scratch(const TileCaster& caster)
@@ -116,6 +118,11 @@ void TileCaster::WriteOthers(const Tile& tile, int pixel, const glm::dvec2& at, 
   if (planes_.motion[0]) {
     const glm::dvec2 motion = point_values_.Motion(hits.object[pixel], hits.primitive[pixel], point.barycentric);
     for (int i = 0; i < 2; ++i) planes_.motion[i][index] = float(motion[i]);
+  }
+  if (planes_.cosine) planes_.cosine[index] = float(point_values_.Cosine(point));
+  if (planes_.uv[0]) {
+    const glm::dvec2 uv = point_values_.Uv(hits.object[pixel], hits.primitive[pixel], point.barycentric);
+    for (int i = 0; i < 2; ++i) planes_.uv[i][index] = float(uv[i]);
   }
   if (!lit_) return;
   scratch.lit[pixel] = point;

@@ -86,6 +86,8 @@ class TileCaster {
     std::array<float*, 3> pref{};
     std::array<float*, 3> albedo{};
     std::array<float*, 2> motion{};
+    float* cosine = nullptr;  // where there is a key lamp
+    std::array<float*, 2> uv{};
     std::vector<Plane> others;  // layers that are not written as whole tiles
   };
 

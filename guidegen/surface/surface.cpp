@@ -239,6 +239,11 @@ glm::vec4 SurfaceColor(const PlacedObject& object, std::uint32_t primitive, glm:
   return color;
 }
 
+std::optional<glm::vec2> SurfaceUv(const PlacedObject& object, std::uint32_t primitive, glm::dvec2 barycentric) {
+  if (!object.mesh || object.mesh->uvs[0].empty()) return std::nullopt;
+  return Interpolate(object.mesh->uvs[0], CornersOf(*object.mesh, primitive), barycentric);
+}
+
 std::optional<glm::vec4> SampleSurface(const PlacedObject& object, const TextureUse& use, std::uint32_t primitive,
                                        glm::dvec2 barycentric) {
   const Picture* picture = FindTexture(object, use);

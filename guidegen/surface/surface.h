@@ -101,6 +101,9 @@ double LargestCoordinate(const glm::dvec3& v);
 // Base colour × texture × vertex colour, linear, and alpha.
 glm::vec4 SurfaceColor(const PlacedObject& object, std::uint32_t primitive, glm::dvec2 barycentric);
 
+// The first set of texture coordinates, (0, 0) upper left as textures are stored; empty where the mesh has none.
+std::optional<glm::vec2> SurfaceUv(const PlacedObject& object, std::uint32_t primitive, glm::dvec2 barycentric);
+
 // A texture at a point of the surface: its stored values, or its linear colour. Empty where the use names no texture or
 // the mesh lacks its UV set.
 std::optional<glm::vec4> SampleSurface(const PlacedObject& object, const TextureUse& use, std::uint32_t primitive,

@@ -305,6 +305,8 @@ void AddFinish(std::span<const FinishPass> passes, bool has_map, const Size& siz
     const bool has_names = !pass.objects.empty() || !pass.materials.empty();
     masks += (has_map ? 1 : 0) + (has_names ? 2 : 0) + (pass.mask.empty() ? 0 : 2);
     if (pass.mask.picture) need.Take("mask", kPaint * pass.mask.picture->rgba.size() / 4);
+    const auto* toon = std::get_if<ToonPass>(&pass.effect);
+    if (toon && toon->ramp_colors) need.Take("ramp", (sizeof(Rgb16) + kLab) * toon->ramp_colors->colors.size());
     if (!pass.mask.empty()) mixes = std::max(mixes, pass.mask.picture ? 2 * kPaint : Bytes(kPaint));
     if (const auto* smooth = std::get_if<SmoothPass>(&pass.effect)) transient = std::max(transient, OfSmooth(*smooth));
     if (std::holds_alternative<HatchPass>(pass.effect)) transient = std::max(transient, kFloat);

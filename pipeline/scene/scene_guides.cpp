@@ -114,8 +114,8 @@ Expected<SceneGuides> MakeGuidesOf(Scene& scene, const SceneRequest& options, co
 namespace {
 
 bool NeedLight(const LayerSet& layers) {
-  const auto needs = {Layer::kLuminance, Layer::kShadow,  Layer::kLpeFull, Layer::kLpeLDE,
-                      Layer::kLpeLSE,    Layer::kLpeLDDE, Layer::kLpeLD12E};
+  const auto needs = {Layer::kLuminance, Layer::kShadow, Layer::kCosine,  Layer::kLpeFull,
+                      Layer::kLpeLDE,    Layer::kLpeLSE, Layer::kLpeLDDE, Layer::kLpeLD12E};
   return std::any_of(needs.begin(), needs.end(), [&](Layer layer) { return layers.Has(layer); });
 }
 

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "core/io/picture_file.h"
+#include "core/style/color_ramp.h"
 #include "core/style/finish_keys.h"
 #include "finish/finish.h"
 
@@ -75,6 +76,14 @@ std::map<std::string, fs::path> HatchFiles(const RunContext& context) {
   return files;
 }
 
+Expected<ColorRamp> RampOf(const std::string& source) {
+  if (IsRampText(source)) return ParseColorRamp(source);
+  SCUMBLE_ASSIGN(const Picture picture, ReadPicture(source));
+  Expected<ColorRamp> ramp = ColorRampOf(picture);
+  if (!ramp) return InputError(source + ": " + ramp.error().message);
+  return ramp;
+}
+
 Expected<HatchTexture> StrokesOf(const std::string& name, const RunContext& context) {
   const auto files = HatchFiles(context);
   const auto found = files.find(name);
@@ -107,6 +116,14 @@ Status ReadFinishFiles(const Style* style, const RunContext& context, std::vecto
         *colors = *std::move(found);
       }
     }
+    if (auto* const toon = std::get_if<ToonPass>(&pass.effect)) {
+      toon->ramp_colors.reset();
+      if (!toon->ramp.empty() && toon->shading == ToonPass::Shading::kRamp) {
+        Expected<ColorRamp> ramp = RampOf(toon->ramp);
+        if (!ramp) return of_key("ramp", ramp.error());
+        toon->ramp_colors = std::make_shared<const ColorRamp>(*std::move(ramp));
+      }
+    }
     if (auto* const hatch = std::get_if<HatchPass>(&pass.effect); hatch && hatch->strokes != kPlainStrokes) {
       Expected<HatchTexture> texture = StrokesOf(hatch->strokes, context);
       if (!texture) return of_key("strokes", texture.error());
@@ -131,6 +148,9 @@ std::vector<std::string> FilesOf(const std::vector<FinishPass>& passes) {
     for (const std::string& source : palette ? std::vector{palette->like, palette->from} : std::vector<std::string>()) {
       if (IsFile(source)) files.push_back(source);
     }
+    const auto* toon = std::get_if<ToonPass>(&pass.effect);
+    const bool has_ramp = toon && toon->shading == ToonPass::Shading::kRamp && !toon->ramp.empty();
+    if (has_ramp && !IsRampText(toon->ramp)) files.push_back(toon->ramp);
     const auto* hatch = std::get_if<HatchPass>(&pass.effect);
     if (std::error_code failed; hatch && fs::is_regular_file(hatch->strokes, failed)) files.push_back(hatch->strokes);
   }

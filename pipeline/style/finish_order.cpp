@@ -32,7 +32,7 @@ bool Covers(const FinishPass& pass) {
   const auto* toon = std::get_if<ToonPass>(&pass.effect);
   return !(pass.strength < 1.0) &&
          (std::holds_alternative<FillPass>(pass.effect) || std::holds_alternative<RenderPass>(pass.effect) ||
-          (toon && toon->base == ToonPass::Color::kAlbedo));
+          (toon && (toon->base == ToonPass::Color::kAlbedo || toon->shading == ToonPass::Shading::kRamp)));
 }
 
 // Of passes that change a guide which nothing reads.

@@ -135,6 +135,10 @@ TEST(ChannelNames, KnownOnes) {
       {"luminance.Y", Layer::kLuminance, 0, ""},
       {"motion.Y", Layer::kMotion, 1, ""},
       {"object.ID", Layer::kObject, 0, ""},
+      {"ViewLayer.UV.U", Layer::kUv, 0, "ViewLayer"},
+      {"UV.V", Layer::kUv, 1, ""},
+      {"cosine.Y", Layer::kCosine, 0, ""},
+      {"UVA.A", Layer::kCoverage, 0, "UVA"},
   };
   for (const NameCase& expected : cases) {
     const auto found = ParseChannelName(expected.name);
@@ -146,9 +150,10 @@ TEST(ChannelNames, KnownOnes) {
 }
 
 TEST(ChannelNames, UnknownOnes) {
-  for (const char* name : {"", ".", "X", "R", "ViewLayer.Combined.R", "Denoising Normal.X",
-                           "ViewLayer.Denoising Normal.X", "abnormal.X", "normal", "normal.W", "normalX",
-                           "normal.X.left", "lpe.LDDDE.R", "Mist.V", "normal.X ", "Shadow Catcher.R", "beauty.lpe"}) {
+  for (const char* name :
+       {"", ".", "X", "R", "ViewLayer.Combined.R", "Denoising Normal.X", "ViewLayer.Denoising Normal.X", "abnormal.X",
+        "normal", "normal.W", "normalX", "normal.X.left", "lpe.LDDDE.R", "Mist.V", "normal.X ", "Shadow Catcher.R",
+        "beauty.lpe", "ViewLayer.UV.A", "UV.A"}) {
     EXPECT_FALSE(ParseChannelName(name)) << name;
   }
 }

@@ -193,7 +193,8 @@ void FillEdges(GuideSet& guides) {
 // Clears the background, whatever the passes hold there.
 void ClearBackground(GuideSet& guides) {
   const auto coverage = guides.Plane(Layer::kCoverage);
-  for (const Layer layer : {Layer::kNormal, Layer::kPosition, Layer::kDepth, Layer::kObject, Layer::kMaterial}) {
+  for (const Layer layer :
+       {Layer::kNormal, Layer::kPosition, Layer::kDepth, Layer::kObject, Layer::kMaterial, Layer::kUv}) {
     if (!guides.Has(layer)) continue;
     for (int c = 0; c < ChannelCount(layer); ++c) {
       const auto plane = guides.Plane(layer, c);
@@ -234,7 +235,8 @@ std::string BlenderPassesFor(const LayerSet& missing) {
                                                        {Layer::kPosition, "Position"},
                                                        {Layer::kAlbedo, "Diffuse Color"},
                                                        {Layer::kLuminance, "Diffuse Direct"},
-                                                       {Layer::kShadow, "Shadow"}};
+                                                       {Layer::kShadow, "Shadow"},
+                                                       {Layer::kUv, "UV"}};
   std::string passes;
   LayerSet left = missing;
   for (const auto& [layer, pass] : kPasses) {

@@ -350,6 +350,32 @@ GuideReadOptions WithLight() {
   return options;
 }
 
+TEST(BlenderFile, UvIsReadAndItsThirdChannelIsNoCoverage) {
+  const TemporaryFolder folder;
+  BlenderFile file;
+  GuideReadOptions options = WithObjects();
+  options.required.Add(Layer::kUv);
+  file.Write(folder / "none.exr");
+  ExpectRefusal(ReadGuides(folder / "none.exr", options), {"no layer uv", "switch on View Layer > Passes > UV"});
+  for (std::size_t i = 0; i < file.Pixels(); ++i) {
+    file.Channel("UV.U")[i] = 0.25f, file.Channel("UV.V")[i] = 0.75f, file.Channel("UV.A")[i] = 0.0f;
+  }
+  file.Write(folder / "shot.exr");
+  const auto guides = ReadGuides(folder / "shot.exr", options);
+  ASSERT_TRUE(guides) << guides.error().message;
+  int covered = 0;
+  for (std::size_t i = 0; i < file.Pixels(); ++i) {
+    const bool is_covered = file.Channel("Depth.Z")[i] < 1e9f;
+    covered += is_covered;
+    ASSERT_EQ(guides->Plane(Layer::kCoverage)[i], is_covered ? 1.0f : 0.0f);
+    ASSERT_EQ(guides->Plane(Layer::kUv, 0)[i], is_covered ? 0.25f : 0.0f);
+    ASSERT_EQ(guides->Plane(Layer::kUv, 1)[i], is_covered ? 0.75f : 0.0f);
+  }
+  EXPECT_GT(covered, 0);
+  options.required = WithObjects().required, options.required.Add(Layer::kCosine);
+  ExpectRefusal(ReadGuides(folder / "shot.exr", options), {"No pass of Blender is cosine"});
+}
+
 TEST(RenderLight, ChannelsAreKnownByTheEndOfTheirNames) {
   const auto found = ParseLightChannel("My.Layer.Shadow Catcher.G");
   ASSERT_TRUE(found);

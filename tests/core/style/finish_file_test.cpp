@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <memory>
 #include <set>
 
 #include "core/io/picture_file.h"
+#include "core/style/color_ramp.h"
 #include "core/style/finish_keys.h"
 #include "core/style/finish_mask_keys.h"
 #include "core/style/style_file.h"
@@ -70,6 +72,21 @@ TEST_F(FinishFile, MistakesNameFileLineAndRemedy) {
   EXPECT_THAT(ErrorOf("[[finish]]\neffect = \"outline\"\nink = \"black\"\n"), HasSubstr("a colour is #"));
   EXPECT_THAT(ErrorOf("[[finish]]\neffect = \"outline\"\nside = \"left\"\n"),
               HasSubstr("expected \"centre\", \"inside\" or \"outside\""));
+  const auto of_toon = [&](const std::string& line) { return ErrorOf("[[finish]]\neffect = \"toon\"\n" + line); };
+  EXPECT_THAT(of_toon("light = \"lambert\"\n"), HasSubstr("expected \"luminance\" or \"wrapped\""));
+  EXPECT_THAT(of_toon("shading = \"cool\"\n"), HasSubstr("expected \"plain\", \"gooch\" or \"ramp\""));
+  EXPECT_THAT(of_toon("wrap_power = 3\n"), HasSubstr("expected a whole number, 1 to 2"));
+  EXPECT_THAT(of_toon("ramp_rows = \"u\"\n"), HasSubstr("expected \"depth\" or \"facing\""));
+  EXPECT_THAT(of_toon("ramp = \"#000000 white\"\n"), HasSubstr("finish.ramp: white is no colour"));
+  EXPECT_THAT(of_toon("ramp = \"#000000 #ffffff / \"\n"), HasSubstr("row 2 has 0 colours"));
+  EXPECT_THAT(of_toon("ramp = \"#000000 / #ffffff #000000\"\n"),
+              HasSubstr("row 2 has 2 colours, the rows before have 1"));
+  std::string many, tall = "#000000";
+  for (int i = 0; i < 65; ++i) many += "#000000 ";
+  for (int i = 0; i < 16; ++i) tall += " / #000000";
+  EXPECT_THAT(of_toon("ramp = \"" + many + "\"\n"), HasSubstr("expected at most 64 in 16"));
+  EXPECT_THAT(of_toon("ramp = \"" + tall + "\"\n"), HasSubstr("expected at most 64 in 16"));
+  EXPECT_THAT(of_toon("ramp = 3\n"), HasSubstr("expected a text in quotes"));
   EXPECT_THAT(ErrorOf("[[finish]]\neffect = \"tones\"\nbins = 2.5\n"), HasSubstr("expected a whole number, 2 to 64"));
   EXPECT_THAT(ErrorOf("[[finish]]\neffect = \"tones\"\nobjects = [1]\n"), HasSubstr("expected names in quotes"));
   EXPECT_THAT(ErrorOf("[[finish]]\neffect = \"tones\"\nname = \"a.b\"\n"), HasSubstr("without dots"));
@@ -78,6 +95,33 @@ TEST_F(FinishFile, MistakesNameFileLineAndRemedy) {
   EXPECT_THAT(ErrorOf("help = \"nothing\"\n"), HasSubstr("has no [[finish]]"));
   EXPECT_THAT(ErrorOf("width = 3\n"), HasSubstr("unknown key width"));
   EXPECT_THAT(ErrorOf("[[finish]\n"), HasSubstr("not valid TOML"));
+}
+
+TEST_F(FinishFile, RampsAreRowsOfColours) {
+  const Expected<ColorRamp> ramp = ParseColorRamp("#000000 #ff0000 #00ff00/#0000ff  #ffffff\t#808080");
+  ASSERT_TRUE(ramp) << ramp.error().message;
+  EXPECT_EQ(ramp->columns, 3);
+  EXPECT_EQ(ramp->rows, 2);
+  ASSERT_EQ(ramp->colors.size(), 6u);
+  EXPECT_EQ(ramp->colors[1], (Rgb16{65535, 0, 0}));
+  EXPECT_EQ(ramp->colors[3], (Rgb16{0, 0, 65535}));
+  // A file is looked for beside the file that names it, colours are not; and it may change under its name.
+  const auto preset =
+      LoadFinishPreset(Write("help = \"a\"\n[[finish]]\neffect = \"toon\"\nramp = \"r.png\"\n"
+                             "[[finish]]\neffect = \"toon\"\nramp = \"#102030 #405060\"\n"));
+  ASSERT_TRUE(preset) << preset.error().message;
+  FinishPass pass = preset->passes[0];
+  auto& toon = std::get<ToonPass>(pass.effect);
+  EXPECT_EQ(toon.ramp, (folder_ / "r.png").string());
+  EXPECT_EQ(std::get<ToonPass>(preset->passes[1].effect).ramp, "#102030 #405060");
+  toon.ramp_colors = std::make_shared<const ColorRamp>(*ramp);
+  const std::string before = FinishText(pass);
+  ColorRamp other = *ramp;
+  other.colors[5][2] = 1;
+  toon.ramp_colors = std::make_shared<const ColorRamp>(other);
+  EXPECT_NE(FinishText(pass), before);
+  EXPECT_EQ(ColorRampOf(Picture(3, 2))->rows, 2);
+  EXPECT_FALSE(ColorRampOf(Picture(2, 1025)));
 }
 
 TEST_F(FinishFile, EveryKeyTakesItsDefaultAndSaysIt) {
@@ -160,6 +204,8 @@ TEST_F(FinishFile, DialsTurnTheWholeChain) {
   ASSERT_TRUE(OverrideFinish(passes, "dial.light=0"));
   EXPECT_EQ(passes[4].strength, 0.0);
   EXPECT_EQ(std::get<ToonPass>(passes[5].effect).shade, 1.0) << "no band shows, and the colour does";
+  EXPECT_EQ(std::get<ToonPass>(passes[5].effect).cool, ToonPass().warm) << "neither does any side of gooch";
+  EXPECT_EQ(std::get<ToonPass>(passes[5].effect).cool_base, ToonPass().warm_base);
   ASSERT_TRUE(OverrideFinish(passes, "dial.depth=0.25"));
   EXPECT_EQ(std::get<DepthPass>(passes[6].effect).desaturate, 0.5 * DepthPass().desaturate);
   EXPECT_EQ(passes[7].strength, 0.4) << "no dial turns it";

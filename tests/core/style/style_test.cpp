@@ -291,8 +291,10 @@ TEST_F(StyleFile, GuideWeightsAreATableOfLayers) {
   };
   refuse("[transfer.guide_weights]\nluminance = 1\n" + std::string(kExemplar), {"lit.png has no guides", "luminance"});
   refuse("[transfer.guide_weights]\nshadow = 1\n" + exemplar, {"guides.exr holds", "asks for shadow", "--layers"});
-  refuse("[transfer.guide_weights]\ndepth = 1\n" + exemplar,
-         {"style.toml:2", "unknown key", "there are normal, albedo"});
+  for (const std::string layer : {"depth", "cosine", "uv"}) {
+    refuse("[transfer.guide_weights]\n" + layer + " = 1\n" + exemplar,
+           {"style.toml:2", "unknown key", "there are normal, albedo"});
+  }
   refuse("[transfer.guide_weights]\nluminance = -1\n" + exemplar, {"style.toml:2", "0 to 1000"});
   refuse("[transfer.guide_weights]\nluminance = [[1, 0], [9, 1]]\n" + exemplar, {"cannot change over time"});
 }
