@@ -57,6 +57,7 @@ std::string LayerCost(Layer layer, const Scene& scene, const GuidegenOptions& op
     case Layer::kPref:
     case Layer::kMotion:
     case Layer::kUv:
+    case Layer::kOutline:
       return "none: follows from the primary rays";
     case Layer::kAlbedo:
       return HasTexturedColor(scene) ? "1 texture lookup per covered pixel" : "none: no material has a texture";

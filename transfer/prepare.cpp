@@ -213,8 +213,10 @@ Expected<PreparedStyle> PrepareInArena(const Style& style, int output_height, co
   SCUMBLE_ASSIGN(prepared.exemplar, PrepareExemplar(style, output_height, options));
   SCUMBLE_RETURN_IF_ERROR(CheckNotCancelled(options));
   if (!settings.guide_weights.ArePlain()) {
+    const double height_ratio =
+        settings.reference_height > 0 ? static_cast<double>(output_height) / settings.reference_height : 1.0;
     SCUMBLE_ASSIGN(GuideSpace space, GuideSpace::Build(settings.guide_weights, style.exemplars, prepared.exemplar,
-                                                       settings.nearest_error));
+                                                       settings.nearest_error, height_ratio));
     prepared.space = std::make_shared<GuideSpace>(std::move(space));
   }
   prepared.illumination = Illumination(luminances, settings.luminance_weight, settings.luminance_error);

@@ -34,6 +34,8 @@ Side SideOf(int k, int factor) {
   return {off < 0 ? -1 : off > 0 ? 1 : 0, static_cast<float>(std::abs(off)) / static_cast<float>(2 * factor)};
 }
 
+bool IsInPixels(Layer layer) { return layer == Layer::kMotion || layer == Layer::kOutline; }
+
 // One plane of a layer, small and large.
 struct PlanePair {
   std::span<const float> from;
@@ -50,7 +52,7 @@ class Upsampler {
     for (const LayerInfo& info : AllLayers()) {
       if (!from.Has(info.layer) || info.layer == Layer::kCoverage) continue;
       const bool is_id = info.layer == Layer::kObject || info.layer == Layer::kMaterial;
-      const float scale = info.layer == Layer::kMotion ? static_cast<float>(factor) : 1.0f;
+      const float scale = IsInPixels(info.layer) ? static_cast<float>(factor) : 1.0f;
       for (int c = 0; c < ChannelCount(info.layer); ++c) {
         planes_.push_back({from.Plane(info.layer, c), to.Plane(info.layer, c), is_id, scale});
       }
@@ -96,7 +98,7 @@ class Upsampler {
     for (const LayerInfo& info : AllLayers()) {
       if (!fragments.values.Has(info.layer)) continue;
       large->values.AddUnset(info.layer);
-      const float scale = info.layer == Layer::kMotion ? static_cast<float>(factor_) : 1.0f;
+      const float scale = IsInPixels(info.layer) ? static_cast<float>(factor_) : 1.0f;
       for (int c = 0; c < ChannelCount(info.layer); ++c) {
         const auto from = fragments.values.Plane(info.layer, c);
         const auto to = large->values.Plane(info.layer, c);

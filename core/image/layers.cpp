@@ -25,6 +25,7 @@ constexpr const char* kLpeLddeChannels[] = {"lpe.LDDE.R", "lpe.LDDE.G", "lpe.LDD
 constexpr const char* kLpeLd12eChannels[] = {"lpe.LD12E.R", "lpe.LD12E.G", "lpe.LD12E.B"};
 constexpr const char* kCosineChannels[] = {"cosine.Y"};
 constexpr const char* kUvChannels[] = {"uv.U", "uv.V"};
+constexpr const char* kOutlineChannels[] = {"outline.D"};
 
 constexpr LayerInfo kLayers[kLayerCount] = {
     {Layer::kCoverage, "A", kCoverageChannels, false, "coverage, 0 to 1"},
@@ -45,6 +46,7 @@ constexpr LayerInfo kLayers[kLayerCount] = {
     {Layer::kLpeLD12E, "lpe.LD12E", kLpeLd12eChannels, true, "first two diffuse bounces"},
     {Layer::kCosine, "cosine", kCosineChannels, false, "signed cosine of the normal to the key light, -1 to 1"},
     {Layer::kUv, "uv", kUvChannels, false, "texture coordinates, (0, 0) lower left"},
+    {Layer::kOutline, "outline", kOutlineChannels, false, "pixels to the object's nearest outline, up to 256"},
 };
 
 // Names that other programs use for these channels: Blender's passes and the names that compositors agree on.

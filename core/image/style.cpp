@@ -13,7 +13,8 @@ LayerSet GuideWeights::Layers() const {
 }
 
 bool GuideWeights::CanWeigh(Layer layer) {
-  return layer == Layer::kNormal || layer == Layer::kAlbedo || layer == Layer::kShadow || IsRadiance(layer);
+  return layer == Layer::kNormal || layer == Layer::kAlbedo || layer == Layer::kShadow || layer == Layer::kOutline ||
+         IsRadiance(layer);
 }
 
 bool GuideWeights::IsRadiance(Layer layer) {

@@ -83,6 +83,9 @@ void FragmentCaster::Add(const PrimaryRays::Beside& beside, FoundFragments& foun
       case Layer::kCosine:
         put(point_values_.Cosine(point));
         break;
+      case Layer::kOutline:
+        put(0.5);  // several surfaces share the pixel
+        break;
       case Layer::kUv:
         put_all(point_values_.Uv(beside.object, beside.primitive, point.barycentric));
         break;

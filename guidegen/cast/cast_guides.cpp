@@ -14,6 +14,7 @@
 #include <span>
 #include <string>
 
+#include "core/filter/outline_distance.h"
 #include "core/image/stopwatch.h"
 #include "guidegen/cast/tile_caster.h"
 #include "guidegen/cast/tile_store.h"
@@ -161,6 +162,9 @@ Expected<GuidegenResult> CastInArena(LazyScene& objects, const View& view, const
   if (!Continue(options.progress, 1.0)) return CancelledError();
 
   result.guides.camera = view.camera.ToGuideCamera();
+  if (result.guides.Has(Layer::kOutline)) {
+    internal::FillOutlineDistance({window.x0, window.y0, window.x1, window.y1}, result.guides);
+  }
   result.guides.attributes["scumble:generator"] = "guidegen " SCUMBLE_VERSION;
   result.guides.attributes["scumble:isa"] = scene.isa();
   result.guides.attributes["scumble:embree"] = scene.version();

@@ -30,8 +30,9 @@ enum class Layer {
   kLpeLD12E,
   kCosine,
   kUv,
+  kOutline,
 };
-inline constexpr int kLayerCount = 18;
+inline constexpr int kLayerCount = 19;
 
 struct LayerInfo {
   Layer layer;

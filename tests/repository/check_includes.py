@@ -19,7 +19,7 @@ LIBRARIES = {
     "io": ("core/io", {"public", "image"}, ["file", "png", "exr", "picture", "guides", "blender", "oiio"]),
     "filter": ("core/filter", {"public", "image"}, []),
     "style": ("core/style", {"public", "image", "io"}, ["kit", "scan"]),
-    "guidegen": ("guidegen", {"public", "image", "io"},
+    "guidegen": ("guidegen", {"public", "image", "io", "filter"},
                  ["scene", "load", "load/gltf", "surface", "rays", "light", "cast"]),
     "transfer": ("transfer", {"public", "image", "filter"},
                  ["field", "nearest", "exemplar", "seeds", "match", "vote", "vote/edge", "vote/wide", "tint", "frame",

@@ -25,6 +25,9 @@ float Coordinate(bool radiance, float value, float factor) {
   return light <= std::numeric_limits<float>::max() ? light / (1.0f + light) : 1.0f;
 }
 
+// Of a distance as a share of the reach.
+float Closeness(float share) { return share < 1.0f ? 1.0f - std::max(share, 0.0f) : 0.0f; }
+
 // The pixel of a sphere's guides for a pixel of the resized exemplar. On the rim, where the sphere covers no pixel
 // centre, the nearest covered one on the line to the middle.
 std::size_t Sample(const GuideSet& guides, int x, int y, int width, int height) {
@@ -48,11 +51,13 @@ std::size_t Sample(const GuideSet& guides, int x, int y, int width, int height) 
 }  // namespace
 
 Expected<GuideSpace> GuideSpace::Build(const GuideWeights& weights, std::span<const Exemplar> exemplars,
-                                       std::shared_ptr<const PreparedExemplar> prepared, double nearest_error) {
+                                       std::shared_ptr<const PreparedExemplar> prepared, double nearest_error,
+                                       double scale) {
   SCUMBLE_CHECK_EQ(static_cast<int>(exemplars.size()), prepared->count());
   GuideSpace space;
   space.exemplar_ = std::move(prepared);
   space.nearest_error_ = nearest_error;
+  space.outline_reach_ = static_cast<float>(kOutlineReach * scale);
   space.normal_weight_ = weights[Layer::kNormal];
   for (const LayerInfo& info : AllLayers()) {
     if (!(weights[info.layer] > 0.0f) || info.layer == Layer::kNormal) continue;
@@ -84,23 +89,29 @@ Expected<GuideSpace> GuideSpace::Build(const GuideWeights& weights, std::span<co
   return space;
 }
 
-void GuideSpace::ReadAll(const GuideSet& guides, std::size_t pixel, float factor, float* extra_values) const {
+void GuideSpace::ReadAll(const GuideSet& guides, std::size_t pixel, const Units& units, float* extra_values) const {
   for (const Part& part : parts_) {
-    *extra_values++ = part.weight * Coordinate(part.radiance, guides.Plane(part.layer, part.component)[pixel], factor);
+    const float value = guides.Plane(part.layer, part.component)[pixel];
+    const float coordinate = part.layer == Layer::kOutline ? Closeness(value / units.outline_reach)
+                                                           : Coordinate(part.radiance, value, units.light);
+    *extra_values++ = part.weight * coordinate;
   }
 }
 
 void GuideSpace::Read(const GuideSet& scene, std::size_t pixel, float brightness, float* extra_values) const {
-  ReadAll(scene, pixel, brightness / white_, extra_values);
+  ReadAll(scene, pixel, {brightness / white_, outline_reach_}, extra_values);
 }
 
 void GuideSpace::SampleExemplar(const GuideSet& guides, std::vector<float>& values) const {
   values.resize(std::size_t(exemplar_->width()) * exemplar_->height() * static_cast<std::size_t>(extra_dimensions_));
+  // The guides may have more or fewer pixels than the exemplar.
+  const float per_pixel = static_cast<float>(guides.height()) / static_cast<float>(exemplar_->height());
+  const Units units{1.0f / white_, outline_reach_ * per_pixel};
   for (int y = 0; y < exemplar_->height(); ++y) {
     for (int x = 0; x < exemplar_->width(); ++x) {
       if (!exemplar_->Usable(x, y)) continue;
       const std::size_t from = Sample(guides, x, y, exemplar_->width(), exemplar_->height());
-      ReadAll(guides, from, 1.0f / white_, values.data() + Offset({x, y}));
+      ReadAll(guides, from, units, values.data() + Offset({x, y}));
     }
   }
 }

@@ -9,6 +9,8 @@
 //                 of normals alone.
 //   albedo        r, g, b, between 0 and 1; 1 above.
 //   shadow        between 0 and 1.
+//   outline       1 - d / kOutlineReach, and 0 beyond that: d is the distance to the nearest outline in pixels at the
+//                 reference height. The edge guide of StyLit, which keeps thin parts in the paint of the rim.
 //   luminance,    L / (1 + L) of each channel: 0 is darkness, 0.5 the exemplar's 90th percentile
 //   (the lpe.*         `white`), and nothing is above 1. Radiance has no upper bound, and a highlight must not outweigh
 //   all the
@@ -37,14 +39,16 @@ namespace scumble {
 class GuideSpace {
  public:
   // The most extra dimensions, beside the normal's.
-  static constexpr int kMaxExtra = 20;
+  static constexpr int kMaxExtra = 21;
+  static constexpr double kOutlineReach = 24.0;  // pixels at the reference height
 
   // Over the usable pixels of each exemplar, which must hold the layers with a weight above 0: their guides are sampled
-  // at pixel centres. The result of Nearest may be (1 + nearest_error) times as far as the nearest. A kInput error
-  // names an exemplar whose guides lack a layer. One thread, O(pixels · log) an exemplar; 4 bytes a coordinate of each
-  // pixel, and a PointTree.
+  // at pixel centres. `scale`: pixels of the picture for one of the reference height. The result of Nearest may be (1 +
+  // nearest_error) times as far as the nearest. A kInput error names an exemplar whose guides lack a layer. One thread,
+  // O(pixels · log) an exemplar; 4 bytes a coordinate of each pixel, and a PointTree.
   static Expected<GuideSpace> Build(const GuideWeights& weights, std::span<const Exemplar> exemplars,
-                                    std::shared_ptr<const PreparedExemplar> prepared, double nearest_error = 0.0);
+                                    std::shared_ptr<const PreparedExemplar> prepared, double nearest_error = 0.0,
+                                    double scale = 1.0);
 
   float normal_weight() const { return normal_weight_; }
   int extra_dimensions() const { return extra_dimensions_; }  // extra dimensions, beside the normal's
@@ -118,17 +122,23 @@ class GuideSpace {
     bool radiance;
     float weight;
   };
+  // What values are multiplied by, or divided by.
+  struct Units {
+    float light = 1.0f;          // of radiance
+    float outline_reach = 1.0f;  // in the guides' pixels
+  };
 
   std::size_t Offset(Source at) const {
     return (std::size_t(at.y) * exemplar_->width() + at.x) * static_cast<std::size_t>(extra_dimensions_);
   }
-  void ReadAll(const GuideSet& guides, std::size_t pixel, float factor, float* extra_values) const;
+  void ReadAll(const GuideSet& guides, std::size_t pixel, const Units& units, float* extra_values) const;
   void SampleExemplar(const GuideSet& guides, std::vector<float>& values) const;
   Tree PlantTree(int k) const;
 
   std::shared_ptr<const PreparedExemplar> exemplar_;
   float normal_weight_ = 1.0f;
   double nearest_error_ = 0.0;
+  float outline_reach_ = 1.0f;  // in pixels of the picture
   std::vector<Layer> layers_;
   std::vector<float> weights_;
   std::vector<Part> parts_;

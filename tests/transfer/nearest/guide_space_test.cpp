@@ -3,6 +3,7 @@
 #include <limits>
 #include <optional>
 
+#include "core/filter/outline_distance.h"
 #include "tests/support/numbers.h"
 #include "tests/support/scene_exemplar_fixtures.h"
 #include "transfer/nearest/lookup_table.h"
@@ -229,6 +230,35 @@ void ExpectReference(Style style, const GuideSet& guides, float stops) {
     }
     if (method != Method::kLitSphere) {
       EXPECT_GT(shared, 200) << "chunks, not single pixels";
+    }
+  }
+}
+
+// With a weight for outlines, what is near one takes its paint near the sphere's rim, whatever it faces. Distances are
+// pixels at the reference height: in a picture of half that height twice as much is near.
+TEST(GuideSpace, OutlinesAreMatchedByTheirDistance) {
+  const auto with_outline = [](GuideSet guides) {
+    internal::FillOutlineDistance({0, 0, guides.width(), guides.height()}, guides);
+    return guides;
+  };
+  Style style = SceneStyle(WideNoise(200, 200), with_outline(SphereGuides(200)));
+  style.exemplars[0].is_sphere = true;
+  style.transfer.reference_height = 64;
+  style.transfer.guide_weights = Weights({{Layer::kNormal, 0.01f}, {Layer::kOutline, 1.0f}});
+  for (const int height : {64, 32}) {
+    const auto prepared = Prepare(style, height, {});
+    ASSERT_TRUE(prepared) << prepared.error().message;
+    const double per_pixel = 200.0 / prepared->exemplar->height();  // of the guides for one of the exemplar
+    GuideSet scene = FlatScene(64, height);
+    scene.Add(Layer::kOutline);
+    for (const float distance : {0.5f, 3.0f, 8.0f}) {
+      scene.Plane(Layer::kOutline)[0] = distance;
+      float values[GuideSpace::kMaxExtra];
+      prepared->space->Read(scene, 0, 1.0f, values);
+      EXPECT_NEAR(values[0], 1.0f - distance / (24.0f * float(height) / 64.0f), 1e-5f);
+      const Source found = prepared->space->Nearest(0, {0, 0, 1}, values);
+      const double x = (found.x + 0.5) * per_pixel - 100.0, y = (found.y + 0.5) * per_pixel - 100.0;
+      EXPECT_NEAR((100.0 - std::sqrt(x * x + y * y)) / per_pixel, distance, 1.2) << height << ' ' << distance;
     }
   }
 }
