@@ -34,10 +34,11 @@ struct BlurSource {
 };
 
 // One side of the focus under a Gaussian of `sigma`, smaller by `factor` each way: colours times weights, and weights.
-// Only pixels count that are blurred by half as much or more. The place (0, 0) begins at the pixel (left, top).
+// Only pixels count that are blurred by half as much or more. It holds the pixels from (left, top) to (right, bottom).
 struct BlurLevel {
   double sigma = 0.0;
-  int factor = 1, left = 0, top = 0, width = 0, height = 0;
+  int factor = 1, left = 0, top = 0, right = 0, bottom = 0;
+  int width = 0, height = 0;  // in places of its own
   std::array<FloatPlane, 4> planes;
 };
 
@@ -144,9 +145,10 @@ void GatherHere(const BlurSide& side, const float* sigmas, int x, int y, std::si
     const Lane given[3] = {less[0], less[1], less[2]};
     Lane more[3] = {less[0], less[1], less[2]};
     for (int k = std::max(least - 1, 1); k <= most; ++k) {
+      const Choice is_upper = hn::And(changes, hn::Eq(upper.v, hn::Set(d, static_cast<float>(k)))),
+                   is_lower = hn::And(changes, hn::Eq(upper.v, hn::Set(d, static_cast<float>(k + 1))));
+      if (hn::AllFalse(d, hn::Or(is_upper, is_lower))) continue;
       const BlurColor color = ColorsAt(side.levels[std::size_t(k) - 1], pixel, y);
-      const Choice is_upper = hn::Eq(upper.v, hn::Set(d, static_cast<float>(k))),
-                   is_lower = hn::Eq(upper.v, hn::Set(d, static_cast<float>(k + 1)));
       changes = hn::And(changes, hn::Or(color.counts, hn::Not(hn::Or(is_upper, is_lower))));
       const Lane colors[3] = {color.lightness, color.a, color.b};
       for (int c = 0; c < 3; ++c) {
@@ -200,44 +202,71 @@ BlurSource SourceOf(const DepthPass& pass, double most, const FinishFrame& frame
   return source;
 }
 
-// The smallest regions that hold all pixels beyond the focus, and all before it.
-using BlurRegions = std::array<Region, 2>;
-BlurRegions RegionsOf(const BlurSource& source) {
+// Levels of doubling sigma up to `most`. Without places yet.
+std::vector<BlurLevel> LevelsUpTo(double most) {
+  int count = 1;
+  while (most > kFinest * double(1 << (count - 1))) ++count;
+  std::vector<BlurLevel> levels{std::size_t(count)};
+  for (int k = 0; k < count; ++k) {
+    BlurLevel& level = levels[std::size_t(k)];
+    level.sigma = most / double(1 << (count - 1 - k));
+    while (level.sigma / (2 * level.factor) >= kSmallest) level.factor *= 2;
+  }
+  return levels;
+}
+
+// The smallest region that holds all pixels on a side of the focus, and those of the pixels that look at each level:
+// at the first whose sigma is not below their own, and at the one before.
+struct BlurRegions {
+  Region all;
+  std::vector<Region> of_level;
+};
+
+void Widen(Region& region, const Region& by) {
+  if (by.empty()) return;
+  region = {std::min(region.x0, by.x0), std::min(region.y0, by.y0), std::max(region.x1, by.x1),
+            std::max(region.y1, by.y1)};
+}
+
+BlurRegions RegionsOf(const BlurSource& source, float side, const std::vector<BlurLevel>& levels) {
   const Region empty{source.width, source.height, 0, 0};
+  const auto level_of = [&](float sigma) {
+    std::size_t level = 0;
+    while (level + 1 < levels.size() && sigma * sigma > static_cast<float>(levels[level].sigma * levels[level].sigma))
+      ++level;
+    return level;
+  };
   return tbb::parallel_reduce(
-      tbb::blocked_range<int>(0, source.height, 16), BlurRegions{empty, empty},
+      tbb::blocked_range<int>(0, source.height, 16), BlurRegions{empty, std::vector<Region>(levels.size(), empty)},
       [&](const auto& rows, BlurRegions regions) {
         for (int y = rows.begin(); y != rows.end(); ++y) {
           const float* const row = source.sigma.data() + std::size_t(y) * std::size_t(source.width);
-          for (std::size_t s = 0; s < 2; ++s) {
-            const float side = s == 0 ? 1.0f : -1.0f;
-            int left = 0, right = source.width;
-            while (left < right && !(row[left] * side > 0.0f)) ++left;
-            if (left == right) continue;
-            while (!(row[right - 1] * side > 0.0f)) --right;
-            Region& region = regions[s];
-            region = {std::min(region.x0, left), std::min(region.y0, y), std::max(region.x1, right), y + 1};
+          for (int x = 0; x < source.width; ++x) {
+            const float sigma = row[x] * side;
+            if (!(sigma > 0.0f)) continue;
+            const std::size_t level = level_of(sigma);
+            const Region pixel{x, y, x + 1, y + 1};
+            Widen(regions.of_level[level], pixel);
+            if (level > 0) Widen(regions.of_level[level - 1], pixel);
           }
         }
+        for (const Region& one : regions.of_level) Widen(regions.all, one);
         return regions;
       },
       [](BlurRegions one, const BlurRegions& other) {
-        for (std::size_t s = 0; s < 2; ++s) {
-          one[s] = {std::min(one[s].x0, other[s].x0), std::min(one[s].y0, other[s].y0),
-                    std::max(one[s].x1, other[s].x1), std::max(one[s].y1, other[s].y1)};
-        }
+        Widen(one.all, other.all);
+        for (std::size_t k = 0; k < one.of_level.size(); ++k) Widen(one.of_level[k], other.of_level[k]);
         return one;
       });
 }
 
-// Adds the pixels of rows from y on to the level's place row v.
-void ReduceRow(const BlurSource& source, float side, const Region& region, int v,
-               std::array<std::vector<float>, 4>& sums, BlurLevel& level) {
-  const int wide = region.x1 - region.x0, f = level.factor;
-  for (auto& sum : sums) std::fill(sum.begin(), sum.end(), 0.0f);
+// Sums of the level's place row v.
+void ReduceRow(const BlurSource& source, float side, int v, std::array<std::vector<float>, 4>& sums, BlurLevel& level) {
+  const int f = level.factor, wide = level.right - level.left;
+  for (auto& sum : sums) std::fill_n(sum.begin(), wide, 0.0f);
   float* const to[4] = {sums[0].data(), sums[1].data(), sums[2].data(), sums[3].data()};
-  for (int y = region.y0 + v * f; y < std::min(region.y1, region.y0 + v * f + f); ++y) {
-    const std::size_t first = std::size_t(y) * std::size_t(source.width) + std::size_t(region.x0);
+  for (int y = level.top + v * f; y < std::min(level.bottom, level.top + v * f + f); ++y) {
+    const std::size_t first = std::size_t(y) * std::size_t(source.width) + std::size_t(level.left);
     // A little less, so that a pixel of just that sigma counts whatever the rounding.
     const BlurRow row{source.lightness.data() + first,
                       source.a.data() + first,
@@ -263,41 +292,31 @@ void ReduceRow(const BlurSource& source, float side, const Region& region, int v
   }
 }
 
-BlurSide SideOf(const BlurSource& source, float side, const Region& region, double most) {
-  BlurSide made{side, {}, {0.0f}};
-  if (region.x0 >= region.x1) return made;
-  int count = 1;
-  while (most > kFinest * double(1 << (count - 1))) ++count;
-  made.levels.resize(std::size_t(count));
-  for (int k = 0; k < count; ++k) {
-    BlurLevel& level = made.levels[std::size_t(k)];
-    level.sigma = most / double(1 << (count - 1 - k));
-    while (level.sigma / (2 * level.factor) >= kSmallest) level.factor *= 2;
-    const int f = level.factor;
-    level.left = region.x0, level.top = region.y0;
-    level.width = (region.x1 - level.left + f - 1) / f, level.height = (region.y1 - level.top + f - 1) / f;
-    for (auto& plane : level.planes) plane.resize(std::size_t(level.width) * std::size_t(level.height));
+// Only the part of each level that pixels look at, and what a Gaussian reaches around.
+BlurSide SideOf(const BlurSource& source, float side, double most) {
+  BlurSide made{side, LevelsUpTo(most), {0.0f}};
+  const BlurRegions regions = RegionsOf(source, side, made.levels);
+  if (regions.all.empty()) return {};
+  for (std::size_t k = 0; k < made.levels.size(); ++k) {
+    BlurLevel& level = made.levels[k];
     made.variances.push_back(static_cast<float>(level.sigma * level.sigma));
-  }
-  // All levels of a strip of rows while these are in the cache.
-  const int strip = std::max(8, made.levels.back().factor), tall = region.y1 - region.y0;
-  tbb::parallel_for(tbb::blocked_range<int>(0, (tall + strip - 1) / strip, 1), [&](const auto& strips) {
-    std::array<std::vector<float>, 4> sums;  // of a row, by column of the picture
-    for (auto& sum : sums) sum.resize(std::size_t(region.x1 - region.x0) + kBlurSpare);
-    for (int s = strips.begin(); s != strips.end(); ++s) {
-      for (BlurLevel& level : made.levels) {
-        const int rows = strip / level.factor;
-        for (int v = s * rows; v < std::min(level.height, s * rows + rows); ++v)
-          ReduceRow(source, side, region, v, sums, level);
-      }
-    }
-  });
-  for (BlurLevel& level : made.levels) {
+    const Region& used = regions.of_level[k];
+    if (used.empty()) continue;
+    const int f = level.factor, around = static_cast<int>(std::ceil(3.0 * level.sigma)) + 2 * f;
+    level.left = std::max(regions.all.x0, used.x0 - around), level.right = std::min(regions.all.x1, used.x1 + around);
+    level.top = std::max(regions.all.y0, used.y0 - around), level.bottom = std::min(regions.all.y1, used.y1 + around);
+    level.width = (level.right - level.left + f - 1) / f, level.height = (level.bottom - level.top + f - 1) / f;
+    for (auto& plane : level.planes) plane.resize(std::size_t(level.width) * std::size_t(level.height));
     // Blocks of f pixels, and straight lines between their middles, have a variance of their own.
-    const double squared = double(level.factor) * level.factor;
-    const double own = (squared - 1.0) / 12.0 + (level.factor > 1 ? squared / 6.0 : 0.0);
-    const double variance = (level.sigma * level.sigma - own) / squared;
-    for (auto& plane : level.planes) plane = Blurred(plane, level.width, level.height, std::sqrt(variance));
+    const double squared = double(f) * f;
+    const double own = (squared - 1.0) / 12.0 + (f > 1 ? squared / 6.0 : 0.0);
+    tbb::parallel_for(tbb::blocked_range<int>(0, level.height, std::max(1, 16 / f)), [&](const auto& rows) {
+      std::array<std::vector<float>, 4> sums;  // of a row, by column of the picture
+      for (auto& sum : sums) sum.resize(std::size_t(level.right - level.left) + kBlurSpare);
+      for (int v = rows.begin(); v != rows.end(); ++v) ReduceRow(source, side, v, sums, level);
+    });
+    for (auto& plane : level.planes)
+      plane = Blurred(plane, level.width, level.height, std::sqrt((level.sigma * level.sigma - own) / squared));
   }
   return made;
 }
@@ -308,8 +327,7 @@ void BlurByDepth(const DepthPass& pass, double strength, std::span<const std::ui
                  Picture& picture) {
   const double most = pass.blur * frame.scale;
   const BlurSource source = SourceOf(pass, most, frame, picture);
-  const BlurRegions regions = RegionsOf(source);
-  const BlurSide sides[2] = {SideOf(source, 1.0f, regions[0], most), SideOf(source, -1.0f, regions[1], most)};
+  const BlurSide sides[2] = {SideOf(source, 1.0f, most), SideOf(source, -1.0f, most)};
   tbb::parallel_for(tbb::blocked_range<int>(0, picture.height, 8), [&](const auto& rows) {
     for (int y = rows.begin(); y != rows.end(); ++y) {
       for (int x = 0; x < picture.width; x += static_cast<int>(kOklabBlock)) {

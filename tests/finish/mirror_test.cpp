@@ -77,8 +77,8 @@ struct MirrorCase {
 constexpr int kOfRounding = 4;
 // The levels of the blur begin at the left and upper edge of what is blurred.
 constexpr int kOfBlur = 200;
-// Closed lines are smoothed from where they begin: a line may lie a fifteenth of a pixel elsewhere.
-constexpr int kOfLines = 5000;
+// Closed lines are smoothed from where they begin: a line may lie a seventh of a pixel elsewhere.
+constexpr int kOfLines = 10000;
 
 int MostOf(const std::string& effect) {
   if (effect == "outline") return kOfLines;
