@@ -1,6 +1,6 @@
 // The time of each finishing effect at 1080p, as a ratio to a copy of the picture's bytes in the same run. Prints the
 // table of docs/finish.md. Where OpenCV is installed (libopencv-imgproc-dev), its filters are timed, too.
-//   finish_bench [RUNS]
+//   finish_bench [RUNS [NAME]]    only work whose name has NAME in it
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -39,7 +39,7 @@ Spread Timed(int runs, const Work& work) {
   return {ms[ms.size() / 2], ms.front(), ms.back()};
 }
 
-int Run(int runs) {
+int Run(int runs, const std::string& part) {
   Stylizer stylizer;
   SceneSettings scene;
   scene.file = SCUMBLE_SOURCE_DIR "/scenes/stilllife.glb", scene.width = 1920, scene.height = 1080;
@@ -60,6 +60,7 @@ int Run(int runs) {
   };
   print("copy of the picture, one thread", plain);
   const auto measure = [&](const std::string& name, const std::vector<FinishPass>& passes) {
+    if (name.find(part) == std::string::npos) return 0.0;
     std::vector<FinishStep> steps;
     for (const FinishPass& pass : passes) steps.push_back({pass, {}});
     Picture picture = *painted;
@@ -124,6 +125,21 @@ int Run(int runs) {
   measure("edges of paint", edges(EdgesPass::Tone::kPaint, 0.0));
   measure("edges of light, flow 3", edges(EdgesPass::Tone::kLight, 3.0));
   measure("edges of paint, flow 3", edges(EdgesPass::Tone::kPaint, 3.0));
+  for (const double flow : {0.0, 3.0}) {
+    auto within = edges(EdgesPass::Tone::kLight, flow);
+    std::get<EdgesPass>(within[0].effect).borders = true;
+    measure("edges of light, borders" + std::string(flow > 0.0 ? ", flow 3" : ""), within);
+  }
+  for (const double soften : {8.0, 64.0}) {
+    FinishPass shadows = *MakeFinishPass("shadows");
+    std::get<ShadowsPass>(shadows.effect).soften = soften;
+    measure("shadows, soften " + std::to_string(int(soften)), {shadows});
+  }
+  for (const auto& file : FindFinishPresets(SCUMBLE_SOURCE_DIR "/finish/presets")) {
+    const auto preset = LoadFinishPreset(file);
+    if (preset) measure("preset " + preset->name, preset->passes);
+  }
+  if (!part.empty()) return 0;  // the rest compares all of it with others
   std::vector<float> rgb;
   for (std::size_t i = 0; i < painted->rgba.size(); ++i)
     if (i % 4 != 3) rgb.push_back(static_cast<float>(painted->rgba[i]) / 65535.0f);
@@ -144,14 +160,12 @@ int Run(int runs) {
         runs, [&] { internal::GaussianPair(plane, picture_width, picture_height, 2.0 / 2.055, 21.0f, -20.0f, 1.0f); });
     print("two Gaussians of edges alone", pair);
   }
-  for (const auto& file : FindFinishPresets(SCUMBLE_SOURCE_DIR "/finish/presets")) {
-    const auto preset = LoadFinishPreset(file);
-    if (preset) measure("preset " + preset->name, preset->passes);
-  }
   return 0;
 }
 
 }  // namespace
 }  // namespace scumble
 
-int main(int count, char** arguments) { return scumble::Run(count > 1 ? std::max(1, std::atoi(arguments[1])) : 9); }
+int main(int count, char** arguments) {
+  return scumble::Run(count > 1 ? std::max(1, std::atoi(arguments[1])) : 9, count > 2 ? arguments[2] : "");
+}

@@ -19,6 +19,7 @@ LayerSet Of(const ShadowsPass& pass) {
   LayerSet layers{Layer::kCoverage};
   if (pass.source != ShadowsPass::Source::kForm) layers.Add(Layer::kShadow);
   if (pass.source != ShadowsPass::Source::kCast) layers.Add(Layer::kLuminance);
+  if (pass.soften > 0.0) layers.Add(Layer::kObject);
   return layers;
 }
 
@@ -45,15 +46,12 @@ LayerSet Of(const SmoothPass& pass) {
 }
 
 LayerSet Of(const EdgesPass& pass) {
-  switch (pass.tone) {
-    case EdgesPass::Tone::kPaint:
-      return {};
-    case EdgesPass::Tone::kLight:
-      return {Layer::kCoverage, Layer::kLuminance};
-    case EdgesPass::Tone::kAlbedo:
-      return {Layer::kCoverage, Layer::kAlbedo};
-  }
-  return {};
+  LayerSet layers;
+  if (pass.tone != EdgesPass::Tone::kPaint) layers.Add(Layer::kCoverage);
+  if (pass.tone == EdgesPass::Tone::kLight) layers.Add(Layer::kLuminance);
+  if (pass.tone == EdgesPass::Tone::kAlbedo) layers.Add(Layer::kAlbedo);
+  if (pass.borders) layers.Add(Layer::kObject);
+  return layers;
 }
 
 LayerSet Of(const HatchPass& pass) {

@@ -149,7 +149,7 @@ struct EdgesPass {
   double threshold = 0.7;                       // 0 … 1: the tone below which ink begins
   double slope = 10.0;                          // 0.1 … 100: how fast ink gets dense below it
   double fill = 0.0;                            // 0 … 1: 1 fills what is dark, 0 draws lines alone
-  bool borders = false;                         // no line along the border of two objects
+  bool borders = false;                         // no tone is mixed between objects: their border makes no line
   double flow = 0.0;  // 0 … 16 pixels: sigma along the edge, over which lines are evened out
   Tone tone = Tone::kLight;
   Draw draw = Draw::kInk;

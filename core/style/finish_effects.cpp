@@ -243,6 +243,7 @@ std::vector<FinishKey> EdgesKeys() {
           PassNumber("threshold", &P::threshold, 0.0, 1.0, "tone below which ink begins"),
           PassNumber("slope", &P::slope, 0.1, 100.0, "how fast it gets dense below that"),
           PassNumber("fill", &P::fill, 0.0, 1.0, "1 fills what is dark with ink, 0 draws lines alone"),
+          PassFlag("borders", &P::borders, "tone is not mixed between objects: their border makes no line"),
           PassNumber("flow", &P::flow, 0.0, 16.0, "lines are evened out along the edge: sigma, pixels"),
           PassChoice("tone", &P::tone, {"paint", "light", "albedo"},
                      "what is looked at: the paint, the light or base colours"),
@@ -289,6 +290,8 @@ std::vector<FinishKey> ShadowsKeys() {
       PassChoice("mode", &P::mode, {"black", "darker", "color", "complement", "chiaroscuro", "impression", "negative"},
                  "what shade looks like"),
       PassChoice("source", &P::source, {"cast", "form", "both"}, "cast shadows, faces turned from the light, or both"),
+      PassNumber("soften", &P::soften, 0.0, 64.0,
+                 "the shade's contour is evened out within each object: sigma, pixels"),
       PassNumber("full", &P::full, 0.0, 4.0, "luminance up to which a face is in full shade, 1: the brightest tenth's"),
       PassNumber("none", &P::none, 0.0, 4.0, "luminance from which on it is not"),
       PassColor("color", &P::color, "of mode color, and the hue of complement where paint is grey")};

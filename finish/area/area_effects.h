@@ -19,6 +19,7 @@ void Smooth(const SmoothPass& pass, double strength, std::span<const std::uint8_
 // threshold, and -tanh(slope · (U - threshold)) below. σ is width / 2.055: so wide is the dark side of a step, at half
 // its depth. With `fill` f below 1 the first term becomes f G(σ) + 1 - f, which keeps lines and fills less.
 // With `flow` the difference is taken across edges and evened out along them (finish/area/edges_flow.h).
+// With `borders` each Gaussian is over pixels of the same object alone, so that a border of two objects makes no line.
 // O(pixels · (width + flow)).
 void DrawEdges(const EdgesPass& pass, double strength, std::span<const std::uint8_t> only, const FinishFrame& frame,
                Picture& picture);

@@ -16,44 +16,23 @@ namespace {
 constexpr double kWidthOfSigma = 2.055;  // of the dark side of a step's response, at half its depth
 constexpr double kTensorSigma = 3.0;     // of the directions of flow, pixels at the reference height
 
-FloatPlane ToneOf(const EdgesPass& pass, const FinishFrame& frame, const Picture& picture) {
-  const std::size_t pixels = picture.rgba.size() / 4;
-  FloatPlane tone(pixels);
-  if (pass.tone == EdgesPass::Tone::kPaint) {
-    ForEachOklabBlock(pixels, [&](std::size_t first, std::size_t count) {
-      OklabBlock block;
-      OklabFromTexels(picture.rgba.data() + 4 * first, count, block);
-      std::copy_n(block.lightness.begin(), count, tone.begin() + std::ptrdiff_t(first));
-    });
-    return tone;
-  }
-  const auto coverage = frame.guides->Plane(Layer::kCoverage);
-  const bool of_light = pass.tone == EdgesPass::Tone::kLight;
-  const auto luminance = of_light ? frame.guides->Plane(Layer::kLuminance) : std::span<const float>();
-  const auto per_bright = static_cast<float>(1.0 / frame.measures.bright);
-  ForEachOklabBlock(pixels, [&](std::size_t first, std::size_t count) {
-    std::array<float, kOklabBlock> light;
-    std::array<const float*, 3> planes{light.data(), light.data(), light.data()};
-    for (std::size_t i = 0; i < count && of_light; ++i) light[i] = luminance[first + i] * per_bright;
-    for (std::size_t c = 0; c < 3 && !of_light; ++c)
-      planes[c] = frame.guides->Plane(Layer::kAlbedo, static_cast<int>(c)).data() + first;
-    OklabBlock block;
-    OklabFromPlanes(planes, count, block);
-    // Background has no tone: it counts as bare paper.
-    for (std::size_t i = 0; i < count; ++i) tone[first + i] = coverage[first + i] > 0.0f ? block.lightness[i] : 1.0f;
-  });
-  return tone;
-}
-
 // What ink is a function of, by pixel.
 FloatPlane ResponseOf(const EdgesPass& pass, const FinishFrame& frame, const FloatPlane& tone, int width, int height) {
   const double sigma = pass.width * frame.scale / kWidthOfSigma;
   const auto sharpness = static_cast<float>(pass.sharpness), fill = static_cast<float>(pass.fill);
+  const auto keys = pass.borders ? frame.guides->Plane(Layer::kObject) : std::span<const float>();
   if (pass.flow > 0.0) {
-    return FlowResponse(tone, width, height, {sigma, pass.flow * frame.scale, kTensorSigma * frame.scale},
+    return FlowResponse(tone, keys, width, height, {sigma, pass.flow * frame.scale, kTensorSigma * frame.scale},
                         {fill + sharpness, -sharpness, 1.0f - fill, static_cast<float>(pass.threshold)});
   }
-  return GaussianPair(tone, width, height, sigma, fill + sharpness, -sharpness, 1.0f - fill);
+  if (keys.empty()) return GaussianPair(tone, width, height, sigma, fill + sharpness, -sharpness, 1.0f - fill);
+  FloatPlane narrow = BlurredWithin(tone, keys, width, height, sigma);
+  const FloatPlane wide = BlurredWithin(tone, keys, width, height, 1.6 * sigma);
+  ForEachOklabBlock(tone.size(), [&](std::size_t first, std::size_t count) {
+    for (std::size_t i = first; i < first + count; ++i)
+      narrow[i] = 1.0f - fill + ((fill + sharpness) * narrow[i] - sharpness * wide[i]);
+  });
+  return narrow;
 }
 
 float Tanh(float x) {
@@ -77,7 +56,7 @@ bool SharesOf(const EdgesPass& pass, const float* response, std::size_t count, f
 
 void DrawEdges(const EdgesPass& pass, double strength, std::span<const std::uint8_t> only, const FinishFrame& frame,
                Picture& picture) {
-  const FloatPlane tone = ToneOf(pass, frame, picture);
+  const FloatPlane tone = ToneOf(pass.tone, frame, picture);
   const FloatPlane response = ResponseOf(pass, frame, tone, picture.width, picture.height);
   const bool on_paper = pass.draw == EdgesPass::Draw::kPaint;
   const LabColor fixed = ToOklab(on_paper ? pass.paper : pass.ink);

@@ -5,43 +5,188 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
+#include <vector>
 
 #include "finish/area/gaussian_rows.h"
 #include "finish/area/structure_tensor.h"
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "finish/area/edges_flow.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "core/filter/vector_lane-inl.h"
+
+#ifndef SCUMBLE_FINISH_EDGES_FLOW_ONCE_
+#define SCUMBLE_FINISH_EDGES_FLOW_ONCE_
 namespace scumble::internal {
-namespace {
+
+constexpr int kFlowSide = 32;  // of the squares of pixels that are treated together
 
 // A plane between its pixels, by bilinear interpolation; beyond its edges it goes on with its last values.
 struct FlowPlane {
-  const FloatPlane& values;
+  const float* values;
+  const float* keys;  // by pixel; null: all are equal
   int width, height;
-
-  float At(float x, float y) const {
-    x = std::clamp(x, 0.0f, static_cast<float>(width - 1)), y = std::clamp(y, 0.0f, static_cast<float>(height - 1));
-    const int x0 = static_cast<int>(x), y0 = static_cast<int>(y);
-    const float u = x - static_cast<float>(x0), v = y - static_cast<float>(y0);
-    const std::size_t right = x0 + 1 < width ? 1 : 0, below = y0 + 1 < height ? std::size_t(width) : 0;
-    const float* const at = values.data() + std::size_t(y0) * std::size_t(width) + std::size_t(x0);
-    const float upper = at[0] + u * (at[right] - at[0]), lower = at[below] + u * (at[below + right] - at[below]);
-    return upper + v * (lower - upper);
-  }
 };
 
-EdgeFlow FlowOfTone(const FloatPlane& tone, int width, int height, double sigma) {
+// Of pixels of one row: from (x, y) on, up to kFlowSide of them. Values behind the last one may be anything finite.
+struct FlowRun {
+  int x = 0, y = 0, count = 0;
+  alignas(64) float flow_x[kFlowSide], flow_y[kFlowSide], value[kFlowSide], key[kFlowSide], out[kFlowSide];
+};
+
+// By distance from the pixel.
+struct AcrossWeights {
+  std::vector<float> narrow, wide;  // equally many
+  float of_narrow, of_wide, level;  // their factors, and what is added
+};
+
+struct AlongWeights {
+  std::vector<float> weights;
+  const float *flow_x, *flow_y;  // planes
+};
+
+}  // namespace scumble::internal
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace scumble::internal {
+namespace HWY_NAMESPACE {
+
+using IntVector = hn::Vec<Ints>;
+
+HWY_INLINE Lane Gathered(const float* plane, IntVector at) { return hn::GatherIndex(Floats(), plane, at); }
+
+HWY_INLINE Lane Clamped(Lane x, int most) { return Min(Max(x, 0.0f), static_cast<float>(most)); }
+
+// A place's value, as a share of 1; of places of the key alone.
+struct FlowSample {
+  Lane value, share;
+};
+
+template <bool kKeyed>
+HWY_INLINE FlowSample SampleAt(const FlowPlane& plane, Lane x, Lane y, Lane key) {
+  const Ints di;
+  x = Clamped(x, plane.width - 1), y = Clamped(y, plane.height - 1);
+  const IntVector x0 = hn::ConvertTo(di, x.v), y0 = hn::ConvertTo(di, y.v), one = hn::Set(di, 1);
+  const Lane u = x - Lane(hn::ConvertTo(Floats(), x0)), v = y - Lane(hn::ConvertTo(Floats(), y0));
+  const IntVector right = hn::Min(one, hn::Sub(hn::Set(di, plane.width - 1), x0));
+  const IntVector below = hn::IfThenElseZero(hn::Lt(y0, hn::Set(di, plane.height - 1)), hn::Set(di, plane.width));
+  const IntVector at = hn::Add(hn::Mul(y0, hn::Set(di, plane.width)), x0);
+  const IntVector places[4] = {at, hn::Add(at, right), hn::Add(at, below), hn::Add(hn::Add(at, below), right)};
+  if constexpr (!kKeyed) {
+    const Lane corner[4] = {Gathered(plane.values, places[0]), Gathered(plane.values, places[1]),
+                            Gathered(plane.values, places[2]), Gathered(plane.values, places[3])};
+    const Lane upper = corner[0] + u * (corner[1] - corner[0]), lower = corner[2] + u * (corner[3] - corner[2]);
+    return {upper + v * (lower - upper), 1.0f};
+  } else {
+    const Lane left = 1.0f - u, above = 1.0f - v;
+    const Lane shares[4] = {left * above, u * above, left * v, u * v};
+    FlowSample sample{0.0f, 0.0f};
+    for (int c = 0; c < 4; ++c) {
+      const auto is_one = hn::Eq(Gathered(plane.keys, places[c]).v, key.v);
+      const Lane share = hn::IfThenElseZero(is_one, shares[c].v);
+      sample.value = sample.value + share * Gathered(plane.values, places[c]);
+      sample.share = sample.share + share;
+    }
+    return sample;
+  }
+}
+
+HWY_INLINE Lane FirstX(const FlowRun& run, int i) { return hn::Iota(Floats(), static_cast<float>(run.x + i)); }
+
+template <bool kKeyed>
+HWY_INLINE void AcrossOf(const FlowPlane& plane, const AcrossWeights& by, FlowRun& run) {
+  const Floats d;
+  const std::size_t taps = by.wide.size();
+  for (int i = 0; i < run.count; i += static_cast<int>(hn::Lanes(d))) {
+    const Lane x = FirstX(run, i), y = static_cast<float>(run.y), key = hn::Load(d, run.key + i),
+               here = hn::Load(d, run.value + i);
+    const Lane step_x = hn::Load(d, run.flow_y + i), step_y = Lane(0.0f) - Lane(hn::Load(d, run.flow_x + i));
+    Lane narrow = by.narrow[0] * here, wide = by.wide[0] * here, narrow_share = by.narrow[0], wide_share = by.wide[0];
+    for (std::size_t k = 1; k < taps; ++k) {
+      const Lane off_x = static_cast<float>(k) * step_x, off_y = static_cast<float>(k) * step_y;
+      const FlowSample one = SampleAt<kKeyed>(plane, x + off_x, y + off_y, key),
+                       other = SampleAt<kKeyed>(plane, x - off_x, y - off_y, key);
+      const Lane both = one.value + other.value;
+      narrow = narrow + by.narrow[k] * both, wide = wide + by.wide[k] * both;
+      if constexpr (kKeyed) {
+        const Lane share = one.share + other.share;
+        narrow_share = narrow_share + by.narrow[k] * share, wide_share = wide_share + by.wide[k] * share;
+      }
+    }
+    if constexpr (kKeyed) narrow = narrow / narrow_share, wide = wide / wide_share;
+    hn::Store((by.level + (by.of_narrow * narrow + by.of_wide * wide)).v, d, run.out + i);
+  }
+}
+
+// A Gaussian over the curve through a pixel, as far as the weights go.
+template <bool kKeyed>
+HWY_INLINE void AlongOf(const FlowPlane& plane, const AlongWeights& by, FlowRun& run) {
+  const Floats d;
+  const Ints di;
+  for (int i = 0; i < run.count; i += static_cast<int>(hn::Lanes(d))) {
+    const Lane key = hn::Load(d, run.key + i);
+    Lane sum = by.weights[0] * Lane(hn::Load(d, run.value + i)), share = by.weights[0];
+    for (const float sign : {1.0f, -1.0f}) {
+      Lane x = FirstX(run, i), y = static_cast<float>(run.y);
+      Lane step_x = sign * Lane(hn::Load(d, run.flow_x + i)), step_y = sign * Lane(hn::Load(d, run.flow_y + i));
+      for (std::size_t k = 1; k < by.weights.size(); ++k) {
+        x = Clamped(x + step_x, plane.width - 1), y = Clamped(y + step_y, plane.height - 1);
+        const FlowSample sample = SampleAt<kKeyed>(plane, x, y, key);
+        sum = sum + by.weights[k] * sample.value;
+        if constexpr (kKeyed) share = share + by.weights[k] * sample.share;
+        if (k + 1 == by.weights.size()) break;
+        const IntVector nearest = hn::Add(hn::Mul(hn::ConvertTo(di, (y + 0.5f).v), hn::Set(di, plane.width)),
+                                          hn::ConvertTo(di, (x + 0.5f).v));
+        const Lane next_x = Gathered(by.flow_x, nearest), next_y = Gathered(by.flow_y, nearest);
+        const Choice turns = Less(next_x * step_x + next_y * step_y, 0.0f);
+        step_x = Select(turns, 0.0f - next_x, next_x), step_y = Select(turns, 0.0f - next_y, next_y);
+      }
+    }
+    if constexpr (kKeyed) sum = sum / share;
+    hn::Store(sum.v, d, run.out + i);
+  }
+}
+
+void AcrossHere(const FlowPlane& plane, const AcrossWeights& by, FlowRun& run) {
+  plane.keys ? AcrossOf<true>(plane, by, run) : AcrossOf<false>(plane, by, run);
+}
+
+void AlongHere(const FlowPlane& plane, const AlongWeights& by, FlowRun& run) {
+  plane.keys ? AlongOf<true>(plane, by, run) : AlongOf<false>(plane, by, run);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace scumble::internal
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace scumble::internal {
+namespace {
+
+HWY_EXPORT(AcrossHere);
+HWY_EXPORT(AlongHere);
+
+// By central differences; across a border of keys nothing changes.
+EdgeFlow FlowOfTone(const FlowPlane& plane, double sigma) {
+  const int width = plane.width, height = plane.height;
   StructureTensor tensor;
-  for (auto* plane : {&tensor.xx, &tensor.xy, &tensor.yy}) plane->resize(tone.size());
+  for (auto* one : {&tensor.xx, &tensor.xy, &tensor.yy}) one->resize(std::size_t(width) * std::size_t(height));
   tbb::parallel_for(tbb::blocked_range<int>(0, height, 16), [&](const auto& rows) {
     for (int y = rows.begin(); y != rows.end(); ++y) {
-      const auto row = [&](int v) {
-        return tone.data() + std::size_t(std::clamp(v, 0, height - 1)) * std::size_t(width);
+      const auto place = [&](int x, int v) {
+        return std::size_t(std::clamp(v, 0, height - 1)) * std::size_t(width) +
+               std::size_t(std::clamp(x, 0, width - 1));
       };
-      const float *const above = row(y - 1), *const here = row(y), *const below = row(y + 1);
       for (int x = 0; x < width; ++x) {
-        const float dx = here[std::min(x + 1, width - 1)] - here[std::max(x - 1, 0)], dy = below[x] - above[x];
-        const std::size_t i = std::size_t(y) * std::size_t(width) + std::size_t(x);
+        const std::size_t i = place(x, y);
+        const auto beside = [&](std::size_t q) {
+          return plane.values[!plane.keys || plane.keys[q] == plane.keys[i] ? q : i];
+        };
+        const float dx = beside(place(x + 1, y)) - beside(place(x - 1, y)),
+                    dy = beside(place(x, y + 1)) - beside(place(x, y - 1));
         tensor.xx[i] = dx * dx, tensor.xy[i] = dx * dy, tensor.yy[i] = dy * dy;
       }
     }
@@ -49,80 +194,66 @@ EdgeFlow FlowOfTone(const FloatPlane& tone, int width, int height, double sigma)
   return FlowOf(tensor, width, height, sigma);
 }
 
-// A Gaussian over the curve through a pixel, as far as the weights go.
-float AlongFlow(const FlowPlane& plane, const EdgeFlow& flow, const std::vector<float>& weights, int x, int y) {
-  const std::size_t here = std::size_t(y) * std::size_t(plane.width) + std::size_t(x);
-  float sum = weights[0] * plane.values[here];
-  for (const float sign : {1.0f, -1.0f}) {
-    float at_x = static_cast<float>(x), at_y = static_cast<float>(y);
-    float step_x = sign * flow.x[here], step_y = sign * flow.y[here];
-    for (std::size_t k = 1; k < weights.size(); ++k) {
-      at_x = std::clamp(at_x + step_x, 0.0f, static_cast<float>(plane.width - 1));
-      at_y = std::clamp(at_y + step_y, 0.0f, static_cast<float>(plane.height - 1));
-      sum += weights[k] * plane.At(at_x, at_y);
-      const std::size_t nearest = std::size_t(at_y + 0.5f) * std::size_t(plane.width) + std::size_t(at_x + 0.5f);
-      const bool turns = flow.x[nearest] * step_x + flow.y[nearest] * step_y < 0.0f;
-      step_x = turns ? -flow.x[nearest] : flow.x[nearest], step_y = turns ? -flow.y[nearest] : flow.y[nearest];
+// Calls visit(run) for parts of rows, square by square, from several threads, and puts its results into `out`. Squares
+// for which skip(x, y) holds are left out.
+template <class Skip, class Visit>
+void ForEachRun(const FlowPlane& plane, const EdgeFlow& flow, FloatPlane& out, const Skip& skip, const Visit& visit) {
+  const int columns = (plane.width + kFlowSide - 1) / kFlowSide, rows = (plane.height + kFlowSide - 1) / kFlowSide;
+  tbb::parallel_for(tbb::blocked_range2d<int>(0, rows, 1, 0, columns, 4), [&](const auto& part) {
+    FlowRun run{};
+    for (int row = part.rows().begin(); row != part.rows().end(); ++row) {
+      for (int column = part.cols().begin(); column != part.cols().end(); ++column) {
+        run.x = column * kFlowSide, run.count = std::min(kFlowSide, plane.width - run.x);
+        if (skip(run.x, row * kFlowSide)) continue;
+        for (run.y = row * kFlowSide; run.y < std::min(plane.height, row * kFlowSide + kFlowSide); ++run.y) {
+          const std::size_t first = std::size_t(run.y) * std::size_t(plane.width) + std::size_t(run.x);
+          std::copy_n(flow.x.data() + first, run.count, run.flow_x);
+          std::copy_n(flow.y.data() + first, run.count, run.flow_y);
+          std::copy_n(plane.values + first, run.count, run.value);
+          if (plane.keys) std::copy_n(plane.keys + first, run.count, run.key);
+          visit(run);
+          std::copy_n(run.out, run.count, out.data() + first);
+        }
+      }
     }
-  }
-  return sum;
-}
-
-// Calls visit(x0, x1, y0, y1) for squares of the picture, from several threads.
-template <class Visit>
-void ForEachSquare(int width, int height, const Visit& visit) {
-  constexpr int kSide = 32;
-  tbb::parallel_for(tbb::blocked_range2d<int>(0, (height + kSide - 1) / kSide, 1, 0, (width + kSide - 1) / kSide, 4),
-                    [&](const auto& part) {
-                      for (int row = part.rows().begin(); row != part.rows().end(); ++row) {
-                        for (int column = part.cols().begin(); column != part.cols().end(); ++column)
-                          visit(column * kSide, std::min(width, column * kSide + kSide), row * kSide,
-                                std::min(height, row * kSide + kSide));
-                      }
-                    });
+  });
 }
 
 }  // namespace
 
-FloatPlane FlowResponse(const FloatPlane& tone, int width, int height, const FlowLengths& lengths,
-                        const FlowFactors& factors) {
-  const EdgeFlow flow = FlowOfTone(tone, width, height, lengths.tensor_sigma);
-  const std::vector<float> narrow = GaussianWeights(lengths.sigma), wide = GaussianWeights(1.6 * lengths.sigma),
-                           along = GaussianWeights(lengths.along);
-  std::vector<float> weights(wide.size());
-  for (std::size_t k = 0; k < wide.size(); ++k)
-    weights[k] = factors.wide * wide[k] + (k < narrow.size() ? factors.narrow * narrow[k] : 0.0f);
-  const FlowPlane of_tone{tone, width, height};
-  FloatPlane across(tone.size()), out(tone.size());
-  const auto at = [&](int x, int y) { return std::size_t(y) * std::size_t(width) + std::size_t(x); };
-  ForEachSquare(width, height, [&](int x0, int x1, int y0, int y1) {
-    for (int y = y0; y < y1; ++y) {
-      for (int x = x0; x < x1; ++x) {
-        const std::size_t i = at(x, y);
-        float sum = factors.level + weights[0] * tone[i];
-        for (std::size_t k = 1; k < weights.size(); ++k) {
-          const float off_x = static_cast<float>(k) * flow.y[i], off_y = -static_cast<float>(k) * flow.x[i];
-          const auto left = static_cast<float>(x), top = static_cast<float>(y);
-          sum += weights[k] * (of_tone.At(left + off_x, top + off_y) + of_tone.At(left - off_x, top - off_y));
-        }
-        across[i] = sum;
-      }
+FloatPlane FlowResponse(const FloatPlane& tone, std::span<const float> keys, int width, int height,
+                        const FlowLengths& lengths, const FlowFactors& factors) {
+  const FlowPlane of_tone{tone.data(), keys.empty() ? nullptr : keys.data(), width, height};
+  const EdgeFlow flow = FlowOfTone(of_tone, lengths.tensor_sigma);
+  AcrossWeights across{GaussianWeights(lengths.sigma), GaussianWeights(1.6 * lengths.sigma), factors.narrow,
+                       factors.wide, factors.level};
+  across.narrow.resize(across.wide.size(), 0.0f);
+  const AlongWeights along{GaussianWeights(lengths.along), flow.x.data(), flow.y.data()};
+  FloatPlane between(tone.size());
+  ForEachRun(
+      of_tone, flow, between, [](int, int) { return false; },
+      [&](FlowRun& run) {
+        HWY_DYNAMIC_DISPATCH(AcrossHere)
+        (of_tone, across, run);
+      });
+
+  FloatPlane out = between;
+  const FlowPlane of_between{between.data(), of_tone.keys, width, height};
+  const int reach = static_cast<int>(along.weights.size());
+  const auto is_enough_around = [&](int x, int y) {
+    float least = factors.enough;
+    for (int v = std::max(0, y - reach); v < std::min(height, y + kFlowSide + reach); ++v) {
+      for (int u = std::max(0, x - reach); u < std::min(width, x + kFlowSide + reach); ++u)
+        least = std::min(least, between[std::size_t(v) * std::size_t(width) + std::size_t(u)]);
+      if (least < factors.enough) return false;
     }
-  });
-  const FlowPlane of_across{across, width, height};
-  const int reach = static_cast<int>(along.size());
-  ForEachSquare(width, height, [&](int x0, int x1, int y0, int y1) {
-    float least = std::numeric_limits<float>::infinity();
-    for (int y = std::max(0, y0 - reach); y < std::min(height, y1 + reach); ++y) {
-      for (int x = std::max(0, x0 - reach); x < std::min(width, x1 + reach); ++x)
-        least = std::min(least, across[at(x, y)]);
-    }
-    for (int y = y0; y < y1; ++y) {
-      for (int x = x0; x < x1; ++x)
-        out[at(x, y)] = least >= factors.enough ? across[at(x, y)] : AlongFlow(of_across, flow, along, x, y);
-    }
+    return true;
+  };
+  ForEachRun(of_between, flow, out, is_enough_around, [&](FlowRun& run) {
+    HWY_DYNAMIC_DISPATCH(AlongHere)(of_between, along, run);
   });
   return out;
 }
 
 }  // namespace scumble::internal
+#endif

@@ -9,14 +9,13 @@
 #include <optional>
 #include <vector>
 
-#include "core/image/color.h"
 #include "core/image/exact_math.h"
 #include "core/image/hash.h"
-#include "core/image/oklab.h"
 #include "finish/area/area_effects.h"
 #include "finish/area/hatch_texture.h"
 #include "finish/area/ink.h"
 #include "finish/area/noise.h"
+#include "finish/area/oklab_blocks.h"
 
 namespace scumble::internal {
 namespace {
@@ -69,6 +68,9 @@ class Patches {
     const GuideSet& guides = *frame.guides;
     object_ = guides.Plane(Layer::kObject);
     patch_.resize(guides.pixel_count());
+    for (int row = -1; row < rows_; ++row) {
+      for (int column = -1; column + 1 < columns_; ++column) points_.push_back(PointOf(column, row));
+    }
     tbb::parallel_for(0, height, [&](int y) {
       for (int x = 0; x < width; ++x) patch_[guides.Index(x, y)] = NearestPoint(x, y);
     });
@@ -113,23 +115,44 @@ class Patches {
     float least = 1e9f;
     for (int v = row - 1; v <= row + 1; ++v) {
       for (int u = column - 1; u <= column + 1; ++u) {
-        const glm::vec2 off = PointOf(u, v) - at;
+        const int index = (v + 1) * columns_ + (u + 1);
+        const glm::vec2 off = points_[std::size_t(index)] - at;
         const float distance = off.x * off.x + off.y * off.y;
-        if (distance < least) least = distance, nearest = (v + 1) * columns_ + (u + 1);
+        if (distance < least) least = distance, nearest = index;
       }
     }
     return nearest;
   }
 
-  // In one fixed order, since sums of floats depend on it.
+  using Parts = std::vector<std::vector<Part>>;  // by cell
+
+  // Strips are added in one fixed order, since sums of floats depend on it.
   void Sum(const GuideSet& guides, int height) {
+    constexpr int kStrip = 64;
+    std::vector<Parts> strips(std::size_t((height + kStrip - 1) / kStrip));
+    tbb::parallel_for(std::size_t(0), strips.size(), [&](std::size_t s) {
+      const int first = static_cast<int>(s) * kStrip;
+      strips[s] = SumOf(guides, first, std::min(height - 1, first + kStrip));
+    });
     of_cell_.resize(std::size_t(columns_) * std::size_t(rows_ + 1));
+    for (const Parts& strip : strips) {
+      for (std::size_t cell = 0; cell < strip.size(); ++cell) {
+        for (const Part& more : strip[cell]) {
+          Part& part = PartOf(of_cell_[cell], more.object);
+          part.pixels += more.pixels;
+          part.tensor.xx += more.tensor.xx, part.tensor.xy += more.tensor.xy, part.tensor.yy += more.tensor.yy;
+        }
+      }
+    }
+  }
+  Parts SumOf(const GuideSet& guides, int first, int last) const {
+    Parts parts(std::size_t(columns_) * std::size_t(rows_ + 1));
     const auto coverage = guides.Plane(Layer::kCoverage);
-    for (int y = 0; y + 1 < height; ++y) {
+    for (int y = first; y < last; ++y) {
       for (int x = 0; x + 1 < width_; ++x) {
         const std::size_t p = guides.Index(x, y), right = p + 1, below = p + std::size_t(width_);
         if (!(coverage[p] > 0.0f)) continue;
-        Part& part = PartOf(patch_[p], object_[p]);
+        Part& part = PartOf(parts[std::size_t(patch_[p])], object_[p]);
         part.pixels += 1.0f;
         if (object_[right] != object_[p] || object_[below] != object_[p]) continue;
         const glm::vec3 n = guides.Vec3(Layer::kNormal, p);
@@ -139,9 +162,9 @@ class Patches {
         part.tensor.yy += dy.x * dy.x + dy.y * dy.y + dy.z * dy.z;
       }
     }
+    return parts;
   }
-  Part& PartOf(int patch, float object) {
-    std::vector<Part>& parts = of_cell_[std::size_t(patch)];
+  static Part& PartOf(std::vector<Part>& parts, float object) {
     for (Part& part : parts) {
       if (part.object == object) return part;
     }
@@ -155,29 +178,9 @@ class Patches {
   std::uint64_t seed_;
   Axis axis_of_all_{1.0f, 0.0f};
   std::span<const float> object_;
-  std::vector<int> patch_;  // by pixel; empty: all strokes have one direction
-  std::vector<std::vector<Part>> of_cell_;
-};
-
-// The tone of a pixel, 0 … 1, as lightness.
-class Tones {
- public:
-  Tones(const HatchPass& pass, const FinishFrame& frame, const Picture& picture)
-      : picture_(picture), per_bright_(static_cast<float>(1.0 / frame.measures.bright)) {
-    if (pass.tone != HatchPass::Tone::kLight) return;
-    light_ = frame.guides->Plane(Layer::kLuminance), coverage_ = frame.guides->Plane(Layer::kCoverage);
-  }
-  float At(std::size_t pixel) const {
-    if (!coverage_.empty() && !(coverage_[pixel] > 0.0f)) return 1.0f;  // background has no light to lack
-    if (!light_.empty()) return OklabFromLinear(glm::vec3(std::clamp(light_[pixel] * per_bright_, 0.0f, 1.0f))).x;
-    const std::uint16_t* const texel = picture_.rgba.data() + 4 * pixel;
-    return OklabFromLinear({Srgb16ToLinear(texel[0]), Srgb16ToLinear(texel[1]), Srgb16ToLinear(texel[2])}).x;
-  }
-
- private:
-  const Picture& picture_;
-  std::span<const float> light_, coverage_;
-  float per_bright_;
+  std::vector<int> patch_;         // by pixel; empty: all strokes have one direction
+  std::vector<glm::vec2> points_;  // of the grid, in cells, from the cell (-1, -1) on
+  Parts of_cell_;
 };
 
 // How much of a pixel strokes of this share of ink cover: lines `spacing` apart and share · spacing wide, across a
@@ -216,12 +219,15 @@ class Strokes {
 void DrawHatch(const HatchPass& pass, double strength, std::span<const std::uint8_t> only, const FinishFrame& frame,
                Picture& picture) {
   const Patches patches(pass, frame, picture.width, picture.height);
-  const Tones tones(pass, frame, picture);
+  const FloatPlane tones =
+      ToneOf(pass.tone == HatchPass::Tone::kLight ? EdgesPass::Tone::kLight : EdgesPass::Tone::kPaint, frame, picture);
   const auto spacing = static_cast<float>(std::max(2.0, pass.spacing * frame.scale));
   const auto wobble = static_cast<float>(pass.wobble * frame.scale);
   const auto fullest = static_cast<float>(pass.fullest), from = static_cast<float>(pass.bare);
   const Strokes strokes(pass, spacing);
-  const float per_wave = 1.0f / (6.0f * spacing);
+  std::vector<NoiseField> strays;  // of each layer's strokes
+  for (int k = 0; k < pass.layers && wobble > 0.0f; ++k)
+    strays.emplace_back(Hash(frame.seed, 4, k), 6.0f * spacing, nullptr, picture.width, picture.height);
   std::array<glm::vec2, kMostLayers> turns;  // the cosine and sine of each layer's turn
   for (int k = 0; k < kMostLayers; ++k) turns[std::size_t(k)] = AxisAt(k * pass.cross);
   const auto width = static_cast<std::size_t>(picture.width);
@@ -231,7 +237,7 @@ void DrawHatch(const HatchPass& pass, double strength, std::span<const std::uint
         const std::size_t p = std::size_t(y) * width + x;
         std::uint16_t* const pixel = picture.rgba.data() + 4 * p;
         if (pixel[3] == 0 || (!only.empty() && !only[p])) continue;
-        float left = from > 0.0f ? std::min(1.0f, tones.At(p) / from) : 1.0f;  // of the tone, after the layers so far
+        float left = from > 0.0f ? std::min(1.0f, tones[p] / from) : 1.0f;  // of the tone, after the layers so far
         if (left >= 1.0f) continue;
         const Axis axis = patches.At(p);
         const glm::vec2 at(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
@@ -242,7 +248,7 @@ void DrawHatch(const HatchPass& pass, double strength, std::span<const std::uint
           const glm::vec2 turn = turns[std::size_t(k)];
           const Axis along(axis.x * turn.x - axis.y * turn.y, axis.x * turn.y + axis.y * turn.x);
           float across = at.y * along.x - at.x * along.y;
-          if (wobble > 0.0f) across += wobble * Noise(Hash(frame.seed, 4, k), at * per_wave);
+          if (wobble > 0.0f) across += wobble * strays[std::size_t(k)].At(static_cast<int>(x), y);
           bare *= 1.0f - strokes.Cover({at.x * along.x + at.y * along.y, across}, k, share);
           left = share < 1.0f ? left / (1.0f - share) : 1.0f;
         }

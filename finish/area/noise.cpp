@@ -101,17 +101,23 @@ NoiseField::NoiseField(std::uint64_t seed, double wave, const SurfaceScale* surf
       surface_(surface) {
   const int rows = static_cast<int>(static_cast<float>(height) * per_wave_) + 2;
   lattice_.resize(std::size_t(columns_) * std::size_t(rows));
-  for (int v = 0; v < rows; ++v) {
+  tbb::parallel_for(0, rows, [&](int v) {
     for (int u = 0; u < columns_; ++u)
       lattice_[std::size_t(v) * std::size_t(columns_) + std::size_t(u)] = LatticeValue(Hash(seed, u, v));
+  });
+  // Places in the picture are above 0, so that conversion is a floor.
+  for (int x = 0; x < width; ++x) {
+    const float at = (static_cast<float>(x) + 0.5f) * per_wave_;
+    column_.push_back({static_cast<int>(at), Smooth01(at - static_cast<float>(static_cast<int>(at)))});
   }
 }
 
-float NoiseField::InPicture(glm::vec2 at) const {
-  // Places in the picture are above 0, so that conversion is a floor.
-  const int x = static_cast<int>(at.x), y = static_cast<int>(at.y);
-  const float su = Smooth01(at.x - static_cast<float>(x)), sv = Smooth01(at.y - static_cast<float>(y));
-  const float* const above = lattice_.data() + std::size_t(y) * std::size_t(columns_) + std::size_t(x);
+float NoiseField::InPicture(int x, int y) const {
+  const float at = (static_cast<float>(y) + 0.5f) * per_wave_;
+  const int row = static_cast<int>(at);
+  const auto [cell, su] = column_[std::size_t(x)];
+  const float sv = Smooth01(at - static_cast<float>(row));
+  const float* const above = lattice_.data() + std::size_t(row) * std::size_t(columns_) + std::size_t(cell);
   const float* const below = above + columns_;
   const float upper = above[0] + (above[1] - above[0]) * su, lower = below[0] + (below[1] - below[0]) * su;
   return upper + (lower - upper) * sv;
@@ -119,9 +125,8 @@ float NoiseField::InPicture(glm::vec2 at) const {
 
 float NoiseField::At(int x, int y) const {
   const std::size_t p = std::size_t(y) * std::size_t(width_) + std::size_t(x);
-  const glm::vec2 centre(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
   const float wave = surface_ ? surface_->At(p) * wave_ : 0.0f;
-  if (!(wave > 1e-30f)) return InPicture(centre * per_wave_);
+  if (!(wave > 1e-30f)) return InPicture(x, y);
   const double level = Log2(wave), octave = std::floor(level);
   const auto share = static_cast<float>(level - octave);
   const auto per_octave = static_cast<float>(Exp2(-octave));

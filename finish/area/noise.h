@@ -44,12 +44,18 @@ class NoiseField {
   float At(int x, int y) const;
 
  private:
-  float InPicture(glm::vec2 at) const;
+  // What is the same for all pixels of a column.
+  struct Column {
+    int cell;     // of the lattice
+    float share;  // of the next one
+  };
+  float InPicture(int x, int y) const;
 
   std::uint64_t seed_;
   float wave_, per_wave_;
   int width_, columns_;
   std::vector<float> lattice_;  // of the picture's noise
+  std::vector<Column> column_;  // by x
   const SurfaceScale* surface_;
 };
 

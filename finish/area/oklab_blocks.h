@@ -1,4 +1,4 @@
-// A picture's pixels in blocks, as core/filter/oklab_rows.h takes them.
+// A picture's pixels in blocks, as core/filter/oklab_rows.h takes them, and their tone.
 #pragma once
 
 #include <tbb/blocked_range.h>
@@ -9,6 +9,8 @@
 #include <cstdint>
 
 #include "core/filter/oklab_rows.h"
+#include "finish/area/float_plane.h"
+#include "finish/finish.h"
 
 namespace scumble::internal {
 
@@ -26,5 +28,9 @@ void ForEachOklabBlock(std::size_t pixels, const Visit& visit) {
 // (null: none), and those whose colour stays keep their bits. `after` is changed.
 void PutBlock(const OklabBlock& before, float share, const std::uint8_t* only, std::size_t count, OklabBlock& after,
               std::uint16_t* texels);
+
+// By pixel, the lightness 0 … 1 of the paint, of the light, or of base colours; of the latter two background has that
+// of bare paper, 1. The guides hold coverage and the layer.
+FloatPlane ToneOf(EdgesPass::Tone of, const FinishFrame& frame, const Picture& picture);
 
 }  // namespace scumble::internal

@@ -10,7 +10,6 @@
 #include "core/image/exact_math.h"
 #include "core/image/hash.h"
 #include "finish/area/area_effects.h"
-#include "finish/area/lab_planes.h"
 #include "finish/area/noise.h"
 
 namespace scumble::internal {
