@@ -47,7 +47,8 @@ TEST_F(CliCompareFiles, TheViewLayerIsChosen) {
   RunOk({"compare", "ours.exr", "layers.exr", "--view-layer", "Near"});
   const CommandResult far = Run({"compare", "ours.exr", "layers.exr", "--view-layer", "Far", "--json"});
   EXPECT_EQ(far.code, 1) << far.err;
-  for (const auto& layer : far.Json()["layers"]) {
+  const nlohmann::json report = far.Json();
+  for (const auto& layer : report["layers"]) {
     EXPECT_EQ(layer["stats"]["different"] != 0, layer["name"] == "depth") << layer;
   }
   RunOk({"compare", "ours.exr", "layers.exr", "--view-layer", "Far", "--layer", "normal"});
