@@ -87,10 +87,10 @@ class BandOf {
     for (std::size_t i = 0; i < count; ++i) {
       const float at = near.at[i], border = near.border[i], off = at - border;
       float share = at >= border ? 1.0f : 0.0f;
-      // Half the border's width, in bands: the tone's slope makes it so many pixels wide. Far from it, no root is
-      // taken.
+      // Far from the border no root is taken.
       const float square = softness_ * per_light_ * (softness_ * per_light_) * near.slope[i];
       if (!(off * off > 1.01f * square)) {
+        // Half the border's width, in bands: the tone's slope makes it so many pixels wide.
         const float half = softness_ * std::sqrt(near.slope[i]) * per_light_;
         if (std::fabs(off) < half && Crosses(first + i, border)) share = 0.5f + 0.5f * off / half;
       }
