@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "guidegen/guidegen.h"
-#include "guidegen/light/key_lamp.h"
 #include "guidegen/light/path_layers.h"
 #include "guidegen/scene_textures.h"
+#include "guidegen/surface/bsdf.h"
 
 namespace scumble {
 namespace {
@@ -43,6 +43,15 @@ std::string PathCost(Layer layer, const Scene& scene, const GuidegenOptions& opt
   return Samples(options) + " " + expression + " per covered pixel, " + reach;
 }
 
+// Whether there may be a key lamp, as far as lights and materials tell.
+bool HasLamp(const Scene& scene) {
+  return std::any_of(scene.lights.begin(), scene.lights.end(),
+                     [](const Light& light) { return light.intensity * Brightness(glm::dvec3(light.color)) > 0.0; }) ||
+         std::any_of(scene.instances.begin(), scene.instances.end(), [&](const Instance& instance) {
+           return MayEmit(scene.materials[std::size_t(scene.meshes[std::size_t(instance.mesh)].material)]);
+         });
+}
+
 std::string LayerCost(Layer layer, const Scene& scene, const GuidegenOptions& options) {
   switch (layer) {
     case Layer::kCoverage:
@@ -65,8 +74,8 @@ std::string LayerCost(Layer layer, const Scene& scene, const GuidegenOptions& op
     case Layer::kShadow:
       return SupplyOf(scene).light ? "shadow rays" : "none: the scene has no light, so it is 0";
     case Layer::kCosine:
-      return FindKeyLamp(scene) ? "none: follows from the primary rays and the place of the brightest lamp"
-                                : "none: the scene has no lamp, so it is 0";
+      return HasLamp(scene) ? "none: follows from the primary rays and the place of the brightest lamp"
+                            : "none: the scene has no lamp, so it is 0";
     default:
       return PathCost(layer, scene, options);
   }

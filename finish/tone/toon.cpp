@@ -16,12 +16,14 @@ class PlainShading {
   explicit PlainShading(const ToonPass& pass)
       : color_(ToOklab(pass.color)), darkest_(static_cast<float>(pass.shade)), tint_(static_cast<float>(pass.tint)) {}
 
-  void Apply(float light, std::size_t, std::size_t i, OklabBlock& block) const {
-    // Scaling all of Oklab scales linear colours by the cube: the hue and the saturation stay.
-    const float factor = darkest_ + (1.0f - darkest_) * light, share = tint_ * (1.0f - light);
-    const float a = block.a[i] * factor, b = block.b[i] * factor;
-    block.lightness[i] *= factor;
-    block.a[i] = a + (color_.a - a) * share, block.b[i] = b + (color_.b - b) * share;
+  void Apply(const float* light, std::size_t, std::size_t count, OklabBlock& block) const {
+    for (std::size_t i = 0; i < count; ++i) {
+      // Scaling all of Oklab scales linear colours by the cube: the hue and the saturation stay.
+      const float factor = darkest_ + (1.0f - darkest_) * light[i], share = tint_ * (1.0f - light[i]);
+      const float a = block.a[i] * factor, b = block.b[i] * factor;
+      block.lightness[i] *= factor;
+      block.a[i] = a + (color_.a - a) * share, block.b[i] = b + (color_.b - b) * share;
+    }
   }
 
  private:
@@ -40,14 +42,14 @@ class GoochShading {
         warm_base_(static_cast<float>(pass.warm_base)),
         cool_base_(static_cast<float>(pass.cool_base)) {}
 
-  void Apply(float light, std::size_t, std::size_t i, OklabBlock& block) const {
-    const float base = cool_base_ + (warm_base_ - cool_base_) * light;
-    const auto sum = [&](float warm, float cool, float of_base) {
-      return cool + (warm - cool) * light + base * of_base;
-    };
-    block.lightness[i] = std::min(sum(warm_.lightness, cool_.lightness, block.lightness[i]), 1.0f);
-    block.a[i] = sum(warm_.a, cool_.a, block.a[i]);
-    block.b[i] = sum(warm_.b, cool_.b, block.b[i]);
+  void Apply(const float* light, std::size_t, std::size_t count, OklabBlock& block) const {
+    for (std::size_t i = 0; i < count; ++i) {
+      const float t = light[i], base = cool_base_ + (warm_base_ - cool_base_) * t;
+      const auto sum = [&](float warm, float cool, float of_base) { return cool + (warm - cool) * t + base * of_base; };
+      block.lightness[i] = std::min(sum(warm_.lightness, cool_.lightness, block.lightness[i]), 1.0f);
+      block.a[i] = sum(warm_.a, cool_.a, block.a[i]);
+      block.b[i] = sum(warm_.b, cool_.b, block.b[i]);
+    }
   }
 
  private:
@@ -63,9 +65,13 @@ class RampShading {
     if (pass.ramp_colors->rows > 1) rows_ = std::make_shared<const RampRows>(pass, frame);
   }
 
-  void Apply(float light, std::size_t pixel, std::size_t i, OklabBlock& block) const {
-    const LabColor color = colors_->At(light, rows_ ? rows_->At(pixel) : 0.0f);
-    block.lightness[i] = color.lightness, block.a[i] = color.a, block.b[i] = color.b;
+  void Apply(const float* light, std::size_t first, std::size_t count, OklabBlock& block) const {
+    float rows[kOklabBlock] = {};
+    if (rows_) rows_->At(first, count, rows);
+    for (std::size_t i = 0; i < count; ++i) {
+      const LabColor color = colors_->At(light[i], rows[i]);
+      block.lightness[i] = color.lightness, block.a[i] = color.a, block.b[i] = color.b;
+    }
   }
 
  private:
@@ -85,10 +91,16 @@ PointEffect ToonOf(const ToonPass& pass, const FinishFrame& frame, const Light& 
   }
   return [=](std::size_t first, std::size_t count, OklabBlock& block) {
     if (from_albedo) OklabFromPlanes({albedo[0] + first, albedo[1] + first, albedo[2] + first}, count, block);
-    for (std::size_t i = 0; i < count; ++i) {
-      const float light = has_bands ? band_of.At(first + i) * per_band : is_plain ? 1.0f : band_of.Tone(first + i);
-      shading.Apply(light, first + i, i, block);
+    float light[kOklabBlock];
+    if (has_bands) {
+      band_of.At(first, count, light);
+      for (std::size_t i = 0; i < count; ++i) light[i] *= per_band;
+    } else if (is_plain) {
+      std::fill_n(light, count, 1.0f);
+    } else {
+      band_of.Tones(first, count, light);
     }
+    shading.Apply(light, first, count, block);
   };
 }
 

@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "core/filter/oklab_rows.h"
 #include "finish/finish.h"
 
 namespace scumble::internal {
@@ -18,6 +19,8 @@ class DirectLight {
       : light_(frame.guides->Plane(Layer::kLuminance)), bright_(frame.measures.bright) {}
 
   float At(std::size_t pixel) const { return light_[pixel]; }
+  // The values of At from a pixel on, in `buffer` or elsewhere.
+  const float* Of(std::size_t first, std::size_t, float*) const { return light_.data() + first; }
   // The number of bands for 1 of At, of `bands` in all.
   float PerLight(int bands) const { return static_cast<float>(bands / bright_); }
 
@@ -38,16 +41,28 @@ class WrappedLight {
   }
 
   // 0 … 1, of any floats.
-  float At(std::size_t pixel) const {
-    float cosine = cosine_[pixel] > -1.0f ? std::min(cosine_[pixel], 1.0f) : -1.0f;  // NaN is dark
-    if (!shadow_.empty() && cosine > 0.0f)
-      cosine *= 1.0f - cast_ * (shadow_[pixel] > 0.0f ? std::min(shadow_[pixel], 1.0f) : 0.0f);
-    const float half = 0.5f + 0.5f * cosine;
-    return squares_ ? half * half : half;
+  float At(std::size_t pixel) const { return Wrapped(cosine_[pixel], shadow_.empty() ? 0.0f : shadow_[pixel]); }
+  const float* Of(std::size_t first, std::size_t count, float* buffer) const {
+    for (std::size_t i = 0; i < count; ++i) buffer[i] = cosine_[first + i];
+    if (shadow_.empty()) {
+      for (std::size_t i = 0; i < count; ++i) buffer[i] = Wrapped(buffer[i], 0.0f);
+    } else {
+      for (std::size_t i = 0; i < count; ++i) buffer[i] = Wrapped(buffer[i], shadow_[first + i]);
+    }
+    return buffer;
   }
   float PerLight(int bands) const { return static_cast<float>(bands); }
 
  private:
+  // NaN is dark, and no shadow.
+  float Wrapped(float cosine, float shadow) const {
+    const float turned = cosine > -1.0f ? std::min(cosine, 1.0f) : -1.0f;
+    const float blocked = shadow > 0.0f ? std::min(shadow, 1.0f) : 0.0f;
+    const float lit = turned > 0.0f ? turned * (1.0f - cast_ * blocked) : turned;
+    const float half = 0.5f + 0.5f * lit;
+    return squares_ ? half * half : half;
+  }
+
   std::span<const float> cosine_, shadow_;
   float cast_;
   bool squares_;
@@ -65,23 +80,70 @@ class BandOf {
         per_light_(light.PerLight(pass.bands)),
         softness_(static_cast<float>(pass.softness * frame.scale)) {}
 
-  float At(std::size_t pixel) const {
-    if (bands_ < 2.0f) return 0.0f;
-    const float at = Finite(light_.At(pixel) * per_light_);
-    const float border = std::clamp(std::floor(at + 0.5f), 1.0f, bands_ - 1.0f);
-    // Half the border's width, in bands: the tone's slope makes it so many pixels wide.
-    const float half = softness_ * Slope(pixel) * per_light_;
-    const bool is_soft = std::fabs(at - border) < half && Crosses(pixel, border);
-    const float share = is_soft ? 0.5f + 0.5f * (at - border) / half : at >= border ? 1.0f : 0.0f;
-    return border - 1.0f + share * share * (3.0f - 2.0f * share);
+  // Of pixels of one row, kOklabBlock at most.
+  void At(std::size_t first, std::size_t count, float* bands) const {
+    Near near;
+    Look(first, count, near);
+    for (std::size_t i = 0; i < count; ++i) {
+      const float at = near.at[i], border = near.border[i], off = at - border;
+      float share = at >= border ? 1.0f : 0.0f;
+      // Far from the border no root is taken.
+      const float square = softness_ * per_light_ * (softness_ * per_light_) * near.slope[i];
+      if (!(off * off > 1.01f * square)) {
+        // Half the border's width, in bands: the tone's slope makes it so many pixels wide.
+        const float half = softness_ * std::sqrt(near.slope[i]) * per_light_;
+        if (std::fabs(off) < half && Crosses(first + i, border)) share = 0.5f + 0.5f * off / half;
+      }
+      bands[i] = border - 1.0f + share * share * (3.0f - 2.0f * share);
+    }
   }
 
-  // The tone itself, as a share of all bands, 0 … 1.
-  float Tone(std::size_t pixel) const { return std::clamp(Finite(light_.At(pixel) * per_light_) / bands_, 0.0f, 1.0f); }
+  // The tones themselves, as shares of all bands, 0 … 1.
+  void Tones(std::size_t first, std::size_t count, float* tones) const {
+    const float* const light = light_.Of(first, count, tones);
+    for (std::size_t i = 0; i < count; ++i) tones[i] = std::clamp(Number(light[i] * per_light_) / bands_, 0.0f, 1.0f);
+  }
 
  private:
+  // Of each pixel of a block its place among the bands, the nearest border, and the squared slope of its light: of the
+  // larger differences to neighbours of the same object, along each axis.
+  struct Near {
+    float at[kOklabBlock], border[kOklabBlock], slope[kOklabBlock];
+  };
+
+  void Look(std::size_t first, std::size_t count, Near& near) const {
+    const std::size_t x = first % width_, has_left = x > 0, has_right = x + count < width_;
+    float buffers[3][kOklabBlock + 2], objects[kOklabBlock + 2];
+    const float* const light = light_.Of(first - has_left, count + has_left + has_right, buffers[0]) + has_left;
+    const bool has_above = first >= width_, has_below = first + width_ < object_.size();
+    const float* const above = has_above ? light_.Of(first - width_, count, buffers[1]) : light;
+    const float* const below = has_below ? light_.Of(first + width_, count, buffers[2]) : light;
+    const float* const object = object_.data() + first;
+    const float* const object_above = has_above ? object - width_ : object;
+    const float* const object_below = has_below ? object + width_ : object;
+    const auto step = [](float here, float there, float object_here, float object_there) {
+      return object_here == object_there ? std::fabs(there - here) : 0.0f;
+    };
+    // Beside the picture's edges there is no difference.
+    float across[kOklabBlock + 2];
+    for (std::size_t i = 0; i < count; ++i) across[i + 1] = light[i], objects[i + 1] = object[i];
+    across[0] = has_left ? light[-1] : light[0], objects[0] = has_left ? object[-1] : object[0];
+    across[count + 1] = has_right ? light[count] : light[count - 1];
+    objects[count + 1] = has_right ? object[count] : object[count - 1];
+    for (std::size_t i = 0; i < count; ++i) {
+      const float at = Number(light[i] * per_light_);
+      near.at[i] = at;
+      near.border[i] = static_cast<float>(static_cast<int>(std::clamp(at + 0.5f, 1.0f, bands_ - 1.0f)));
+      const float along_x = std::max(step(light[i], across[i], object[i], objects[i]),
+                                     step(light[i], across[i + 2], object[i], objects[i + 2]));
+      const float along_y = std::max(step(light[i], above[i], object[i], object_above[i]),
+                                     step(light[i], below[i], object[i], object_below[i]));
+      near.slope[i] = along_x * along_x + along_y * along_y;
+    }
+  }
+
   // What is no number is dark.
-  static float Finite(float value) { return value == value ? value : 0.0f; }
+  static float Number(float value) { return value == value ? value : 0.0f; }
 
   // Whether the border lies between the pixel and one of its object within the softness, along a row or a column. Where
   // the light only bends nearby, nothing softens.
@@ -99,18 +161,6 @@ class BandOf {
       }
     }
     return false;
-  }
-
-  // The larger difference to a neighbour of the same object, along each axis.
-  float Slope(std::size_t pixel) const {
-    const std::size_t x = pixel % width_, size = object_.size();
-    const float here = light_.At(pixel);
-    const auto step = [&](bool is_inside, std::size_t other) {
-      return is_inside && object_[other] == object_[pixel] ? std::fabs(light_.At(other) - here) : 0.0f;
-    };
-    const float along_x = std::max(step(x > 0, pixel - 1), step(x + 1 < width_, pixel + 1));
-    const float along_y = std::max(step(pixel >= width_, pixel - width_), step(pixel + width_ < size, pixel + width_));
-    return std::sqrt(along_x * along_x + along_y * along_y);
   }
 
   Light light_;

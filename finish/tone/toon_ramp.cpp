@@ -49,12 +49,19 @@ float RampRows::Depth(std::size_t pixel) const {
   return depth < far_ ? static_cast<float>(of_depth_.At(depth)) : 1.0f;
 }
 
-float RampRows::Facing(std::size_t pixel) const {
-  const auto column = static_cast<float>(pixel % width_), row = static_cast<float>(pixel / width_);
-  const float x = x_[0] + x_[1] * column + x_[2] * row, y = y_[0] + y_[1] * column + y_[2] * row;
-  const float along = normal_[2][pixel] - normal_[0][pixel] * x - normal_[1][pixel] * y;
-  const float away = 1.0f - std::fabs(along) / std::sqrt(1.0f + x * x + y * y);
-  return away > 0.0f ? away : 0.0f;  // NaN faces the viewer
+void RampRows::At(std::size_t first, std::size_t count, float* rows) const {
+  if (!depth_.empty()) {
+    for (std::size_t i = 0; i < count; ++i) rows[i] = Depth(first + i);
+    return;
+  }
+  const auto column = static_cast<float>(first % width_), row = static_cast<float>(first / width_);
+  const float x0 = x_[0] + x_[1] * column + x_[2] * row, y0 = y_[0] + y_[1] * column + y_[2] * row;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float x = x0 + x_[1] * static_cast<float>(i), y = y0 + y_[1] * static_cast<float>(i);
+    const float along = normal_[2][first + i] - normal_[0][first + i] * x - normal_[1][first + i] * y;
+    const float away = 1.0f - std::fabs(along) / std::sqrt(1.0f + x * x + y * y);
+    rows[i] = away > 0.0f ? away : 0.0f;  // NaN faces the viewer
+  }
 }
 
 RampColors::RampColors(const ColorRamp& ramp) : columns_(ramp.columns), rows_(ramp.rows) {

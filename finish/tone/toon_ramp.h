@@ -15,12 +15,11 @@ namespace scumble::internal {
 class RampRows {
  public:
   RampRows(const ToonPass& pass, const FinishFrame& frame);
-  // 0 … 1, of any floats.
-  float At(std::size_t pixel) const { return depth_.empty() ? Facing(pixel) : Depth(pixel); }
+  // 0 … 1, of any floats; of pixels of one row of the picture.
+  void At(std::size_t first, std::size_t count, float* rows) const;
 
  private:
   float Depth(std::size_t pixel) const;
-  float Facing(std::size_t pixel) const;
 
   std::span<const float> depth_;
   double near_ = 1.0, far_ = 1.0;

@@ -369,8 +369,8 @@ TEST_F(CliFinish, KeysMoveInSequences) {
 TEST_F(CliFinish, ListsEffectsKeysAndPresets) {
   const std::string all = RunOk({"finish", "--list"}).out;
   for (const char* name : {"comic", "ligne-claire", "noir", "chiaroscuro", "impression", "charcoal-lines", "storybook",
-                           "engraving", "pen-and-ink", "pencil-sketch", "blueprint", "outline", "shadows", "tones",
-                           "depth", "grade", "fill", "strength"}) {
+                           "engraving", "pen-and-ink", "pencil-sketch", "blueprint", "gooch", "outline", "shadows",
+                           "tones", "depth", "grade", "fill", "strength"}) {
     EXPECT_TRUE(Contains(all, name)) << name;
   }
   EXPECT_TRUE(Contains(RunOk({"finish", "--list", "--finish", "outline"}).out, "crease_angle"));
@@ -453,7 +453,7 @@ TEST_F(CliFinish, MasksLimitAnEffect) {
 }
 
 TEST_F(CliFinish, WarnsOfOrderThatIsLikelyWrong) {
-  RunOk({"guidegen", kBall, "--size", "32", "--layers", "luminance,shadow,albedo", "-o", "g.exr"});
+  RunOk({"guidegen", kBall, "--size", "32", "--layers", "luminance,shadow,albedo,cosine", "-o", "g.exr"});
   ASSERT_TRUE(WritePicture(At("p.png"), PlainBall()));
   const auto warnings = [&](const Arguments& names) {
     Arguments arguments{"finish", "p.png", "g.exr", "-o", "o.png"};
@@ -465,7 +465,7 @@ TEST_F(CliFinish, WarnsOfOrderThatIsLikelyWrong) {
   EXPECT_TRUE(Contains(warnings({"hatch", "tones"}), "finish hatch draws lines, which tones then makes jagged"));
   EXPECT_TRUE(Contains(warnings({"grade", "fill"}), "finish grade is covered by fill"));
   EXPECT_FALSE(Contains(warnings({"smooth", "tones", "hatch", "outline"}), "draws lines"));
-  for (const char* preset : {"comic", "noir", "storybook", "blueprint", "charcoal-lines", "engraving"}) {
+  for (const char* preset : {"comic", "noir", "storybook", "blueprint", "charcoal-lines", "engraving", "gooch"}) {
     const std::string said = warnings({preset});
     EXPECT_FALSE(Contains(said, "covered by") || Contains(said, "draws lines")) << preset << said;
   }

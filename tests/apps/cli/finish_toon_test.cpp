@@ -66,7 +66,7 @@ TEST_F(CliToon, RampsAreTextOrFiles) {
 
 TEST_F(CliToon, NeedsTheLayersItReads) {
   EXPECT_EQ(Made({"light=wrapped", "shading=gooch", "bands=1"}).width, 40);
-  ExpectError(Toon({}), 3, {"finish toon needs luminance", "make them with --layers luminance"});
+  ExpectError(Toon({}), 3, {"g.exr has no layer luminance", "--layers luminance"});
   EXPECT_TRUE(Contains(RunOk({"info", "g.exr"}).out, "cosine, uv"));
 }
 
