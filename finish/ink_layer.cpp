@@ -67,7 +67,8 @@ struct Solved {
 
 // In steps of 1 / `most`.
 Solved Solve(const InkedPixel& pixel, const std::optional<Color>& ink, std::optional<double> given, double most) {
-  const double near_enough = 0.6 / most;
+  // In 8 bits so little that with the picture's own rounding it stays below a step; in 16, what sums of floats leave.
+  const double near_enough = most < 256.0 ? 0.45 / most : 2.0 / most;
   const auto stepped = [&](double value) { return std::floor(std::clamp(value, 0.0, 1.0) * most + 0.5) / most; };
   const bool raises = pixel.rest < 1.0;
   double share = stepped(given ? *given : ink ? pixel.ShareOf(*ink) : pixel.LeastShare());

@@ -15,8 +15,8 @@ bool LaysInk(const FinishPass& pass);
 
 // What a pass of ink has changed.
 struct InkChange {
-  const Picture& before;                   // the pixels that differ in these two are the inked ones
-  const Picture& after;                    // of the size of `before`
+  const Picture& before;  // the pixels that differ in these two are the inked ones
+  const Picture& after;
   const Picture& target;                   // what the layer over `below` is to show
   std::optional<Rgb16> ink;                // where the pass has one
   std::vector<std::uint16_t> shares = {};  // how dense the ink is at each pixel; empty: as `ink` needs it

@@ -37,8 +37,7 @@ class Layering {
     has_ground_ = std::any_of(below_.rgba.begin(), below_.rgba.end(), [](std::uint16_t value) { return value != 0; });
     if (has_ground_) layers_.push_back({options_.ground, Stepped(below_)});
     below_ = has_ground_ ? layers_.front().picture : Picture(picture_.width, picture_.height);
-    AddWhole(options_.paint, FinishPass::Stage::kPaint, picture_);
-    return Ok();
+    return AddWhole(options_.paint, FinishPass::Stage::kPaint, picture_);
   }
 
   // All steps of a stage, and their layers.
@@ -56,7 +55,7 @@ class Layering {
       } else if (IsWanted(pass)) {
         Picture after = picture_;
         SCUMBLE_RETURN_IF_ERROR(Apply(begin, i + 1, stage, after));
-        AddWhole(pass.name, stage, after);
+        SCUMBLE_RETURN_IF_ERROR(AddWhole(pass.name, stage, after));
         if (StandsAlone(pass)) picture_ = std::move(after), begin = i + 1;
       }
       if (progress && !progress(double(i + 1) / double(steps_.size()))) return CancelledError();
@@ -85,23 +84,33 @@ class Layering {
   }
 
   // The picture instead of all that is below it, but for the ground where that is put behind later.
-  void AddWhole(const std::string& name, FinishPass::Stage stage, const Picture& picture) {
+  Status AddWhole(const std::string& name, FinishPass::Stage stage, const Picture& picture) {
     const bool keeps_ground = has_ground_ && stage == FinishPass::Stage::kPaint;
     for (std::size_t i = keeps_ground ? 1 : 0; i < layers_.size(); ++i) layers_[i].visible = false;
-    layers_.push_back({name, Stepped(picture)});
-    if (!options_.only.empty()) return;
-    below_ = layers_.back().picture;
-    if (!keeps_ground) return;
-    // What is below an ink layer is made of the layers, not of the exact picture: the ink makes up for the difference.
-    const Picture& ground = layers_.front().picture;
-    for (std::size_t i = 0; i < below_.rgba.size(); i += 4) {
-      const double share = below_.rgba[i + 3] / 65535.0, rest = ground.rgba[i + 3] / 65535.0 * (1.0 - share);
-      for (std::size_t c = i; c < i + 3 && share + rest > 0.0; ++c) {
-        const double code = (below_.rgba[c] * share + ground.rgba[c] * rest) / (share + rest);
-        below_.rgba[c] = static_cast<std::uint16_t>(code + 0.5);
-      }
-      below_.rgba[i + 3] = static_cast<std::uint16_t>((share + rest) * 65535.0 + 0.5);
+    if (!options_.only.empty()) {
+      layers_.push_back({name, picture});
+      return Ok();
     }
+    if (!keeps_ground) {
+      layers_.push_back({name, Stepped(picture)});
+      below_ = layers_.back().picture;
+      return Ok();
+    }
+    // Over the ground it shows what the exact picture would: colours of soft borders make up for rounded alpha.
+    Picture target = picture;
+    SCUMBLE_RETURN_IF_ERROR(PutGround(target));
+    const Picture nothing(picture.width, picture.height);
+    internal::InkChange change{nothing, picture, target, std::nullopt};
+    change.shares.resize(picture.rgba.size() / 4);
+    for (std::size_t i = 0; i < change.shares.size(); ++i) change.shares[i] = picture.rgba[4 * i + 3];
+    below_ = layers_.front().picture;
+    layers_.push_back({name, Solved(change, below_).picture});
+    return Ok();
+  }
+
+  internal::InkLayer Solved(const internal::InkChange& change, Picture& below) const {
+    tbb::task_arena arena(threads_ > 0 ? threads_ : tbb::task_arena::automatic);
+    return arena.execute([&] { return internal::InkBetween(change, options_.bits == 8 ? 255 : 65535, below); });
   }
 
   // The alpha, or the darkness, of the pass's lines drawn with black ink instead of the paint's colours.

@@ -355,9 +355,9 @@ void AddFinish(const FinishChain& chain, bool has_map, const Size& size, MemoryN
 
 void AddFinishLayers(std::size_t passes, bool all, bool is_sequence, const Size& size, MemoryNeed& need) {
   const Bytes pixels = PixelsOf(size);
-  // The pass's picture; the picture before it, its copies over the ground, and how dense its ink is.
-  need.Take("shown pass", kPaint * pixels);
-  need.TakeTransient("making layers", (6 * kPaint + 2) * pixels);
+  // While passes work: a copy of the picture, the picture before a pass, both over the ground, the layers below, the
+  // pass's own, and how dense its ink is.
+  need.Take("making layers", (6 * kPaint + 2) * pixels);
   if (!all) return;
   // Ground and paint, too; a frame may be written while the next is made. Files are there once by layer, in the archive
   // and as it is written, and with the merged picture.
