@@ -112,7 +112,7 @@ class LayeredFinish : public ::testing::Test {
     return options;
   }
 
-  GuideSet guides_ = LitBall(90);
+  GuideSet guides_ = LitBall(60);
   Picture picture_ = PaintedBall(guides_), made_;
   FinishFrame frame_{&guides_, MeasureFinish(guides_), 1.0, 7};
 };
@@ -168,7 +168,7 @@ TEST_F(LayeredFinish, HideWhatIsPaintedAnew) {
 // Lines as they lie on nothing, whatever is below them.
 TEST_F(LayeredFinish, OutlinesAreTheInkAlone) {
   const FinishStep outline = NamedStep("outline", {{"ink", std::string("#336699")}});
-  Picture lines(90, 90);
+  Picture lines(60, 60);
   ASSERT_TRUE(ApplyFinish(std::span(&outline, 1), FinishPass::Stage::kPaint, frame_, 2, {}, lines));
   FinishLayerOptions alone;
   alone.only = "outline", alone.bits = 16;
