@@ -3,6 +3,7 @@
 //   MeasureFinish(guides)               what a sequence measures once, on its first picture
 //   ApplyToGuides(steps, frame, …)      applies the passes that change guides, before the paint is matched
 //   ApplyFinish(steps, stage, frame, …) applies the passes of one stage, in order, in place
+//   FinishInLayers(steps, frame, …)     applies all stages, and gives what each pass does as a layer of its own
 //
 // A pass (core/image/finish_pass.h) looks at guides and changes the picture. Neighbouring passes that treat each pixel
 // by itself (tone/) run as one loop in Oklab. Filters (area/) look at the pixels around. Lines (outline/) are traced
@@ -10,7 +11,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "core/image/finish_pass.h"
@@ -79,5 +82,32 @@ Status ApplyToGuides(std::span<const FinishStep> steps, const FinishFrame& frame
 // kInput where layers are missing; kCancelled. O(pixels) for each step, of filters times their radius.
 Status ApplyFinish(std::span<const FinishStep> steps, FinishPass::Stage stage, const FinishFrame& frame, int threads,
                    const Progress& progress, Picture& picture);
+
+// A layer of a finished picture, as painting programs have them.
+struct FinishLayer {
+  std::string name;     // the pass's
+  Picture picture;      // straight alpha; of ink, transparent but for it; of other passes, the picture after them
+  bool is_ink = false;  // false: the whole picture
+  bool visible = true;  // false: a layer above shows instead of it
+  bool atop = false;    // Porter and Duff's "atop" instead of "over": it leaves the alpha of what is below
+};
+
+struct FinishLayerOptions {
+  std::string ground = "paper", paint = "paint";  // names of the lowest layers
+  int bits = 8;                                   // of the file, 8 or 16: layers have values of so many
+  // Puts what lies behind the paint behind it, between the stages kPaint and kSheet. Null: nothing lies there.
+  std::function<Status(Picture&)> put_ground = {};
+  std::string only = {};  // the layers of passes of this name alone, and no others; empty: all layers
+};
+
+// ApplyFinish of kPaint, put_ground and ApplyFinish of kSheet, to the same bytes; and the layers from the lowest up:
+// the ground unless there is none, the paint, and each pass of any strength. The visible ones, put over one another,
+// are the picture to a step of `bits`. Outlines, edges in ink and hatching are layers
+// of ink. A pass that paints anew hides what is below it. With `only`: of ink, as it lies on the exact picture; the
+// passes before it have no layers; of a pass of kGuides, the paint. Errors as of ApplyFinish. O(pixels) for each layer,
+// besides the steps, of which those that ApplyFinish joins are repeated for each of their layers.
+Expected<std::vector<FinishLayer>> FinishInLayers(std::span<const FinishStep> steps, const FinishFrame& frame,
+                                                  const FinishLayerOptions& options, int threads,
+                                                  const Progress& progress, Picture& picture);
 
 }  // namespace scumble

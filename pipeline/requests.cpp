@@ -47,13 +47,19 @@ bool HasEnding(const std::string& path, std::initializer_list<const char*> endin
 }
 
 Status CheckPictureRequest(const PictureRequest& request) {
+  if (!request.layers_out.empty() && request.output.empty()) {
+    return UsageError("--layers-out " + request.layers_out + ": it goes with a picture, give -o FILE too");
+  }
   if (!request.upscale) return Ok();
   if (request.upsample == 1) return UsageError("--upscale: it needs --upsample N, by which the picture is scaled up");
   if (!request.over.empty()) {
     return UsageError("--upscale with --over: the picture underneath has its full size, leave --upscale out");
   }
-  if (request.show) {
+  if (request.IsShowing()) {
     return UsageError("--upscale with --show: what is shown is by pixel of the small picture, leave --upscale out");
+  }
+  if (!request.layers_out.empty()) {
+    return UsageError("--upscale with --layers-out: layers have the size that is painted, leave --upscale out");
   }
   return Ok();
 }

@@ -110,11 +110,17 @@ struct PictureRequest {
   bool upscale = false;             // with upsample: it is painted at their size and scaled up; without `over`
   bool leave_small = false;         // with upscale: it is not scaled up, for who shows it larger himself
   std::optional<Explanation> show;  // this explanation instead of the picture
+  std::string show_finish = {};     // what the finishing pass of this name does, instead of the picture; empty: none
+  std::string layers_out = {};      // an .ora with the layers of the finish, besides the picture; empty: none
   bool measure_chunks = false;      // report coherence and chunks, for which the source field is kept
   bool keep_field = false;          // the source field is given away with the picture
 
   // Whether the source field outlives the transfer, which takes more time.
   bool KeepsField() const { return measure_chunks || keep_field || show.has_value(); }
+  // Whether something else takes the place of the picture.
+  bool IsShowing() const { return show.has_value() || !show_finish.empty(); }
+  // Whether what is asked for has the size that is painted.
+  bool IsOfPaintedSize() const { return IsShowing() || !layers_out.empty(); }
   // How many times the guides are upsampled, and the painted picture is scaled up.
   int GuideFactor() const { return upscale ? 1 : upsample; }
   int PictureFactor() const { return upscale && !leave_small ? upsample : 1; }

@@ -58,10 +58,12 @@ std::string SceneStamps(const std::string& scene) { return StampsOf(SceneFiles(s
 // What the choice of a step depends on, besides the styles. The view and the frame are taken not to matter.
 std::string ChoiceText(const BudgetRequest& budget, const SceneRequest& scene, const PictureRequest& picture) {
   if (!budget.chooses()) return "";
-  std::string text =
-      fmt::format("{} {} {}; {}; {} {}; {} {} {} {}", budget.quality ? int(*budget.quality) : -1, budget.budget_ms,
-                  budget.guides_are_fixed, SizeToText(scene.size), scene.samples, scene.samples_given, picture.upsample,
-                  picture.upscale, !picture.over.empty(), picture.show ? int(*picture.show) : -1);
+  std::string text = fmt::format("{} {} {}; {}; {} {}; {} {} {} {}", budget.quality ? int(*budget.quality) : -1,
+                                 budget.budget_ms, budget.guides_are_fixed, SizeToText(scene.size), scene.samples,
+                                 scene.samples_given, picture.upsample, picture.upscale, !picture.over.empty(),
+                                 picture.show                ? int(*picture.show)
+                                 : picture.IsOfPaintedSize() ? 100
+                                                             : -1);
   if (budget.quality) return text;
   SceneRequest seen = scene;
   seen.camera.clear(), seen.view.reset(), seen.seed = 0;

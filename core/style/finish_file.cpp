@@ -42,7 +42,7 @@ void ResolveFiles(const std::filesystem::path& folder, FinishPass& pass) {
 }
 
 Expected<FinishPass> ReadPass(const toml::table& table, const std::string& file,
-                              std::vector<internal::FinishFrames>* frames) {
+                              std::vector<internal::FinishFrames>& frames) {
   const auto* effect = table.get("effect");
   const auto* name_of_effect = effect ? effect->as_string() : nullptr;
   if (!name_of_effect) {
@@ -67,7 +67,6 @@ Expected<FinishPass> ReadPass(const toml::table& table, const std::string& file,
         pass.name = *text;
     } else if (const auto* pairs = node.as_array(); pairs && FindFinishKey(pass, name)) {
       of_pass.push_back({name, pairs});
-      if (!frames) done = UsageError("expected a plain value: key frames are for style.toml");
     } else if (!value) {
       done = UsageError("expected a plain value");
     } else if (const auto* shape = std::get_if<std::string>(&*value); shape && name == kMaskKey) {
@@ -80,7 +79,7 @@ Expected<FinishPass> ReadPass(const toml::table& table, const std::string& file,
   ResolveFiles(std::filesystem::path(file).parent_path(), pass);
   for (internal::FinishFrames& one : of_pass) {
     one.key = kFinishKeys + pass.name + "." + one.key;
-    frames->push_back(std::move(one));
+    frames.push_back(std::move(one));
   }
   return pass;
 }
@@ -88,7 +87,7 @@ Expected<FinishPass> ReadPass(const toml::table& table, const std::string& file,
 }  // namespace
 
 Expected<std::vector<FinishPass>> internal::ReadFinishTables(const toml::node& node, const std::string& file,
-                                                             std::vector<FinishFrames>* frames) {
+                                                             std::vector<FinishFrames>& frames) {
   std::vector<FinishPass> passes;
   const auto* array = node.as_array();
   if (!array) return InputError(Where(file, node) + ": write [[finish]] with two brackets");
@@ -98,7 +97,7 @@ Expected<std::vector<FinishPass>> internal::ReadFinishTables(const toml::node& n
     SCUMBLE_ASSIGN(FinishPass pass, ReadPass(*table, file, frames));
     passes.push_back(std::move(pass));
   }
-  for (const FinishFrames& one : frames ? *frames : std::vector<FinishFrames>()) {
+  for (const FinishFrames& one : frames) {
     const auto is_it = [&](const FinishPass& pass) { return one.key.rfind(kFinishKeys + pass.name + ".", 0) == 0; };
     if (std::count_if(passes.begin(), passes.end(), is_it) > 1) {
       return InputError(Where(file, *one.pairs) + ": " + one.key +
@@ -107,6 +106,30 @@ Expected<std::vector<FinishPass>> internal::ReadFinishTables(const toml::node& n
   }
   return passes;
 }
+
+namespace {
+
+Status ReadChain(const toml::node& node, const std::filesystem::path& path, FinishChain& chain) {
+  std::vector<internal::FinishFrames> frames;
+  SCUMBLE_ASSIGN(chain.passes, internal::ReadFinishTables(node, path.string(), frames));
+  for (const internal::FinishFrames& one : frames) {
+    const std::string where = internal::Where(path.string(), *one.pairs) + ": ";
+    auto keys = internal::FramesOf(*one.pairs);
+    if (!keys || keys->empty()) {
+      return InputError(where + one.key +
+                        ": expected a plain value, or frames with their values as [[1, 0.1], [24, 0.3]]");
+    }
+    StyleTrack track;
+    track.name = one.key, track.keys = *std::move(keys), track.folder = path.parent_path();
+    const auto is_it = [&](const FinishPass& pass) { return one.key.rfind(kFinishKeys + pass.name + ".", 0) == 0; };
+    const auto pass = std::find_if(chain.passes.begin(), chain.passes.end(), is_it);
+    const auto done = AddFinishTrack(chain, std::size_t(pass - chain.passes.begin()), std::move(track));
+    if (!done) return InputError(where + done.error().message);
+  }
+  return Ok();
+}
+
+}  // namespace
 
 Expected<FinishPreset> LoadFinishPreset(const std::filesystem::path& path) {
   SCUMBLE_ASSIGN(const auto bytes, ReadWholeFile(path, kMaxPresetBytes));
@@ -117,7 +140,7 @@ Expected<FinishPreset> LoadFinishPreset(const std::filesystem::path& path) {
   preset.name = path.stem().string();
   for (const auto& [key, node] : root) {
     if (key.str() == "finish") {
-      SCUMBLE_ASSIGN(preset.passes, internal::ReadFinishTables(node, file, nullptr));
+      SCUMBLE_RETURN_IF_ERROR(ReadChain(node, path, preset));
     } else if (const auto* text = node.as_string(); text && key.str() == "help") {
       preset.help = text->get();
     } else {
@@ -150,10 +173,6 @@ Expected<std::size_t> OverrideFinish(std::span<FinishPass> passes, const std::st
   const auto parsed = internal::ParseToml("value = " + value_text, "--set");
   const auto value = parsed && parsed->size() == 1 ? internal::ValueOf(*parsed->get("value")) : std::nullopt;
   const std::string key = text.substr(0, equals);
-  if (parsed && parsed->size() == 1 && parsed->get("value")->as_array()) {
-    return UsageError("--set " + text + ": key frames are of one style: begin with its name, as in oil:" + key +
-                      "=[[1,2],[9,4]]");
-  }
   if (key.rfind(kDialKeys, 0) == 0) {
     const Status turned = TurnFinishDial(passes, key, value ? *value : KeyValue(value_text));
     return turned ? Expected<std::size_t>(passes.size()) : UsageError("--set " + text + ": " + turned.error().message);

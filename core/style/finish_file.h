@@ -9,22 +9,22 @@
 
 #include "core/image/finish_pass.h"
 #include "core/image/status.h"
+#include "core/style/finish_chain.h"
 
 namespace scumble {
 
-struct FinishPreset {
+struct FinishPreset : FinishChain {
   std::string name;  // the file's, without .toml
   std::string help;  // one line
-  std::vector<FinishPass> passes;
 };
 
-// Reads a preset: `help`, and [[finish]] as in style.toml.
+// Reads a preset: `help`, and [[finish]] as in style.toml, key frames included.
 Expected<FinishPreset> LoadFinishPreset(const std::filesystem::path& file);
 
 // The presets in a folder, by name.
 std::vector<std::filesystem::path> FindFinishPresets(const std::filesystem::path& folder);
 
-// Whether a --set is one of OverrideFinish.
+// Whether a --set is one of OverrideFinish, here and in finish_chain.h.
 bool IsOfFinish(const std::string& set);
 
 // "finish.NAME.KEY=VALUE": sets the key in every pass of that name; returns how many there are. "dial.NAME=VALUE" turns

@@ -16,9 +16,8 @@ struct FinishFrames {
 };
 
 // The tables of `node`, which is what the file calls finish. Every mistake is kInput and names file and line. Keys with
-// lists are left at their defaults and told in `frames`, in which each pass has a name of its own; null: they are
-// mistakes.
+// lists are left at their defaults and told in `frames`, in which each pass has a name of its own.
 Expected<std::vector<FinishPass>> ReadFinishTables(const toml::node& node, const std::string& file,
-                                                   std::vector<FinishFrames>* frames);
+                                                   std::vector<FinishFrames>& frames);
 
 }  // namespace scumble::internal

@@ -9,6 +9,7 @@
 #include "core/io/file/readable_file.h"
 #include "core/io/guide_file.h"
 #include "core/io/picture_file.h"
+#include "core/style/finish_chain.h"
 #include "core/style/finish_file.h"
 #include "core/style/finish_keys.h"
 #include "core/style/finish_tables.h"
@@ -53,16 +54,12 @@ Status SetTrack(Style& style, const StyleKey& key, const toml::array& pairs, con
                 const fs::path& folder) {
   StyleTrack track;
   track.folder = folder;
-  for (const auto& item : pairs) {
-    const auto* pair = item.as_array();
-    const auto* frame = pair && pair->size() == 2 ? pair->get(0)->as_integer() : nullptr;
-    const auto value = frame ? ValueOf(*pair->get(1)) : std::nullopt;
-    if (!value) {
-      return UsageError(where + ": " + key.name + ": expected a plain value, or frames with their values as " +
-                        "[[1, 0.1], [24, 0.3]]");
-    }
-    track.keys.push_back({frame->get(), *value});
+  std::optional<std::vector<StyleTrack::Key>> keys = internal::FramesOf(pairs);
+  if (!keys) {
+    return UsageError(where + ": " + key.name + ": expected a plain value, or frames with their values as " +
+                      "[[1, 0.1], [24, 0.3]]");
   }
+  track.keys = *std::move(keys);
   if (auto done = AddTrack(style, key, std::move(track)); !done) {
     return Error{done.error().kind, where + ": " + done.error().message};
   }
@@ -304,7 +301,7 @@ Status ReadExemplars(const toml::node& node, const StyleSource& source, Style& s
 
 Status ReadFinish(const toml::node& node, const fs::path& path, Style& style) {
   std::vector<internal::FinishFrames> frames;
-  SCUMBLE_ASSIGN(style.finish, internal::ReadFinishTables(node, path.string(), &frames));
+  SCUMBLE_ASSIGN(style.finish, internal::ReadFinishTables(node, path.string(), frames));
   for (const internal::FinishFrames& one : frames) {
     const std::string where = Where(path.string(), *one.pairs);
     const auto done = SetTrack(style, *KeyOfTrack(style, one.key), *one.pairs, where, path.parent_path());
@@ -388,14 +385,7 @@ Status ApplyOverride(Style& style, const std::string& text) {
     table.insert("value", value_text);
   }
   if (IsOfFinish(name)) {
-    if (is_track) {
-      const std::optional<StyleKey> key = KeyOfTrack(style, name);
-      if (!key) return UsageError("--set " + text + ": no finishing effect of the style has that key");
-      return SetTrack(style, *key, *table.get("value")->as_array(), "--set", fs::path());
-    }
-    SCUMBLE_RETURN_IF_ERROR(CheckDial(style, text));
-    SCUMBLE_ASSIGN(const std::size_t count, OverrideFinish(style.finish, text));
-    RemoveTrack(style, name);
+    SCUMBLE_ASSIGN(const std::size_t count, OverrideFinish(style, text));
     return count > 0 ? Ok() : Status(NoSuchFinish(text, style.finish));
   }
   if (name.rfind("exemplar.", 0) == 0) return SetExemplarKey(style, name, *table.get("value"));
@@ -471,12 +461,7 @@ std::optional<KeyValue> ValueAtStart(const StyleKey& key, const toml::node& node
   const auto* pairs = node.as_array();
   if (!pairs) return ValueOf(node);
   StyleTrack track;
-  for (const auto& item : *pairs) {
-    const auto* pair = item.as_array();
-    const auto* frame = pair && pair->size() == 2 ? pair->get(0)->as_integer() : nullptr;
-    const auto value = frame ? ValueOf(*pair->get(1)) : std::nullopt;
-    if (value) track.keys.push_back({frame->get(), *value});
-  }
+  track.keys = internal::FramesOf(*pairs).value_or(track.keys);
   if (track.keys.empty()) return std::nullopt;
   if (key.kind == KeyKind::kFile) return ValueAt(track, 0);  // AddTrack would read the files
   Style scratch;

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <iterator>
 #include <optional>
 #include <set>
 #include <string_view>
 
+#include "core/image/color.h"
+#include "core/image/oklab.h"
 #include "core/style/finish_keys.h"
 #include "core/style/finish_mask_keys.h"
 
@@ -15,9 +18,46 @@ namespace {
 
 constexpr const char* kPaperKey = "transfer.paper";
 
+// Keys of finishing passes that may name files, which are read once.
+constexpr std::string_view kFileKeys[] = {kMaskKey, "strokes", "like", "from", "ramp"};
+
+bool MayNameFile(const std::string& finish_key) {
+  const std::string last = finish_key.substr(finish_key.rfind('.') + 1);
+  return std::find(std::begin(kFileKeys), std::end(kFileKeys), last) != std::end(kFileKeys);
+}
+
+// The colour at a share of the way from one to the other, straight in Oklab. Both are colours.
+std::string MixOfColors(const std::string& from, const std::string& to, double share) {
+  const auto lab_of = [](const std::string& text) {
+    const Rgb16 color = *ParseColor(text);
+    return OklabFromLinear({Srgb16ToLinear(color[0]), Srgb16ToLinear(color[1]), Srgb16ToLinear(color[2])});
+  };
+  const glm::vec3 begin = lab_of(from), end = lab_of(to);
+  const glm::vec3 linear = LinearFromOklab(begin + (end - begin) * static_cast<float>(share));
+  unsigned code[3];
+  for (int c = 0; c < 3; ++c) code[c] = (Srgb16FromLinear(linear[c]) + 128u) / 257u;
+  char text[8];
+  std::snprintf(text, sizeof text, "#%02x%02x%02x", code[0], code[1], code[2]);
+  return text;
+}
+
+const std::string* ColorText(const KeyValue& value) {
+  const auto* text = std::get_if<std::string>(&value);
+  return text && ParseColor(*text) ? text : nullptr;
+}
+
+// Whether it is a colour of a finishing pass: all its values are, and nothing else is taken.
+bool TakesColors(const Style& style, const StyleKey& key, const StyleTrack& track) {
+  Style scratch;
+  scratch.finish = style.finish;
+  return key.name.rfind(kFinishKeys, 0) == 0 && !key.set(scratch, KeyValue(std::string("none")), {}) &&
+         std::all_of(track.keys.begin(), track.keys.end(), [](const auto& one) { return ColorText(one.value); });
+}
+
 // Whether the key takes all values between two of the track's: whole numbers, flags and words have none.
 bool TakesFractions(const Style& style, const StyleKey& key, const StyleTrack& track) {
   if (key.name == "transfer.jitter_fps") return false;
+  if (TakesColors(style, key, track)) return true;
   Style scratch;
   scratch.finish = style.finish;
   for (const auto& [frame, value] : track.keys) {
@@ -71,9 +111,13 @@ Status CheckDial(const Style& style, const std::string& set) {
 
 Status AddTrack(Style& style, const StyleKey& key, StyleTrack track) {
   const bool is_of_finish = key.name.rfind(kFinishKeys, 0) == 0;
-  if ((key.name.rfind("transfer.", 0) != 0 && !is_of_finish) ||
-      (is_of_finish && key.name.ends_with(std::string(".") + kMaskKey))) {
+  if (key.name.rfind("transfer.", 0) != 0 && !is_of_finish) {
     return UsageError(key.name + " cannot change over time");
+  }
+  if (is_of_finish && MayNameFile(key.name)) {
+    return UsageError(key.name +
+                      " cannot change over time: it may name a file, which is read once; let the strength of two "
+                      "passes change");
   }
   if (key.name.rfind(kGuideWeights, 0) == 0) {
     return UsageError(key.name +
@@ -119,9 +163,12 @@ KeyValue ValueAt(const StyleTrack& track, std::int64_t frame) {
   if (next == track.keys.begin()) return next->value;
   const auto& [from, value] = *std::prev(next);
   if (next == track.keys.end() || from == frame || !track.straight) return value;
+  const double share = static_cast<double>(frame - from) / static_cast<double>(next->frame - from);
+  if (const auto* color = std::get_if<std::string>(&value)) {
+    return MixOfColors(*color, std::get<std::string>(next->value), share);
+  }
   const double low = *AsNumber(value), high = *AsNumber(next->value);
   if (std::isinf(low) || std::isinf(high)) return value;
-  const double share = static_cast<double>(frame - from) / static_cast<double>(next->frame - from);
   // Rounding must not lead out of the range that both ends keep.
   return std::clamp(low + share * (high - low), std::min(low, high), std::max(low, high));
 }

@@ -27,15 +27,16 @@ Status CheckDial(const Style& style, const std::string& set);
 
 // Checks the track's keys and adds it to the style, replacing an earlier one of that name. The style gets the values of
 // frame 0. Frames must rise and lie within kMaxTrackFrame, and the key must accept every value: kUsage names the one
-// that fails. Keys of [transfer] and of
-// [[finish]] only, without the weights of guides.
+// that fails. Keys of [transfer] and of [[finish]] only, without the weights of guides and what may name a file of a
+// finishing pass.
 Status AddTrack(Style& style, const StyleKey& key, StyleTrack track);
 
 // Removes the track of that name, if there is one.
 void RemoveTrack(Style& style, const std::string& name);
 
 // The value at a frame. Keys that take fractions move on a straight line, except jitter_fps, whose every change renews
-// the whole pattern. All others, and infinities, hold their value until the next keyframe.
+// the whole pattern; so do colours of finishing passes, in Oklab. All others, and infinities, hold their value until
+// the next keyframe.
 KeyValue ValueAt(const StyleTrack& track, std::int64_t frame);
 
 // Puts the values of that frame into the style. Returns the names of the keys whose values changed. Fails where a value

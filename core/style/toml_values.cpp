@@ -23,6 +23,18 @@ std::optional<KeyValue> ValueOf(const toml::node& node) {
   return std::nullopt;
 }
 
+std::optional<std::vector<StyleTrack::Key>> FramesOf(const toml::array& pairs) {
+  std::vector<StyleTrack::Key> keys;
+  for (const auto& item : pairs) {
+    const auto* pair = item.as_array();
+    const auto* frame = pair && pair->size() == 2 ? pair->get(0)->as_integer() : nullptr;
+    const auto value = frame ? ValueOf(*pair->get(1)) : std::nullopt;
+    if (!value) return std::nullopt;
+    keys.push_back({frame->get(), *value});
+  }
+  return keys;
+}
+
 std::string Where(const std::string& file, const toml::node& node) {
   const auto line = node.source().begin.line;
   return line > 0 ? file + ":" + std::to_string(line) : file;

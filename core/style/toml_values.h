@@ -6,8 +6,10 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/image/status.h"
+#include "core/image/style.h"
 #include "core/style/style_keys.h"
 
 namespace scumble::internal {
@@ -17,6 +19,9 @@ Expected<toml::table> ParseToml(std::string_view text, const std::string& file);
 
 // A plain value; none of tables, arrays and dates.
 std::optional<KeyValue> ValueOf(const toml::node& node);
+
+// [[frame, value], …]; none of any other list.
+std::optional<std::vector<StyleTrack::Key>> FramesOf(const toml::array& pairs);
 
 // "style.toml:12", or the file alone where the node has no line.
 std::string Where(const std::string& file, const toml::node& node);

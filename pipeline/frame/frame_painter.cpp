@@ -1,5 +1,7 @@
 #include "pipeline/frame/frame_painter.h"
 
+#include <utility>
+
 #include "core/image/stopwatch.h"
 #include "pipeline/file_cache.h"
 
@@ -64,10 +66,15 @@ Status Paint(std::span<const PreparedStyle> prepared, const StyleMap* map, const
   Stopwatch watch;
   const FrameFinish& finish = *settings.finish;
   const FinishFrame frame = FrameOf(settings, guides);
-  SCUMBLE_RETURN_IF_ERROR(ApplyFinish(finish.steps, FinishPass::Stage::kPaint, frame, context.threads,
-                                      Within(progress, kTransferShare, 1.0), picture));
-  SCUMBLE_RETURN_IF_ERROR(PutBackground(prepared.front(), settings.over, context.threads, picture));
-  SCUMBLE_RETURN_IF_ERROR(ApplyFinish(finish.steps, FinishPass::Stage::kSheet, frame, context.threads, {}, picture));
+  FinishLayerOptions names;
+  if (settings.over) names.ground = "picture underneath";
+  names.put_ground = [&](Picture& painted) {
+    return PutBackground(prepared.front(), settings.over, context.threads, painted);
+  };
+  SCUMBLE_ASSIGN(FinishedLayers layers,
+                 FinishWithLayers(finish.steps, frame, settings.layers_wanted, names, context.threads,
+                                  Within(progress, kTransferShare, 1.0), picture));
+  if (settings.layers) *settings.layers = std::move(layers);
   if (settings.finish_ms) *settings.finish_ms += watch.Lap();
   return Ok();
 }

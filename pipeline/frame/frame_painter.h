@@ -11,6 +11,7 @@
 #include "core/image/guides.h"
 #include "core/image/progress.h"
 #include "finish/finish.h"
+#include "pipeline/frame/finish_layers.h"
 #include "pipeline/frame_rate.h"
 #include "pipeline/run_context.h"
 #include "pipeline/style/style_set.h"
@@ -46,6 +47,8 @@ struct FrameSettings {
   bool keep_field = false;              // the source field stays in the scratch memory
   const FrameFinish* finish = nullptr;  // null: nothing
   double* finish_ms = nullptr;          // null, or where its time is added
+  LayersWanted layers_wanted = {};      // of the finish
+  FinishedLayers* layers = nullptr;     // where they are put
 };
 
 // Paints one frame. `map` says which style paints which pixel; null: the first one paints all. Errors as of Transfer.

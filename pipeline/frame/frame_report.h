@@ -51,6 +51,8 @@ struct PictureReport {
   std::optional<double> exposure;     // stops, where some style looks at light
   std::optional<ChunksReport> chunks;
   std::vector<StepSpread> steps;
+  std::string layers_output = {};        // the file of layers; empty: none
+  std::vector<std::string> layers = {};  // in it, from the lowest
 };
 
 struct GuidesReport {

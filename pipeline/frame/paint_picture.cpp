@@ -180,7 +180,7 @@ FrameFinish FinishOf(const StyleSet& styles, const GuideSet& given, const GuideS
 }  // namespace
 
 void MeasureFinishOf(const StyleSet& styles, const GuideSet& guides, const RunContext& context, PictureState& state) {
-  if (state.finish_measures || !LooksAtMeasures(AllPasses(styles))) return;
+  if (state.finish_measures || !EverLooksAtMeasures(styles)) return;
   state.finish_measures = styles.options.finish_measures;
   if (state.finish_measures) return;
   state.finish_measures = MeasureFinish(guides);
@@ -197,8 +197,8 @@ Status ReadOver(const std::string& file, PictureState& state) {
 
 PictureSettings SettingsOf(const PictureRequest& request, std::optional<FrameRate> fps, std::optional<double> exposure,
                            const std::string& samples) {
-  return {request.seed, !request.over.empty(), request.show, request.upsample, request.upscale, fps,
-          exposure,     !request.exposure,     samples};
+  return {request.seed, !request.over.empty(), request.show, request.upsample,   request.upscale, fps,
+          exposure,     !request.exposure,     samples,      request.show_finish};
 }
 
 std::string SamplesAsked(const std::map<std::string, std::string>& attributes) {
@@ -218,6 +218,7 @@ Status PrepareFrame(StyleSet& styles, const GuideSet& guides, const PictureReque
                     PictureState& state) {
   const int height = guides.height() * request.GuideFactor();
   const bool all = state.prepared.empty() || state.prepared.front().output_height != height;
+  SCUMBLE_RETURN_IF_ERROR(SetFinishFrame(styles.finish, request.frame.value_or(0)));
   for (std::size_t i = 0; i < styles.styles.size(); ++i) {
     SCUMBLE_ASSIGN(const auto changed, SetStyleFrame(styles.styles[i], request.frame.value_or(0)));
     if (all || changed.empty() || i >= state.prepared.size()) continue;
@@ -306,6 +307,8 @@ Expected<PaintedPicture> PaintInMemory(StyleSet& styles, const GuideSet& given, 
   }
   times.emplace_back("prepare", watch.Lap());
   context.EndStage("prepare");
+  const LayersWanted wanted{request.show_finish, !request.layers_out.empty()};
+  SCUMBLE_RETURN_IF_ERROR(CheckLayersWanted(wanted, AllPasses(styles)));
 
   const FrameFinish finish =
       FinishOf(styles, given, guides, needs_map ? &map : nullptr, over != nullptr, context, state);
@@ -313,11 +316,14 @@ Expected<PaintedPicture> PaintInMemory(StyleSet& styles, const GuideSet& given, 
   FrameSettings settings{request.seed, request.frame.value_or(0), RateOf(request.fps, given), *state.exposure,
                          over,         request.KeepsField()};
   settings.finish = finish.steps.empty() ? nullptr : &finish, settings.finish_ms = &finish_ms;
+  FinishedLayers layers;
+  settings.layers = &layers;
   TransferScratch& scratch = state.scratch;
   Picture picture;
   std::vector<double> match, vote, compose, finished, upscale;
   for (int run = 0; run < request.repeat; ++run) {
     const double begin = double(run) / request.repeat, end = double(run + 1) / request.repeat;
+    if (run + 1 == request.repeat) settings.layers_wanted = wanted;
     SCUMBLE_RETURN_IF_ERROR(PaintFrame(state.prepared, needs_map ? &map : nullptr, guides, settings, context,
                                        Within(progress, begin, end), scratch, picture));
     match.push_back(scratch.times.match_ms);
@@ -329,8 +335,12 @@ Expected<PaintedPicture> PaintInMemory(StyleSet& styles, const GuideSet& given, 
     picture = UpscalePicture(picture, request.PictureFactor(), context.threads);
     upscale.push_back(watch.Lap());
   }
+  PaintedPicture made;
+  made.layers.layers = std::move(layers.layers);
+  if (wanted.all && request.IsShowing()) made.layers.merged = picture;
   if (request.show)
     picture = Show(*request.show, {state.prepared, map, guides, scratch.field, settings.exposure, picture});
+  if (layers.alone) picture = *std::move(layers.alone);
   const auto sum = [](const std::vector<double>& ms) { return std::accumulate(ms.begin(), ms.end(), 0.0); };
   std::vector<std::pair<std::string, double>> inside{
       {"match", sum(match)}, {"vote", sum(vote)}, {"compose", sum(compose)}};
@@ -338,7 +348,6 @@ Expected<PaintedPicture> PaintInMemory(StyleSet& styles, const GuideSet& given, 
   if (!upscale.empty()) inside.emplace_back("upscale", sum(upscale));
   context.EndStage("transfer", inside);
 
-  PaintedPicture made;
   made.write = {request.bits, request.png_level};
   made.write.fast = request.fast_io;
   made.write.settings = SettingsText(
@@ -360,6 +369,8 @@ Expected<PaintedPicture> PaintInMemory(StyleSet& styles, const GuideSet& given, 
   if (std::any_of(state.prepared.begin(), state.prepared.end(), LooksAtLightWhenPrepared)) {
     report.exposure = settings.exposure;
   }
+  report.layers_output = request.layers_out;
+  for (const FinishLayer& layer : made.layers.layers) report.layers.push_back(layer.name);
   if (request.measure_chunks) report.chunks = ChunksOf(scratch.field);
   for (const auto& [name, ms] : times) report.steps.push_back({name, ms, ms, ms});
   report.steps.push_back(SpreadOf("match", match));
@@ -378,9 +389,14 @@ Expected<FrameWrite> PaintPicture(StyleSet& styles, const GuideSet& guides, cons
                                   PictureState& state) {
   SCUMBLE_ASSIGN(PaintedPicture painted, PaintInMemory(styles, guides, source, request, context, progress, state));
   const auto made = std::make_shared<PaintedPicture>(std::move(painted));
-  return FrameWrite([made, output = request.output]() -> Expected<FrameReport> {
+  return FrameWrite([made, output = request.output, layers_out = request.layers_out]() -> Expected<FrameReport> {
     Stopwatch watch;
     const std::uint64_t before = BytesWrittenByThisThread();
+    if (!layers_out.empty()) {
+      PaintedLayers& layers = made->layers;
+      SCUMBLE_RETURN_IF_ERROR(
+          WriteLayers(layers_out, std::move(layers.layers), layers.merged ? *layers.merged : made->picture));
+    }
     SCUMBLE_RETURN_IF_ERROR(WritePicture(output, made->picture, made->write));
     FrameReport report = std::move(made->report);
     const double ms = report.write_ms = watch.Lap();

@@ -101,12 +101,19 @@ struct KeptField {
   std::vector<FieldStyle> field_styles;    // by StyleMap::style
 };
 
+// The layers of a picture, and the picture itself where the request shows something else instead.
+struct PaintedLayers {
+  std::vector<FinishLayer> layers;
+  std::optional<Picture> merged;
+};
+
 // A picture in memory, how its file is to be written, and its report without the step of writing.
 struct PaintedPicture {
   Picture picture;
   PictureWriteOptions write;
   FrameReport report;
-  KeptField kept;  // only with PictureRequest::keep_field
+  KeptField kept;        // only with PictureRequest::keep_field
+  PaintedLayers layers;  // only with PictureRequest::layers_out
 };
 
 // Prepares, transfers `repeat` times and makes the picture, or the explanation that was asked for.

@@ -8,6 +8,7 @@
 #include "core/image/hash.h"
 #include "core/io/existing_output.h"
 #include "core/style/finish_keys.h"
+#include "pipeline/frame/finish_layers.h"
 #include "pipeline/style/finish_set.h"
 
 namespace scumble {
@@ -82,18 +83,21 @@ std::uint64_t HashOfStyles(const StyleSet& styles, std::size_t count, ExemplarHa
     if (style.paper.picture) hash = Hash(hash, HashOfPicture(*style.paper.picture));
     for (const FinishPass& pass : style.finish) hash = Hash(hash, HashText(FinishText(pass)));
   }
-  for (const FinishPass& pass : styles.finish) hash = Hash(hash, HashText(FinishText(pass)));
+  for (const FinishPass& pass : styles.finish.passes) hash = Hash(hash, HashText(FinishText(pass)));
   if (styles.options.finish_measures) hash = Hash(hash, HashText(MeasuresText(*styles.options.finish_measures)));
   for (const StyleSet::Assigned& one : styles.assigned) hash = Hash(hash, HashText(one.pattern), one.style);
   return hash;
 }
 
 std::string SettingsText(const StyleSet& styles, const PictureSettings& settings, ExemplarHashes& known) {
-  const auto& [seed, over, show, upsample, upscale, fps, exposure, measured, samples] =
+  const auto& [seed, over, show, upsample, upscale, fps, exposure, measured, samples, show_finish] =
       settings;  // all: each makes another picture
   std::string text = fmt::format("scumble {}; style {:016x}; seed {}; over {}; show {}; upsample {}", SCUMBLE_VERSION,
                                  HashOfStyles(styles, styles.chosen, known), seed, over ? "a picture" : "nothing",
-                                 show ? ExplanationNames()[std::size_t(*show)] : "result", upsample);
+                                 !show_finish.empty() ? kShowFinish + show_finish
+                                 : show               ? ExplanationNames()[std::size_t(*show)]
+                                                      : "result",
+                                 upsample);
   if (upscale) text += " with --upscale";
   const auto chosen = std::span(styles.styles).first(styles.chosen);
   if (!samples.empty() && std::any_of(chosen.begin(), chosen.end(), AsksForLight)) text += "; samples " + samples;

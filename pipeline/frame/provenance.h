@@ -28,6 +28,7 @@ struct PictureSettings {
   std::optional<bool> measured;    // whether --exposure auto found it; empty: the stops alone count
   // Of a pixel of light in the guides, as SamplesText has it; empty: unknown. Counts for styles that ask for any.
   std::string samples;
+  std::string show_finish = {};  // of one finishing pass
 };
 
 // All settings of the transfer, as text: equal texts, equal settings.

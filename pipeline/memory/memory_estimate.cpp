@@ -254,14 +254,16 @@ void AddPicture(const PictureWork& work, const PictureRequest& options, MemoryNe
   for (const Style& style : work.styles) AddStyle(style, size.height, need);
   need.Take("picture", kPaint * pixels);
   AddSources(work, size, need);
-  std::vector<FinishPass> passes(work.finish.begin(), work.finish.end());
-  for (const Style& style : work.styles) passes.insert(passes.end(), style.finish.begin(), style.finish.end());
-  AddFinish(passes, work.has_map, size, need);
-  if (std::any_of(passes.begin(), passes.end(), [](const FinishPass& pass) {
-        return pass.at == FinishPass::Stage::kGuides && pass.strength > 0.0;
-      })) {
+  FinishChain chain;
+  for (const Style& style : work.styles) Append(FinishOf(style), chain);
+  if (work.finish) Append(*work.finish, chain);
+  AddFinish(chain, work.has_map, size, need);
+  if (std::any_of(chain.passes.begin(), chain.passes.end(),
+                  [](const FinishPass& pass) { return pass.at == FinishPass::Stage::kGuides; })) {
     need.Take("changed guides", (kFloat * ChannelsOf(Made(work.layers)) + kPaint) * pixels);
   }
+  if (!options.layers_out.empty() || !options.show_finish.empty())
+    AddFinishLayers(chain.passes.size(), !options.layers_out.empty(), work.is_sequence, size, need);
   if (options.show)
     need.TakeTransient("explaining", kExplained * pixels);
   else if (work.keeps_field)
@@ -293,47 +295,86 @@ Bytes OfSmooth(const SmoothPass& pass) {
   return 0;
 }
 
-}  // namespace
+// Bytes of a pixel, or of a file.
+struct FinishBytes {
+  Bytes masks = 0;      // the pixels that it is for
+  Bytes picture = 0;    // of a mask, of the file
+  Bytes ramp = 0;       // of colours
+  Bytes transient = 0;  // its work
+  Bytes mixes = 0;      // copies for a mask
+};
 
-void AddFinish(std::span<const FinishPass> passes, bool has_map, const Size& size, MemoryNeed& need) {
+FinishBytes OfPass(const FinishPass& pass, bool has_map) {
   // Borders by pixel, the share that strokes cover, and lines: a tenth of the pixels have a border, and each is a point
   // of 40 bytes and a piece of a stroke of 28, in lists that grow.
   constexpr Bytes kOutline = 2 + kFloat + (40 + 2 * 28 + 24) / 10;
+  FinishBytes bytes;
+  if (!(pass.strength > 0.0)) return bytes;
+  Bytes& transient = bytes.transient;
+  const bool has_names = !pass.objects.empty() || !pass.materials.empty();
+  bytes.masks = (has_map ? 1 : 0) + (has_names ? 2 : 0) + (pass.mask.empty() ? 0 : 2);
+  if (pass.mask.picture) bytes.picture = kPaint * pass.mask.picture->rgba.size() / 4;
+  if (!pass.mask.empty()) bytes.mixes = pass.mask.picture ? 2 * kPaint : Bytes(kPaint);
+  if (const auto* smooth = std::get_if<SmoothPass>(&pass.effect)) transient = OfSmooth(*smooth);
+  if (std::holds_alternative<HatchPass>(pass.effect)) transient = kFloat;
+  // The tone and the response; with flow the tone and the tensor, plain and blurred, and the directions.
+  if (const auto* edges = std::get_if<EdgesPass>(&pass.effect))
+    transient = edges->flow > 0.0 ? kFloat + 3 * kLab : 2 * kFloat;
+  // Two copies, sigmas, and a level of the picture's size.
+  const auto* depth = std::get_if<DepthPass>(&pass.effect);
+  if (depth && depth->blur > 0.0) transient = 2 * kLab + kFloat + 5 * kFloat;
+  // Distances and rims, the lattice and the waves of four noises, a copy.
+  const auto* pigment = std::get_if<PigmentPass>(&pass.effect);
+  if (pigment) transient = 2 + kFloat + 8 + (pigment->stick ? 3 : 1) * kFloat + kPaint;
+  const auto* toon = std::get_if<ToonPass>(&pass.effect);
+  if (toon && toon->ramp_colors) bytes.ramp = (sizeof(Rgb16) + kLab) * toon->ramp_colors->colors.size();
+  const auto* outline = std::get_if<OutlinePass>(&pass.effect);
+  if (!outline) return bytes;
+  transient = kOutline;
+  if (outline->of_class[std::size_t(LineClass::kSuggestive)] > 0.0) transient += 4 * kFloat + 1;
+  if (outline->color != OutlinePass::Color::kInk || !pass.mask.empty()) transient += 4 + kPaint;
+  if (outline->of_class[std::size_t(LineClass::kTexture)] > 0.0) transient += 3 * kFloat;
+  const bool is_noisy = outline->wobble > 0.0 || outline->gaps > 0.0;
+  if (outline->stick && is_noisy) transient = std::max(transient, kOutline + 2 * kFloat);
+  return bytes;
+}
+
+}  // namespace
+
+void AddFinish(const FinishChain& chain, bool has_map, const Size& size, MemoryNeed& need) {
   Bytes masks = 0, transient = 0, mixes = 0;
-  for (const FinishPass& pass : passes) {
-    if (!(pass.strength > 0.0)) continue;
-    const bool has_names = !pass.objects.empty() || !pass.materials.empty();
-    masks += (has_map ? 1 : 0) + (has_names ? 2 : 0) + (pass.mask.empty() ? 0 : 2);
-    if (pass.mask.picture) need.Take("mask", kPaint * pass.mask.picture->rgba.size() / 4);
-    const auto* toon = std::get_if<ToonPass>(&pass.effect);
-    if (toon && toon->ramp_colors) need.Take("ramp", (sizeof(Rgb16) + kLab) * toon->ramp_colors->colors.size());
-    if (!pass.mask.empty()) mixes = std::max(mixes, pass.mask.picture ? 2 * kPaint : Bytes(kPaint));
-    if (const auto* smooth = std::get_if<SmoothPass>(&pass.effect)) transient = std::max(transient, OfSmooth(*smooth));
-    if (std::holds_alternative<HatchPass>(pass.effect)) transient = std::max(transient, kFloat);
-    // The tone and the response; with flow the tone and the tensor, plain and blurred, and the directions.
-    if (const auto* edges = std::get_if<EdgesPass>(&pass.effect))
-      transient = std::max(transient, edges->flow > 0.0 ? kFloat + 3 * kLab : 2 * kFloat);
-    // Two copies, sigmas, and a level of the picture's size.
-    const auto* depth = std::get_if<DepthPass>(&pass.effect);
-    if (depth && depth->blur > 0.0) transient = std::max(transient, 2 * kLab + kFloat + 5 * kFloat);
-    // Distances and rims, the lattice and the waves of four noises, a copy.
-    const auto* pigment = std::get_if<PigmentPass>(&pass.effect);
-    if (pigment) transient = std::max(transient, 2 + kFloat + 8 + (pigment->stick ? 3 : 1) * kFloat + kPaint);
-    const auto* outline = std::get_if<OutlinePass>(&pass.effect);
-    if (!outline) continue;
-    const bool is_noisy = outline->wobble > 0.0 || outline->gaps > 0.0;
-    if (outline->stick && is_noisy) transient = std::max(transient, kOutline + 2 * kFloat);
-    Bytes of_pixel = kOutline;
-    if (outline->of_class[std::size_t(LineClass::kSuggestive)] > 0.0) of_pixel += 4 * kFloat + 1;
-    if (outline->color != OutlinePass::Color::kInk || !pass.mask.empty()) of_pixel += 4 + kPaint;
-    if (outline->of_class[std::size_t(LineClass::kTexture)] > 0.0) of_pixel += 3 * kFloat;
-    transient = std::max(transient, of_pixel);
+  bool measures = false;
+  for (std::size_t i = 0; i < chain.passes.size(); ++i) {
+    const std::vector<FinishPass> moments = MomentsOf(chain, i);
+    FinishBytes most;
+    for (const FinishPass& moment : moments) {
+      const FinishBytes one = OfPass(moment, has_map);
+      most.masks = std::max(most.masks, one.masks), most.picture = std::max(most.picture, one.picture);
+      most.ramp = std::max(most.ramp, one.ramp);
+      transient = std::max(transient, one.transient), mixes = std::max(mixes, one.mixes);
+    }
+    masks += most.masks;
+    if (most.picture > 0) need.Take("mask", most.picture);
+    if (most.ramp > 0) need.Take("ramp", most.ramp);
+    measures = measures || LooksAtMeasures(moments);
   }
-  const bool measures = LooksAtMeasures(passes);
   if (masks > 0) need.Take("finish", masks * PixelsOf(size));
   transient += mixes;
   if (measures) transient = std::max(transient, Bytes(2 * kFloat));  // a copy of a plane that grows
   if (transient > 0) need.TakeTransient("finishing", transient * PixelsOf(size));
+}
+
+void AddFinishLayers(std::size_t passes, bool all, bool is_sequence, const Size& size, MemoryNeed& need) {
+  const Bytes pixels = PixelsOf(size);
+  // While passes work: a copy of the picture, the picture before a pass, both over the ground, the layers below, the
+  // pass's own, and how dense its ink is.
+  need.Take("making layers", (6 * kPaint + 2) * pixels);
+  if (!all) return;
+  // Ground and paint, too; a frame may be written while the next is made. Files are there once by layer, in the archive
+  // and as it is written, and with the merged picture.
+  const Bytes layers = Bytes(passes) + 2;
+  need.Take("layers", (is_sequence ? 2 : 1) * (layers + 1) * kPaint * pixels);
+  need.TakeTransient("file of layers", 2 * (layers + 1) * 4 * pixels + pixels / 64);
 }
 
 void AddKit(int size, std::size_t lights, const LayerSet& layers, bool has_layers_file, MemoryNeed& need) {

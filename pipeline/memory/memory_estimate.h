@@ -8,6 +8,7 @@
 #include "core/image/layers.h"
 #include "core/image/style.h"
 #include "core/io/guide_file.h"
+#include "core/style/finish_chain.h"
 #include "guidegen/scene/scene.h"
 #include "guidegen/scene_textures.h"
 #include "pipeline/memory/memory_limit.h"
@@ -47,13 +48,17 @@ struct PictureWork {
   bool is_sequence = false;  // one picture is written while the next is made
   bool keeps_field = false;  // PictureRequest::KeepsField
   int threads = 0;
-  std::size_t fragments = 0;                // of the guides
-  std::span<const FinishPass> finish = {};  // of the run
+  std::size_t fragments = 0;            // of the guides
+  const FinishChain* finish = nullptr;  // of the run; null: none
 };
 void AddPicture(const PictureWork& work, const PictureRequest& options, MemoryNeed& need);
 
-// What finishing passes take over a picture: the pixels that they are for, and their work.
-void AddFinish(std::span<const FinishPass> passes, bool has_map, const Size& size, MemoryNeed& need);
+// What finishing passes take over a picture, in the frame where they take the most: the pixels that they are for, and
+// their work.
+void AddFinish(const FinishChain& chain, bool has_map, const Size& size, MemoryNeed& need);
+
+// The layers of passes, as a file (`all`) or one pass alone.
+void AddFinishLayers(std::size_t passes, bool all, bool is_sequence, const Size& size, MemoryNeed& need);
 
 // The artist's kit of `scumble sphere`: `lights` of N × N guides with these layers and their template files.
 void AddKit(int size, std::size_t lights, const LayerSet& layers, bool has_layers_file, MemoryNeed& need);

@@ -300,7 +300,7 @@ Expected<std::optional<BudgetChoice>> ChooseForScene(const BudgetRequest& option
                      scene.size.height,
                      options.guides_are_fixed,
                      may_have_fewer ? scene.samples : 0,
-                     !picture.over.empty() || !over.empty() || picture.show};
+                     !picture.over.empty() || !over.empty() || picture.IsOfPaintedSize()};
   const auto take = [&](const Variant& variant) {
     TakeSamples(variant, scene);
     return Take(variant, styles, picture);

@@ -20,6 +20,8 @@ Expected<PictureRequest> RequestAt(const PictureRequest& request, int frame, con
   one.frame = frame, one.output = output;
   SCUMBLE_ASSIGN(const FrameName over, FrameName::Parse(request.over));
   one.over = over.At(frame);
+  SCUMBLE_ASSIGN(const FrameName layers, FrameName::Parse(request.layers_out));
+  one.layers_out = layers.At(frame);
   return one;
 }
 
@@ -60,16 +62,20 @@ Status PictureSequence::ReadOverOfAll(int width, int height) {
 Status PictureSequence::Check(int frame, const std::string& output, int width, int height, std::optional<FrameRate> fps,
                               const std::string& samples) {
   for (Style& style : styles_.styles) SCUMBLE_RETURN_IF_ERROR(SetStyleFrame(style, frame));
+  SCUMBLE_RETURN_IF_ERROR(SetFinishFrame(styles_.finish, frame));
   const std::optional<double> exposure = request_.exposure;
   PictureShape shape{width, height, PictureChannels(output), PictureBits(output, {request_.bits}), {}};
   PictureSettings settings = SettingsOf(request_, fps, exposure, samples);
   if (exposure) settings.measured.reset();  // stops that were measured may be given to go on with
   shape.settings = SettingsText(styles_, settings, state_.hashes);
-  return CheckWholePicture(output, shape);
+  SCUMBLE_RETURN_IF_ERROR(CheckWholePicture(output, shape));
+  if (request_.layers_out.empty()) return Ok();
+  SCUMBLE_ASSIGN(const FrameName layers, FrameName::Parse(request_.layers_out));
+  return CheckWholeLayers(layers.At(frame), width, height);
 }
 
 bool PictureSequence::MustLookAhead(const Sequence& sequence) const {
-  return sequence.frames.size() > 1 && (MeasuresExposure(styles_, request_) || LooksAtMeasures(AllPasses(styles_)));
+  return sequence.frames.size() > 1 && (MeasuresExposure(styles_, request_) || EverLooksAtMeasures(styles_));
 }
 
 Expected<FrameWrite> PictureSequence::Make(int frame, const std::string& output, const GuidesAt& guides_at,
@@ -94,8 +100,8 @@ Expected<RunReport> RunOnePicture(StyleSet& styles, const GuideSet& guides, cons
 PictureWork WorkOf(const StyleSet& styles, const PictureRequest& picture, const Size& guides, const LayerSet& layers,
                    std::size_t fragments, bool is_sequence, const RunContext& context) {
   const bool has_map = styles.styles.size() > 1 || !styles.assigned.empty();
-  return {styles.styles,        has_map,         guides,    layers,       is_sequence,
-          picture.KeepsField(), context.threads, fragments, styles.finish};
+  return {styles.styles,        has_map,         guides,    layers,        is_sequence,
+          picture.KeepsField(), context.threads, fragments, &styles.finish};
 }
 
 Status CheckFiles(RunInputs& files, const PictureRequest& picture, const std::optional<Sequence>& sequence,
@@ -106,12 +112,17 @@ Status CheckFiles(RunInputs& files, const PictureRequest& picture, const std::op
   for (const std::string& file : MaskFilesOf(AllPasses(styles))) files.Reads("the mask of a finishing effect", file);
   files.ReadsStyles(styles);
   SCUMBLE_ASSIGN(const auto outputs, NamesOf(picture.output, sequence));
-  return files.CheckOutputs(outputs);
+  SCUMBLE_RETURN_IF_ERROR(files.CheckOutputs(outputs));
+  SCUMBLE_ASSIGN(const auto layers, LayerNamesOf(picture.layers_out, sequence));
+  return files.CheckOutputs(layers, "--layers-out");
 }
 
 FilesCheck CheckOfSceneStyles(RunInputs& files, const PictureRequest& picture, const std::optional<Sequence>& sequence,
                               const StyleSet& styles) {
-  return [&] { return files.KnowsStyles(styles) ? Ok() : CheckFiles(files, picture, sequence, styles); };
+  return [&]() -> Status {
+    if (!files.KnowsStyles(styles)) SCUMBLE_RETURN_IF_ERROR(CheckFiles(files, picture, sequence, styles));
+    return CheckLayersWanted({picture.show_finish, !picture.layers_out.empty()}, AllPasses(styles));
+  };
 }
 
 Expected<std::string> OverOnTrial(const PictureRequest& picture, const std::optional<Sequence>& sequence) {
@@ -123,6 +134,7 @@ Expected<std::string> OverOnTrial(const PictureRequest& picture, const std::opti
 Status NameOne(PictureRequest& picture) {
   SCUMBLE_ASSIGN(picture.output, NameOfOne(picture.output, picture.frame));
   SCUMBLE_ASSIGN(picture.over, NameOfOne(picture.over, picture.frame));
+  SCUMBLE_ASSIGN(picture.layers_out, NameOfOne(picture.layers_out, picture.frame));
   return Ok();
 }
 

@@ -13,6 +13,7 @@
 #include "core/io/picture_file.h"
 #include "core/style/finish_keys.h"
 #include "finish/finish.h"
+#include "pipeline/frame/finish_layers.h"
 #include "pipeline/memory/memory_estimate.h"
 #include "pipeline/scene/run_inputs.h"
 #include "pipeline/style/finish_files.h"
@@ -24,15 +25,14 @@ namespace {
 
 // The passes of a run, and what it keeps from frame to frame.
 struct FinishState {
-  std::vector<FinishPass> passes;
-  LayerSet required;
+  FinishChain chain;
+  LayerSet required;  // in any frame
   std::optional<FinishMeasures> measures;
   bool told = false;  // of names that fit nothing
 };
 
-LayerSet LayersOf(const std::vector<FinishPass>& passes) {
-  LayerSet layers;
-  for (const FinishPass& pass : passes) layers.Add(RequiredLayers(pass));
+LayerSet LayersOf(const FinishChain& chain) {
+  LayerSet layers = LayersOverTime(chain);
   return layers.empty() ? layers : layers.Add({Layer::kCoverage, Layer::kNormal});  // every guide set holds these
 }
 
@@ -48,7 +48,8 @@ std::string SettingsText(const FinishRequest& request, const std::vector<FinishP
   for (const FinishPass& pass : passes) text += (text.empty() ? "" : ", ") + FinishText(pass);
   return fmt::format("scumble {}; finish {}; seed {}; height {}", SCUMBLE_VERSION, text, request.seed,
                      request.reference_height) +
-         (request.measures ? "; measures " + MeasuresText(*request.measures) : "");
+         (request.measures ? "; measures " + MeasuresText(*request.measures) : "") +
+         (request.show_finish.empty() ? "" : "; show " + (kShowFinish + request.show_finish));
 }
 
 void Measure(const GuideSet& guides, const RunContext& context, FinishState& state) {
@@ -56,10 +57,13 @@ void Measure(const GuideSet& guides, const RunContext& context, FinishState& sta
   context.Note("finish: --finish-measures " + MeasuresText(*state.measures) + " repeats what was measured");
 }
 
-// The frame's files.
+// The frame's number, which key frames go by, and its files.
 struct FrameFiles {
-  std::string picture, guides, camera, output;
+  int frame = 0;
+  std::string picture, guides, camera, output, layers;
 };
+
+LayersWanted WantedOf(const FinishRequest& request) { return {request.show_finish, !request.layers_out.empty()}; }
 
 // Before any of it is taken. Files that cannot be read take nothing; reading them is an error later.
 Status CheckFinishMemory(const FinishRequest& request, const FrameFiles& files, const FinishState& state,
@@ -76,7 +80,10 @@ Status CheckFinishMemory(const FinishRequest& request, const FrameFiles& files, 
           files.guides.empty() ? Expected<GuideFileInfo>(InputError("none")) : InspectGuides(files.guides)) {
     AddGuidesRead(*info, ReadOptions(request, state.required, files.camera), need);
   }
-  AddFinish(state.passes, false, size, need);
+  AddFinish(state.chain, false, size, need);
+  if (!files.layers.empty() || !request.show_finish.empty()) {
+    AddFinishLayers(state.chain.passes.size(), !files.layers.empty(), !request.sequence.frames.empty(), size, need);
+  }
   need.TakeTransient("picture file", 16 * pixels);
   return CheckMemory(need, context, "take smaller pictures");
 }
@@ -84,6 +91,7 @@ Status CheckFinishMemory(const FinishRequest& request, const FrameFiles& files, 
 Expected<FrameWrite> Finish(const FinishRequest& request, const FrameFiles& files, const RunContext& context,
                             const Progress& progress, FinishState& state) {
   SCUMBLE_RETURN_IF_ERROR(CheckFinishMemory(request, files, state, context));
+  SCUMBLE_RETURN_IF_ERROR(SetFinishFrame(state.chain, files.frame));
   StepTimes times;
   Stopwatch watch;
   const auto picture = std::make_shared<Picture>();
@@ -102,10 +110,10 @@ Expected<FrameWrite> Finish(const FinishRequest& request, const FrameFiles& file
   const bool is_first = !std::exchange(state.told, true);
   const Size size{picture->width, picture->height};
   const std::vector<FinishStep> steps =
-      FinishStepsOf(state.passes, size, guides ? &*guides : nullptr, [&](const std::string& text) {
+      FinishStepsOf(state.chain.passes, size, guides ? &*guides : nullptr, [&](const std::string& text) {
         if (is_first) context.Warn(files.guides + ": " + text);
       });
-  if (!state.measures && guides && LooksAtMeasures(state.passes)) {
+  if (!state.measures && guides && EverLooksAtMeasures(state.chain)) {
     Measure(*guides, context, state);
   }
   FinishFrame frame{guides ? &*guides : nullptr, state.measures.value_or(FinishMeasures()), 1.0, request.seed};
@@ -113,19 +121,25 @@ Expected<FrameWrite> Finish(const FinishRequest& request, const FrameFiles& file
   if (guides && ChangesGuides(steps)) {
     SCUMBLE_RETURN_IF_ERROR(ApplyToGuides(steps, frame, context.threads, {}, *guides));
   }
-  SCUMBLE_RETURN_IF_ERROR(ApplyFinish(steps, FinishPass::Stage::kPaint, frame, context.threads, progress, *picture));
-  SCUMBLE_RETURN_IF_ERROR(ApplyFinish(steps, FinishPass::Stage::kSheet, frame, context.threads, {}, *picture));
+  FinishLayerOptions names;
+  names.paint = "picture";
+  SCUMBLE_ASSIGN(FinishedLayers made_layers,
+                 FinishWithLayers(steps, frame, WantedOf(request), names, context.threads, progress, *picture));
+  const auto layers = std::make_shared<FinishedLayers>(std::move(made_layers));
   times.emplace_back("finish", watch.Lap());
   context.EndStage("finish");
   PictureWriteOptions write{request.bits, request.png_level};
-  write.fast = request.fast_io, write.settings = SettingsText(request, state.passes);
+  write.fast = request.fast_io, write.settings = SettingsText(request, state.chain.passes);
   PictureReport report{files.output, picture->width, picture->height, 1, false, 1, request.seed, {}, {}, {}, {}};
   for (const auto& [name, ms] : times) report.steps.push_back({name, ms, ms, ms});
-  return FrameWrite([picture, write, output = files.output,
+  report.layers_output = files.layers;
+  for (const FinishLayer& layer : layers->layers) report.layers.push_back(layer.name);
+  return FrameWrite([picture, layers, write, output = files.output, layers_out = files.layers,
                      made = std::make_shared<PictureReport>(std::move(report))]() -> Expected<FrameReport> {
     Stopwatch clock;
     const std::uint64_t before = BytesWrittenByThisThread();
-    SCUMBLE_RETURN_IF_ERROR(WritePicture(output, *picture, write));
+    if (!layers_out.empty()) SCUMBLE_RETURN_IF_ERROR(WriteLayers(layers_out, std::move(layers->layers), *picture));
+    SCUMBLE_RETURN_IF_ERROR(WritePicture(output, layers->alone ? *layers->alone : *picture, write));
     const double ms = clock.Lap();
     made->steps.push_back({"write", ms, ms, ms});
     FrameReport done;
@@ -139,7 +153,9 @@ Expected<FrameWrite> Finish(const FinishRequest& request, const FrameFiles& file
 Status CheckLayers(const FinishRequest& request, const FinishState& state) {
   if (state.required.empty() || !request.guides.empty()) return Ok();
   std::vector<FinishStep> steps;
-  for (const FinishPass& pass : state.passes) steps.push_back({pass, {}});
+  for (std::size_t i = 0; i < state.chain.passes.size(); ++i) {
+    for (FinishPass& moment : MomentsOf(state.chain, i)) steps.push_back({std::move(moment), {}});
+  }
   return CheckFinish(steps, nullptr);
 }
 
@@ -147,12 +163,13 @@ Status CheckLayers(const FinishRequest& request, const FinishState& state) {
 
 Expected<RunReport> RunFinish(FinishRequest request, const SequenceListener& listener, const RunContext& context) {
   FinishState state;
-  SCUMBLE_ASSIGN(state.passes, OpenFinish(request.finishes, context));
-  SCUMBLE_RETURN_IF_ERROR(SetFinish(request.sets, state.passes));
-  SCUMBLE_RETURN_IF_ERROR(ReadFinishFiles(nullptr, context, state.passes));
-  state.required = LayersOf(state.passes), state.measures = request.measures;
+  SCUMBLE_ASSIGN(state.chain, OpenFinish(request.finishes, context));
+  SCUMBLE_RETURN_IF_ERROR(SetFinish(request.sets, state.chain));
+  SCUMBLE_RETURN_IF_ERROR(ReadFinishFiles(nullptr, context, state.chain.passes));
+  state.required = LayersOf(state.chain), state.measures = request.measures;
+  SCUMBLE_RETURN_IF_ERROR(CheckLayersWanted(WantedOf(request), state.chain.passes));
   SCUMBLE_RETURN_IF_ERROR(CheckLayers(request, state));
-  for (const std::string& doubt : OrderDoubts(state.passes)) context.Warn(doubt);
+  for (const std::string& doubt : OrderDoubts(state.chain.passes)) context.Warn(doubt);
   SCUMBLE_RETURN_IF_ERROR(CheckPictureTarget(request.output, {request.bits}));
   SCUMBLE_ASSIGN(const auto sequence, PlanSequence(request.sequence, request.frame, request.output));
   RunInputs inputs;
@@ -167,19 +184,23 @@ Expected<RunReport> RunFinish(FinishRequest request, const SequenceListener& lis
       if (!file.empty()) inputs.Reads(what, file);
     }
   }
-  for (const std::string& file : FilesOf(state.passes)) inputs.Reads("a file of a finish", file);
-  for (const std::string& file : MaskFilesOf(state.passes)) inputs.Reads("the mask of a finishing effect", file);
+  for (const std::string& file : FilesOf(state.chain.passes)) inputs.Reads("a file of a finish", file);
+  for (const std::string& file : MaskFilesOf(state.chain.passes)) inputs.Reads("the mask of a finishing effect", file);
   if (!sequence) {
     SCUMBLE_ASSIGN(request.output, NameOfOne(request.output, request.frame));
+    SCUMBLE_ASSIGN(request.layers_out, NameOfOne(request.layers_out, request.frame));
   }
   SCUMBLE_ASSIGN(const auto outputs, NamesOf(request.output, sequence));
   SCUMBLE_RETURN_IF_ERROR(inputs.CheckOutputs(outputs));
+  SCUMBLE_ASSIGN(const auto layer_outputs, LayerNamesOf(request.layers_out, sequence));
+  SCUMBLE_RETURN_IF_ERROR(inputs.CheckOutputs(layer_outputs, "--layers-out"));
   RunReport report;
   report.paints = true;
   if (!sequence) {
-    SCUMBLE_ASSIGN(const FrameWrite write,
-                   Finish(request, {request.picture, request.guides, request.camera, request.output}, context,
-                          context.StartProgress("finish"), state));
+    SCUMBLE_ASSIGN(const FrameWrite write, Finish(request,
+                                                  {request.frame.value_or(0), request.picture, request.guides,
+                                                   request.camera, request.output, request.layers_out},
+                                                  context, context.StartProgress("finish"), state));
     SCUMBLE_ASSIGN(report.frame, write());
     context.EndStage("write");
     return report;
@@ -187,17 +208,21 @@ Expected<RunReport> RunFinish(FinishRequest request, const SequenceListener& lis
   SCUMBLE_ASSIGN(const FrameName picture, FrameName::Parse(request.picture));
   SCUMBLE_ASSIGN(const FrameName guides, FrameName::Parse(request.guides));
   SCUMBLE_ASSIGN(const FrameName camera, FrameName::Parse(request.camera));
+  SCUMBLE_ASSIGN(const FrameName layers, FrameName::Parse(request.layers_out));
   SequenceWork work;
   work.check = [&](int frame, const std::string& output) -> Status {
     const auto header = InspectPicture(picture.At(frame));
     if (!header) return header.error();
+    SCUMBLE_RETURN_IF_ERROR(SetFinishFrame(state.chain, frame));
     PictureWriteOptions write{request.bits, request.png_level};
-    return CheckWholePicture(output, {header->width, header->height, PictureChannels(output),
-                                      PictureBits(output, write), SettingsText(request, state.passes)});
+    SCUMBLE_RETURN_IF_ERROR(
+        CheckWholePicture(output, {header->width, header->height, PictureChannels(output), PictureBits(output, write),
+                                   SettingsText(request, state.chain.passes)}));
+    return request.layers_out.empty() ? Ok() : CheckWholeLayers(layers.At(frame), header->width, header->height);
   };
   // A sequence that is resumed goes on with the measures of its first frame.
   work.begin = [&](std::span<const int>, const Progress&) -> Status {
-    if (state.measures || !LooksAtMeasures(state.passes)) return Ok();
+    if (state.measures || !EverLooksAtMeasures(state.chain)) return Ok();
     const int first = sequence->frames.front();
     SCUMBLE_ASSIGN(const GuideSet set,
                    ReadGuides(guides.At(first), ReadOptions(request, state.required, camera.At(first))));
@@ -205,7 +230,8 @@ Expected<RunReport> RunFinish(FinishRequest request, const SequenceListener& lis
     return Ok();
   };
   work.make = [&](int frame, const std::string& output, const Progress& progress) {
-    return Finish(request, {picture.At(frame), guides.At(frame), camera.At(frame), output}, context, progress, state);
+    return Finish(request, {frame, picture.At(frame), guides.At(frame), camera.At(frame), output, layers.At(frame)},
+                  context, progress, state);
   };
   SCUMBLE_ASSIGN(report.sequence, RunSequence(*sequence, work, listener, context, context.StartProgress("finish")));
   return report;

@@ -23,6 +23,8 @@ struct FinishRequest {
   std::optional<FinishMeasures> measures;  // instead of those of the first picture
   std::vector<std::string> sets;           // "finish.NAME.KEY=VALUE"
   std::string output;
+  std::string show_finish;  // as PictureRequest has it
+  std::string layers_out;   // likewise
   int bits = 8;
   int png_level = 6;
   bool fast_io = false;

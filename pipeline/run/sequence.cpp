@@ -43,6 +43,21 @@ Expected<std::vector<std::string>> NamesOf(const std::string& name, const std::o
   return names;
 }
 
+Expected<std::vector<std::string>> LayerNamesOf(const std::string& name, const std::optional<Sequence>& sequence) {
+  if (name.empty()) return std::vector<std::string>();
+  if (!HasEnding(name, {".ora"})) {
+    return UsageError("--layers-out " + name + ": expected a name that ends in .ora, an OpenRaster file");
+  }
+  SCUMBLE_ASSIGN(const FrameName parsed, FrameName::Parse(name));
+  if (sequence && sequence->frames.size() > 1 && !parsed.has_place()) {
+    return UsageError(
+        fmt::format("--layers-out {} is one file for {} frames: write #### where the frame's number goes, as in "
+                    "{}.####.ora",
+                    name, sequence->frames.size(), name.substr(0, name.rfind('.'))));
+  }
+  return NamesOf(name, sequence);
+}
+
 Expected<std::string> NameOfOne(const std::string& name, std::optional<int> frame) {
   SCUMBLE_ASSIGN(const FrameName parsed, FrameName::Parse(name));
   if (frame) return parsed.At(*frame);

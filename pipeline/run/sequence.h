@@ -36,6 +36,10 @@ Expected<std::string> NameOfOne(const std::string& name, std::optional<int> fram
 // The names of all frames' files; of one picture, whose place is filled, it is the name itself.
 Expected<std::vector<std::string>> NamesOf(const std::string& name, const std::optional<Sequence>& sequence);
 
+// Likewise of files of layers, one for each frame. A usage error where they do not end in .ora, or frames share one.
+// None where `name` is empty.
+Expected<std::vector<std::string>> LayerNamesOf(const std::string& name, const std::optional<Sequence>& sequence);
+
 struct SequenceWork {
   // Ok where the frame's output is there, whole, and what would be made.
   std::function<Status(int frame, const std::string& output)> check;

@@ -245,14 +245,14 @@ void RunInputs::ReadsStyles(const StyleSet& styles) {
   }
 }
 
-Status RunInputs::CheckOutputs(std::span<const std::string> outputs) const {
+Status RunInputs::CheckOutputs(std::span<const std::string> outputs, const std::string& option) const {
   for (const std::string& output : outputs) {
     const auto identity = IdentityOf(output);
     const auto found = identity ? inputs_.find(*identity) : inputs_.end();
     if (found == inputs_.end()) continue;
     const Input& input = found->second;
     const std::string also = input.path == output ? "" : ", by the name " + input.path;
-    return UsageError("-o " + output + " would overwrite " + input.what + also + ": give another name");
+    return UsageError(option + " " + output + " would overwrite " + input.what + also + ": give another name");
   }
   std::error_code failed;
   for (std::size_t i = 0; i < outputs.size(); ++i) {

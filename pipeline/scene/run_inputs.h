@@ -30,7 +30,8 @@ class RunInputs {
 
   // kUsage where an output is one of these files, under whatever name or link; kOutput where it cannot be written, its
   // folder is missing, or it is a folder. The outputs of a range are in one folder. Nothing is left behind.
-  Status CheckOutputs(std::span<const std::string> outputs) const;
+  // `option` is for the message.
+  Status CheckOutputs(std::span<const std::string> outputs, const std::string& option = "-o") const;
   Status CheckOutput(const std::string& output) const { return CheckOutputs(std::span(&output, 1)); }
 
  private:

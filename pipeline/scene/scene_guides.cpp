@@ -238,12 +238,16 @@ void NameReaderInPlan(std::vector<PlanItem>& plan, const LayerSet& read, const s
 }  // namespace
 
 void NameStylesInPlan(std::vector<PlanItem>& plan, const StyleSet& styles) {
-  const auto name_passes = [&](const std::vector<FinishPass>& passes) {
-    for (const FinishPass& pass : passes) NameReaderInPlan(plan, RequiredLayers(pass), "finish " + pass.name);
+  const auto name_passes = [&](const FinishChain& chain) {
+    for (std::size_t i = 0; i < chain.passes.size(); ++i) {
+      LayerSet layers;
+      for (const FinishPass& moment : MomentsOf(chain, i)) layers.Add(RequiredLayers(moment));
+      NameReaderInPlan(plan, layers, "finish " + chain.passes[i].name);
+    }
   };
   for (const Style& style : styles.styles) {
     NameReaderInPlan(plan, TransferLayers(style), "style " + style.name);
-    name_passes(style.finish);
+    name_passes(FinishOf(style));
   }
   name_passes(styles.finish);
 }

@@ -90,7 +90,7 @@ std::vector<std::string> OrderDoubts(const StyleSet& styles) {
   };
   for (const Style& style : styles.styles) {
     std::vector<FinishPass> chain = style.finish;
-    chain.insert(chain.end(), styles.finish.begin(), styles.finish.end());
+    chain.insert(chain.end(), styles.finish.passes.begin(), styles.finish.passes.end());
     for (const std::string& doubt : OrderDoubts(chain)) add(doubt);
     for (const std::string& doubt : IdleGuides(style, chain)) add(doubt);
     if (style.transfer.edge != EdgeMode::kExemplar || !style.unpainted.empty()) continue;

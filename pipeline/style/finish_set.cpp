@@ -27,22 +27,22 @@ std::vector<fs::path> PresetFiles(const RunContext& context) {
   return files;
 }
 
-Expected<std::vector<FinishPass>> PassesOf(const std::string& name, const RunContext& context) {
+Expected<FinishChain> PassesOf(const std::string& name, const RunContext& context) {
   if (FindFinishEffect(name)) {
     SCUMBLE_ASSIGN(FinishPass pass, MakeFinishPass(name));
-    return std::vector{std::move(pass)};
+    return FinishChain{{std::move(pass)}, {}};
   }
   std::vector<std::string> names;
   for (const fs::path& file : PresetFiles(context)) {
     if (file.stem() == name) {
       SCUMBLE_ASSIGN(FinishPreset preset, LoadFinishPreset(file));
-      return std::move(preset.passes);
+      return static_cast<FinishChain&&>(std::move(preset));
     }
     names.push_back(file.stem().string());
   }
   if (std::error_code failed; fs::is_regular_file(name, failed)) {
     SCUMBLE_ASSIGN(FinishPreset preset, LoadFinishPreset(name));
-    return std::move(preset.passes);
+    return static_cast<FinishChain&&>(std::move(preset));
   }
   for (const FinishEffect& effect : FinishEffects()) names.push_back(effect.name);
   const std::string meant = NearestName(name, names);
@@ -127,20 +127,20 @@ Expected<std::vector<FinishPreset>> FinishPresets(const RunContext& context) {
   return presets;
 }
 
-Expected<std::vector<FinishPass>> OpenFinish(const std::vector<std::string>& names, const RunContext& context) {
-  std::vector<FinishPass> passes;
+Expected<FinishChain> OpenFinish(const std::vector<std::string>& names, const RunContext& context) {
+  FinishChain chain;
   for (const std::string& name : names) {
     if (name == kNoFinish) continue;
-    SCUMBLE_ASSIGN(std::vector<FinishPass> more, PassesOf(name, context));
-    passes.insert(passes.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+    SCUMBLE_ASSIGN(FinishChain more, PassesOf(name, context));
+    Append(std::move(more), chain);
   }
-  return passes;
+  return chain;
 }
 
-Status SetFinish(const std::vector<std::string>& sets, std::vector<FinishPass>& passes) {
+Status SetFinish(const std::vector<std::string>& sets, FinishChain& chain) {
   for (const std::string& text : sets) {
-    SCUMBLE_ASSIGN(const std::size_t count, OverrideFinish(passes, text));
-    if (count == 0) return NoSuchFinish(text, passes);
+    SCUMBLE_ASSIGN(const std::size_t count, OverrideFinish(chain, text));
+    if (count == 0) return NoSuchFinish(text, chain.passes);
   }
   return Ok();
 }
@@ -153,17 +153,21 @@ FinishMeasures MeasuresOf(std::span<const FinishPass> passes, const std::optiona
 
 std::vector<FinishPass> AllPasses(const StyleSet& styles) {
   std::vector<FinishPass> passes;
-  for (const Style& style : styles.styles) {
-    for (FinishPass pass : style.finish) {
-      // One whose strength moves counts from the beginning.
-      const std::string strength = kFinishKeys + pass.name + ".strength";
-      const auto moves = [&](const StyleTrack& track) { return track.name == strength; };
-      if (std::any_of(style.tracks.begin(), style.tracks.end(), moves)) pass.strength = 1.0;
-      passes.push_back(std::move(pass));
-    }
-  }
-  passes.insert(passes.end(), styles.finish.begin(), styles.finish.end());
+  for (const Style& style : styles.styles) passes.insert(passes.end(), style.finish.begin(), style.finish.end());
+  passes.insert(passes.end(), styles.finish.passes.begin(), styles.finish.passes.end());
   return passes;
+}
+
+bool EverLooksAtMeasures(const FinishChain& chain) {
+  for (std::size_t i = 0; i < chain.passes.size(); ++i) {
+    if (LooksAtMeasures(MomentsOf(chain, i))) return true;
+  }
+  return false;
+}
+
+bool EverLooksAtMeasures(const StyleSet& styles) {
+  const auto looks = [](const Style& style) { return EverLooksAtMeasures(FinishOf(style)); };
+  return EverLooksAtMeasures(styles.finish) || std::any_of(styles.styles.begin(), styles.styles.end(), looks);
 }
 
 std::vector<FinishStep> FinishStepsOf(const StyleSet& styles, const GuideSet& guides, const StyleMap* map, bool over,
@@ -185,14 +189,14 @@ std::vector<FinishStep> FinishStepsOf(const StyleSet& styles, const GuideSet& gu
     }
   }
   std::vector<std::uint8_t> shows;
-  if (map && !styles.finish.empty()) {
+  if (map && !styles.finish.passes.empty()) {
     shows.resize(map->style.size());
     for (std::size_t p = 0; p < shows.size(); ++p) {
       shows[p] = map->style[p] != StyleMap::kShadowCatcher && (over || map->style[p] != StyleMap::kPassThrough);
     }
     if (std::find(shows.begin(), shows.end(), 0) == shows.end()) shows.clear();
   }
-  for (const FinishPass& pass : styles.finish) {
+  for (const FinishPass& pass : styles.finish.passes) {
     FinishStep& step = steps.emplace_back(FinishStep{pass, shows});
     step.reference_height = styles.first().transfer.reference_height;
     Focus(guides, tell, step.pass);

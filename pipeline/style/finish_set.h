@@ -26,17 +26,21 @@ Expected<std::vector<FinishPreset>> FinishPresets(const RunContext& context);
 
 // The passes of these names, in their order: of an effect with its defaults, a bundled preset, or a preset's file.
 // kNoFinish adds nothing. A kInput error lists what there is.
-Expected<std::vector<FinishPass>> OpenFinish(const std::vector<std::string>& names, const RunContext& context);
+Expected<FinishChain> OpenFinish(const std::vector<std::string>& names, const RunContext& context);
 
 // Applies "finish.NAME.KEY=VALUE" to the passes; an error where none has that name.
-Status SetFinish(const std::vector<std::string>& sets, std::vector<FinishPass>& passes);
+Status SetFinish(const std::vector<std::string>& sets, FinishChain& chain);
 
 // What was given, or is measured on these guides where a pass looks at it.
 FinishMeasures MeasuresOf(std::span<const FinishPass> passes, const std::optional<FinishMeasures>& given,
                           const GuideSet& guides);
 
-// All passes of the styles and of the run, without their pixels.
+// All passes of the styles and of the run as they are now, without their pixels.
 std::vector<FinishPass> AllPasses(const StyleSet& styles);
+
+// Whether any of the passes looks at measures, in one frame or another.
+bool EverLooksAtMeasures(const FinishChain& chain);
+bool EverLooksAtMeasures(const StyleSet& styles);
 
 // The passes of these styles and of the run, in their order, each with the pixels that it is for: a style's passes are
 // for its own pixels and lengths, the run's for all that shows: not for shadow catchers, nor for objects that are left

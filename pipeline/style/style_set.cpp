@@ -46,9 +46,7 @@ Expected<std::uint16_t> PlaceOf(StyleSet& set, const std::string& name, const st
   SCUMBLE_ASSIGN(Style style, LoadStyle(found, overrides, set.options.reading));
   for (const StyleSet::Override& one : set.overrides) {
     if (!one.style.empty() || !IsOfFinish(one.text)) continue;
-    SCUMBLE_RETURN_IF_ERROR(CheckDial(style, one.text));
-    SCUMBLE_RETURN_IF_ERROR(OverrideFinish(style.finish, one.text));
-    RemoveTrack(style, one.text.substr(0, one.text.find('=')));
+    SCUMBLE_RETURN_IF_ERROR(OverrideFinish(style, one.text));
   }
   const auto& finishes = set.options.finishes;
   if (std::find(finishes.begin(), finishes.end(), kNoFinish) != finishes.end()) {
@@ -167,8 +165,7 @@ Expected<LayerSet> StyleLayers(StyleSet& set, const SceneStyleRequests& requests
     SCUMBLE_ASSIGN(const LayerSet of_style, LayersOverTime(set.styles[i]));
     layers.Add(of_style);
   }
-  for (const FinishPass& pass : set.finish) layers.Add(RequiredLayers(pass));
-  return layers;
+  return layers.Add(LayersOverTime(set.finish));
 }
 
 Expected<LayerSet> RequiredLayers(StyleSet& set, const SceneStyleRequests& requests, const std::string& file) {
@@ -226,10 +223,10 @@ Status SetFinishOfRun(StyleSet& set) {
   for (const StyleSet::Override& one : set.overrides) {
     if (!one.style.empty() || !IsOfFinish(one.text)) continue;
     SCUMBLE_ASSIGN(std::size_t count, OverrideFinish(set.finish, one.text));
-    std::vector<FinishPass> copy = all;  // they are set already
+    FinishChain copy{all, {}};  // they are set already
     SCUMBLE_ASSIGN(const std::size_t of_styles, OverrideFinish(copy, one.text));
     if (count + of_styles > 0) continue;
-    all.insert(all.end(), set.finish.begin(), set.finish.end());
+    all.insert(all.end(), set.finish.passes.begin(), set.finish.passes.end());
     return NoSuchFinish(one.text, all);
   }
   return Ok();
@@ -267,7 +264,7 @@ Expected<StyleSet> OpenStyles(const StyleRequest& options, const RunContext& con
   SCUMBLE_RETURN_IF_ERROR(CheckOverrides(set));
   SCUMBLE_RETURN_IF_ERROR(SetFinishOfRun(set));
   for (Style& style : set.styles) SCUMBLE_RETURN_IF_ERROR(ReadFinishFiles(&style, context, style.finish));
-  SCUMBLE_RETURN_IF_ERROR(ReadFinishFiles(&set.first(), context, set.finish));
+  SCUMBLE_RETURN_IF_ERROR(ReadFinishFiles(&set.first(), context, set.finish.passes));
   return set;
 }
 

@@ -8,6 +8,7 @@
 
 #include "core/image/guides.h"
 #include "core/image/style.h"
+#include "core/style/finish_chain.h"
 #include "guidegen/scene/scene.h"
 #include "pipeline/requests.h"
 #include "pipeline/run_context.h"
@@ -42,7 +43,7 @@ struct StyleSet {
   std::size_t chosen = 1;                       // so many of `styles` are the user's, the others the scene's
   std::map<std::string, std::uint16_t> opened;  // by path
   std::vector<std::string> warnings;            // that were given
-  std::vector<FinishPass> finish;               // of StyleRequest::finishes
+  FinishChain finish;                           // of StyleRequest::finishes
 
   const Style& first() const { return styles.front(); }
   // Whether any pixel of these guides, which are `file`'s, may have another style than the default.

@@ -28,7 +28,8 @@ Expected<Style> OpenStyleWith(const TradeSetup& setup, const std::vector<std::st
   one.sets.insert(one.sets.end(), settings.begin(), settings.end());
   SCUMBLE_ASSIGN(StyleSet styles, OpenStyles(one, context));
   Style style = std::move(styles.styles.front());
-  style.finish.insert(style.finish.end(), styles.finish.begin(), styles.finish.end());
+  SCUMBLE_RETURN_IF_ERROR(SetFinishFrame(styles.finish, setup.frame.value_or(0)));
+  style.finish.insert(style.finish.end(), styles.finish.passes.begin(), styles.finish.passes.end());
   SCUMBLE_RETURN_IF_ERROR(SetStyleFrame(style, setup.frame.value_or(0)));
   return style;
 }

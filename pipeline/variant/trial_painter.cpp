@@ -20,6 +20,7 @@ Status TrialPainter::Prepare(const Variant& variant, const GuideSet& guides, int
     SCUMBLE_ASSIGN(PreparedStyle one, PrepareStyle(style, guides.height() * upsample, context_));
     prepared_.push_back(std::move(one));
   }
+  SCUMBLE_RETURN_IF_ERROR(SetFinishFrame(variant_.finish, frame_.value_or(0)));
   for (Style& style : variant_.styles) style.exemplars.clear(), style.paper = {};  // what is large, and prepared
   exposure_ = ExposureOf(picture_.exposure, prepared_, guides, context_.threads);
   prepared_for_ = variant.name;

@@ -1,4 +1,6 @@
 // A run's estimate of its peak memory, against the system's count; and refusals before anything is allocated.
+#include "pipeline/memory/memory_estimate.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,6 +9,7 @@
 #include <vector>
 
 #include "core/io/picture_file.h"
+#include "core/style/finish_keys.h"
 #include "tests/support/cli_harness.h"
 #include "tests/support/gltf_builder.h"
 
@@ -59,9 +62,29 @@ TEST_F(MemoryNeedTest, NothingTakesMoreThanItSays) {
   ExpectHonest(With(stylize, {"-o", "p.png", "--set", "transfer.match_step=2", "--set", "transfer.hybrid=3"}));
   ExpectHonest(With(stylize, {"-o", "p.png", "--set", "transfer.blend_radius=20", "--show", "error"}));
   ExpectHonest(With(stylize, {"-o", "p.png", "--finish", "storybook", "--finish", "smooth", "--finish", "edges"}));
+  ExpectHonest(With(stylize, {"-o", "p.png", "--finish", "comic", "--layers-out", "l.ora"}));
+  ExpectHonest(With(stylize, {"-o", "p.png", "--finish", "hatch", "--show", "finish:hatch"}));
   ExpectHonest({"guidegen", Scene("snail.glb"), "--size", "800", "--layers", "luminance,shadow", "-o", "s.exr"});
   ExpectHonest({"transfer", "s.exr", "--style", "style", "--finish", "charcoal-lines", "-o", "p.png"});
   ExpectHonest({"sphere", "--size", "500", "-o", "kit"});
+}
+
+// A finish whose keys change takes what its greediest frame does, in every frame.
+TEST(FinishMemory, IsThatOfTheGreediestFrame) {
+  const auto needed = [](const FinishChain& chain) {
+    MemoryNeed need;
+    AddFinish(chain, true, {100, 100}, need);
+    return need.peak();
+  };
+  FinishPass smooth = *MakeFinishPass("smooth");
+  FinishChain moving{{smooth}, {}};
+  std::get<SmoothPass>(smooth.effect).filter = SmoothPass::Filter::kKuwahara;
+  const FinishChain greedy{{smooth}, {}};
+  EXPECT_LT(needed(moving), needed(greedy));
+  ASSERT_TRUE(OverrideFinish(moving, "finish.smooth.filter=[[1, \"bilateral\"], [5, \"kuwahara\"]]"));
+  ASSERT_TRUE(OverrideFinish(moving, "finish.smooth.strength=[[1, 0], [9, 1]]"));
+  EXPECT_EQ(moving.passes[0].strength, 0.0);
+  EXPECT_EQ(needed(moving), needed(greedy));
 }
 
 // A small sphere in a large file: the file is there while the sphere is looked for.

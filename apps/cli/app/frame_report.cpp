@@ -40,6 +40,10 @@ Json StyleToJson(const StyleInReport& style) {
 // Facts about a style outside "styles" are the default style's; a picture that is only finished has none.
 void PictureToJson(const PictureReport& picture, const std::vector<PlanItem>& plan, Json& json) {
   json["output"] = picture.output;
+  if (!picture.layers_output.empty()) {
+    json["layers_output"] = picture.layers_output;
+    json["layers"] = picture.layers;
+  }
   if (!picture.styles.empty()) json["style"] = picture.styles.front().name;
   json["width"] = picture.width;
   json["height"] = picture.height;
@@ -143,7 +147,9 @@ std::string FrameToText(const FrameReport& report) {
     if (report.cost) text += CostToText(*report.cost);
   }
   if (const auto* const picture = std::get_if<PictureReport>(&report.made)) {
-    return text + fmt::format("{}  {}\n", picture->output, StepsToText(picture->steps, picture->repeat));
+    text += fmt::format("{}  {}\n", picture->output, StepsToText(picture->steps, picture->repeat));
+    if (picture->layers_output.empty()) return text;
+    return text + fmt::format("{}  {}\n", picture->layers_output, fmt::join(picture->layers, ", "));
   }
   return text + GuidesToText(std::get<GuidesReport>(report.made));
 }

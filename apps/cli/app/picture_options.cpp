@@ -1,12 +1,47 @@
 #include "apps/cli/app/picture_options.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <string_view>
+#include <vector>
 
 #include "measure/mosaic/explain.h"
+#include "pipeline/frame/finish_layers.h"
 #include "pipeline/frame_range.h"
 #include "transfer/upsample_guides.h"
 
 namespace scumble {
+
+std::string ShownFinish(const std::string& show) {
+  return show.rfind(kShowFinish, 0) == 0 ? show.substr(std::string_view(kShowFinish).size()) : "";
+}
+
+void AddShowOptions(CLI::App& verb, std::string& show, std::string& layers_out, bool explanations) {
+  const std::string of_finish =
+      "finish:NAME, what the finishing effect of that name does alone: its ink, or the picture after it";
+  const std::vector<std::string> names = explanations ? ExplanationNames() : std::vector<std::string>();
+  const auto check = [names](std::string& text) -> std::string {
+    const bool is_known = !ShownFinish(text).empty() || std::find(names.begin(), names.end(), text) != names.end();
+    return is_known
+               ? ""
+               : fmt::format("{}: expected {}{}finish:NAME", text, fmt::join(names, ", "), names.empty() ? "" : " or ");
+  };
+  verb.add_option("--show", show,
+                  explanations ? "write a picture that explains the result instead of it: where the paint comes from, "
+                                 "the chunks and their borders, their size, the guide error, which exemplar, which "
+                                 "style; or " +
+                                     of_finish
+                               : "write another picture instead of the result: " + of_finish)
+      ->type_name("WHAT")
+      ->check(
+          CLI::Validator(check, fmt::format("{{{}{}finish:NAME}}", fmt::join(names, ","), names.empty() ? "" : ",")));
+  verb.add_option("--layers-out", layers_out,
+                  "also write the layers of the finish, for Krita, GIMP and MyPaint: paper, paint, and each effect, "
+                  "lines as ink alone: .ora")
+      ->type_name("FILE");
+}
 
 void AddPictureOptions(CLI::App& verb, PictureOptions& options, bool needed) {
   auto* output = verb.add_option("-o,--output", options.request.output,
@@ -45,11 +80,7 @@ void AddPictureOptions(CLI::App& verb, PictureOptions& options, bool needed) {
       ->type_name("N")
       ->check(RefuseNegative)
       ->capture_default_str();
-  verb.add_option("--show", options.show,
-                  "write a picture that explains the result instead of it: where the paint comes from, the chunks and "
-                  "their borders, their size, the guide error, which exemplar, which style")
-      ->type_name("WHAT")
-      ->check(CLI::IsMember(ExplanationNames()));
+  AddShowOptions(verb, options.show, options.request.layers_out, true);
   verb.add_option(
           "--upsample", options.request.upsample,
           "the picture is N times as wide and high as the guides: they are quicker to make, and the paint has its "
@@ -74,6 +105,7 @@ Expected<PictureRequest> ToRequest(const PictureOptions& options, const Globals&
     SCUMBLE_ASSIGN(request.fps, ParseFrameRate(options.fps));
   }
   request.show = FindExplanation(options.show);
+  request.show_finish = ShownFinish(options.show);
   request.measure_chunks = globals.json;
   return request;
 }

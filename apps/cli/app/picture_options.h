@@ -16,6 +16,12 @@ struct PictureOptions {
   std::string exposure = "auto";
   std::string show;
 };
+// --show and --layers-out, of which `show` holds the text. `explanations`: besides finish:NAME, ExplanationNames() can
+// be shown.
+void AddShowOptions(CLI::App& verb, std::string& show, std::string& layers_out, bool explanations);
+// NAME of finish:NAME; empty for anything else.
+std::string ShownFinish(const std::string& show);
+
 // `needed`: the command requires an output.
 void AddPictureOptions(CLI::App& verb, PictureOptions& options, bool needed);
 // Chunks are measured if the report is JSON, which has room for them.

@@ -21,7 +21,7 @@ struct FinishVerb {
   FinishRequest request;
   SequenceOptions sequence;
   bool list = false;
-  std::string effect;  // whose keys are listed
+  std::string show;
 };
 
 std::string EffectsToText(const std::vector<FinishPreset>& presets) {
@@ -43,7 +43,13 @@ std::string KeysToText(std::span<const FinishKey> keys) {
 // What a preset sets, as TOML would.
 std::string PresetToText(const FinishPreset& preset) {
   std::string text = preset.help + "\n";
-  for (const FinishPass& pass : preset.passes) text += fmt::format("  {:<16} {}\n", pass.name, FinishText(pass));
+  for (std::size_t i = 0; i < preset.passes.size(); ++i) {
+    text += fmt::format("  {:<16} {}", preset.passes[i].name, FinishText(preset.passes[i]));
+    for (const FinishChain::Track& track : preset.tracks) {
+      if (track.pass == i) text += fmt::format("; {}={}", track.keys.name, ToText(track.keys));
+    }
+    text += "\n";
+  }
   return text;
 }
 
@@ -104,6 +110,7 @@ Expected<ExitCode> RunFinishVerb(const FinishVerb& verb, const Globals& globals)
   }
   if (verb.request.output.empty()) return UsageError("scumble finish: -o FILE is required");
   FinishRequest request = verb.request;
+  request.show_finish = ShownFinish(verb.show);
   SCUMBLE_ASSIGN(request.sequence, ToRequest(verb.sequence));
   SequencePrinter printer(globals);
   SCUMBLE_ASSIGN(const RunReport report, RunFinish(std::move(request), printer.Listener(), globals));
@@ -126,6 +133,7 @@ void AddFinishVerb(CLI::App& app, Globals& globals, Action& chosen) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   sub->add_flag("--list", verb->list, "list presets, effects and their keys; with --finish NAME, those of one");
   sub->add_option("-o,--output", request.output, "picture to write: .png, .tif, .exr or .jpg")->type_name("FILE");
+  AddShowOptions(*sub, verb->show, request.layers_out, false);
   sub->add_option("--view-layer", request.view_layer, "which view layer of a multilayer file")->type_name("NAME");
   sub->add_option("--light-layer", request.light_layer,
                   "the view layer of a Blender render whose passes of light are taken; left out: that of all else")

@@ -59,8 +59,9 @@ std::string Stack(std::span<const RasterLayer> layers, const Picture& merged, in
     char opacity[16];
     std::snprintf(opacity, sizeof opacity, "%.2f", layer.opacity);
     xml += "    <layer name=\"" + Escaped(layer.name) + "\" src=\"" + LayerFile(i) + "\" x=\"0\" y=\"0\" opacity=\"" +
-           opacity + "\" visibility=\"" + (layer.visible ? "visible" : "hidden") + "\" composite-op=\"svg:src-over\"" +
-           (layer.locked ? " edit-locked=\"true\"" : "") + (layer.selected ? " selected=\"true\"" : "") + "/>\n";
+           opacity + "\" visibility=\"" + (layer.visible ? "visible" : "hidden") + "\" composite-op=\"" +
+           (layer.atop ? "svg:src-atop" : "svg:src-over") + "\"" + (layer.locked ? " edit-locked=\"true\"" : "") +
+           (layer.selected ? " selected=\"true\"" : "") + "/>\n";
   }
   return xml + "  </stack>\n</image>\n";
 }

@@ -21,6 +21,7 @@ struct RasterLayer {
   bool visible = true;
   bool locked = false;    // locked against painting, in programs that support it
   bool selected = false;  // the one to paint on, at most one
+  bool atop = false;      // Porter and Duff's "atop" instead of "over": it leaves the alpha of what is below
 };
 
 // The bytes of a file with these layers, the topmost first. `merged` is their composite: painting programs read the

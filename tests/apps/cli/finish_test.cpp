@@ -366,6 +366,58 @@ TEST_F(CliFinish, KeysMoveInSequences) {
   EXPECT_NE(Read("m.0003.png").rgba, Read("m.0002.png").rgba);
 }
 
+// Key frames of a preset and of --set, with a transfer and after one: each frame is the single run with its values.
+TEST_F(CliFinish, KeysOfPresetsMoveInSequences) {
+  WriteStyle("plain");
+  WriteText("look.toml",
+            "[[finish]]\neffect = \"shadows\"\nstrength = [[1, 0], [3, 1]]\n[[finish]]\neffect = \"outline\"\n"
+            "ink = [[2, \"#000000\"], [3, \"#ff0000\"]]\n");
+  const Arguments width{"--set", "finish.outline.width=[[1, 2], [3, 6]]"};
+  const auto with = [](Arguments arguments, const Arguments& more) {
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  };
+  const Arguments scene{"stylize", kBall, "--size", "64", "--style", "plain", "--bits", "16"};
+  RunOk(with(scene, {"--frames", "1-3", "-o", "p.####.png"}));
+  RunOk({"guidegen", kBall, "--frames", "1-3", "--size", "64", "--layers", "luminance,shadow", "-o", "g.####.exr"});
+  const Arguments moving = with({"--frames", "1-3", "--finish", "look.toml"}, width);
+  RunOk(with(with(scene, moving), {"-o", "s.####.png"}));
+  RunOk(with({"transfer", "g.####.exr", "--style", "plain", "--bits", "16", "-o", "t.####.png"}, moving));
+  RunOk(with({"finish", "p.####.png", "g.####.exr", "--bits", "16", "-o", "f.####.png"}, moving));
+  const char* const widths[] = {"2", "4", "6"};
+  const char* const strengths[] = {"0", "0.5", "1"};
+  const char* const inks[] = {"#000000", "#000000", "#ff0000"};
+  // Depths and light are measured on the first frame.
+  for (int frame = 1; frame <= 3; ++frame) {
+    const std::string number = std::to_string(frame), name = ".000" + number + ".png";
+    const auto i = std::size_t(frame - 1);
+    RunOk(with(scene,
+               {"--frame", number, "--finish", "shadows", "--finish", "outline", "--set",
+                std::string("finish.outline.width=") + widths[i], "--set", std::string("finish.outline.ink=") + inks[i],
+                "--set", std::string("finish.shadows.strength=") + strengths[i], "-o", "one.png"}));
+    const auto one = Read("one.png").rgba;
+    EXPECT_EQ(Read("s" + name).rgba, one) << name;
+    EXPECT_EQ(Read("t" + name).rgba, one) << name;
+    EXPECT_EQ(Read("f" + name).rgba, one) << name;
+  }
+  EXPECT_NE(Read("s.0003.png").rgba, Read("s.0002.png").rgba);
+  // A frame is remade where its own values have changed.
+  const CommandResult again = RunOk(
+      with({"finish", "p.####.png", "g.####.exr", "--bits", "16", "-o", "f.####.png", "--frames", "1-3", "--finish",
+            "look.toml", "--resume", "--json", "--set", "finish.outline.width=[[1, 2], [2, 4], [3, 7]]"},
+           {}));
+  EXPECT_TRUE(Contains(again.out, "\"kept\": 2")) << again.out;
+  RunOk({"finish", "p.0002.png", "g.0002.exr", "--bits", "16", "--frame", "2", "--finish", "look.toml", "--set",
+         "finish.outline.width=[[1, 2], [3, 6]]", "-o", "alone.png"});
+  EXPECT_EQ(Read("alone.png").rgba, Read("s.0002.png").rgba);
+  EXPECT_TRUE(
+      Contains(RunOk({"finish", "--list", "--finish", "look.toml"}).out, "finish.shadows.strength=[[1, 0], [3, 1]]"));
+  EXPECT_TRUE(Contains(RunOk({"stylize", kBall, "--style", "plain", "--finish", "look.toml", "--explain"}).out,
+                       "read by finish shadows"))
+      << "of a later frame";
+  ExpectError({"finish", "p.0001.png", "--finish", "look.toml", "-o", "x.png"}, 3, {"finish shadows needs"});
+}
+
 TEST_F(CliFinish, ListsEffectsKeysAndPresets) {
   const std::string all = RunOk({"finish", "--list"}).out;
   for (const char* name : {"comic", "ligne-claire", "noir", "chiaroscuro", "impression", "charcoal-lines", "storybook",

@@ -266,7 +266,72 @@ TEST_F(FinishFile, KeysChangeOverTime) {
   ASSERT_FALSE(wide);
   EXPECT_EQ(wide.error().kind, ErrorKind::kInput);
   EXPECT_THAT(wide.error().message, HasSubstr("frame 11"));
-  EXPECT_THAT(ErrorOf("[[finish]]\neffect = \"outline\"\nwidth = [[1, 2]]\n"), HasSubstr("for style.toml"));
+}
+
+TEST_F(FinishFile, KeysOfPresetsChangeOverTime) {
+  auto preset = LoadFinishPreset(Write(
+      "[[finish]]\neffect = \"outline\"\nname = \"ink\"\nwidth = [[1, 2], [11, 4]]\nlight = [[5, 0], [6, 1]]\n"
+      "side = [[3, \"inside\"], [5, \"outside\"]]\n[[finish]]\neffect = \"tones\"\nstrength = [[0, 0], [4, 1]]\n"));
+  ASSERT_TRUE(preset) << preset.error().message;
+  const auto outline_at = [&](int frame) {
+    EXPECT_TRUE(SetFinishFrame(*preset, frame));
+    return std::get<OutlinePass>(preset->passes[0].effect);
+  };
+  EXPECT_EQ(std::get<OutlinePass>(preset->passes[0].effect).width, 2.0) << "of frame 0";
+  EXPECT_EQ(outline_at(6).width, 3.0);
+  EXPECT_EQ(outline_at(4).side, OutlinePass::Side::kInside) << "choices hold";
+  EXPECT_EQ(outline_at(5).side, OutlinePass::Side::kOutside);
+  EXPECT_EQ(outline_at(1).light, 0.0);
+  EXPECT_EQ(preset->passes[1].strength, 0.25);
+  EXPECT_TRUE(LayersOverTime(*preset).Has(Layer::kLuminance)) << "of a later frame";
+  EXPECT_EQ(MomentsOf(*preset, 1).size(), 5u) << "now, and at each key frame and after";
+  EXPECT_EQ(ToText(preset->tracks[1].keys).substr(0, 2), "[[");
+  EXPECT_THAT(ErrorOf("[[finish]]\neffect = \"outline\"\nwidth = [[1, 2], [11, 400]]\n"),
+              AllOf(HasSubstr("look.toml:3: "), HasSubstr("frame 11")));
+  EXPECT_THAT(ErrorOf("[[finish]]\neffect = \"outline\"\nwidth = [1, 2]\n"), HasSubstr("as [[1, 0.1], [24, 0.3]]"));
+  EXPECT_THAT(ErrorOf("[[finish]]\neffect = \"palette\"\nlike = [[1, \"a.png\"]]\n"), HasSubstr("read once"));
+  EXPECT_THAT(ErrorOf("[[finish]]\neffect = \"tones\"\nmask = [[1, \"radial\"]]\n"), HasSubstr("read once"));
+}
+
+TEST_F(FinishFile, ColoursMoveInOklab) {
+  const auto preset = LoadFinishPreset(
+      Write("[[finish]]\neffect = \"fill\"\ncolor = [[0, \"#000000\"], [10, \"#ffffff\"], [20, \"#ff0000\"]]\n"));
+  ASSERT_TRUE(preset) << preset.error().message;
+  const auto at = [&](int frame) { return std::get<std::string>(ValueAt(preset->tracks[0].keys, frame)); };
+  EXPECT_EQ(at(-1), "#000000");
+  EXPECT_EQ(at(5), "#636363") << "half of Oklab's lightness is an eighth of the light";
+  EXPECT_EQ(at(10), "#ffffff");
+  EXPECT_EQ(at(20), "#ff0000");
+}
+
+TEST_F(FinishFile, ChainsTakeKeyFramesFromTheCommandLine) {
+  FinishChain chain{{*MakeFinishPass("outline"), *MakeFinishPass("tones")}, {}};
+  FinishChain more = chain;
+  ASSERT_EQ(*OverrideFinish(more, "finish.outline.width=[[1, 2], [3, 4]]"), 1u);
+  Append(more, chain);
+  ASSERT_EQ(chain.passes.size(), 4u);
+  const auto width_at = [&](std::size_t pass, int frame) {
+    EXPECT_TRUE(SetFinishFrame(chain, frame));
+    return std::get<OutlinePass>(chain.passes[pass].effect).width;
+  };
+  EXPECT_EQ(width_at(2, 2), 3.0);
+  EXPECT_EQ(width_at(0, 2), OutlinePass().width) << "a pass of the same name and another preset";
+  const auto dial = OverrideFinish(chain, "dial.lines=0.2");
+  ASSERT_FALSE(dial);
+  EXPECT_THAT(dial.error().message, HasSubstr("finish.outline.width changes over time"));
+  EXPECT_EQ(*OverrideFinish(chain, "finish.outline.width=[[0, 6], [2, 8]]"), 2u);
+  EXPECT_EQ(width_at(0, 1), 7.0);
+  EXPECT_EQ(width_at(2, 1), 7.0);
+  EXPECT_EQ(*OverrideFinish(chain, "finish.outline.width=5"), 2u);
+  EXPECT_EQ(width_at(2, 1), 5.0) << "a plain value takes the place of key frames";
+  EXPECT_TRUE(chain.tracks.empty());
+  EXPECT_EQ(*OverrideFinish(chain, "finish.pen.width=[[0, 6]]"), 0u);
+  const auto wrong = OverrideFinish(chain, "finish.outline.widht=[[0, 6]]");
+  ASSERT_FALSE(wrong);
+  EXPECT_THAT(wrong.error().message, HasSubstr("did you mean width?"));
+  EXPECT_FALSE(OverrideFinish(chain, "finish.outline.objects=[[0, \"A\"]]"));
+  EXPECT_FALSE(OverrideFinish(chain, "finish.outline.width=[[0, 1, 2]]"));
+  EXPECT_FALSE(OverrideFinish(chain, "dial.lines=[[0, 1]]"));
 }
 
 TEST_F(FinishFile, BundledPresetsAreRead) {
