@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "core/image/color.h"
 #include "core/style/finish_file.h"
 #include "core/style/finish_keys.h"
 #include "core/style/style_file.h"
@@ -69,7 +68,7 @@ Status ApplyChain(const Chain& chain, const FinishFrame& frame, Picture& picture
   return Ok();
 }
 
-// Means of 2 × 2 pixels, of their light.
+// Means of 2 × 2 pixels in the encoding, as paint of partial coverage lies over paper.
 Picture Halved(const Picture& picture) {
   Picture half(picture.width / 2, picture.height / 2);
   for (int y = 0; y < half.height; ++y) {
@@ -77,11 +76,11 @@ Picture Halved(const Picture& picture) {
       double sum[4] = {};
       for (int k = 0; k < 4; ++k) {
         const std::uint16_t* const texel = picture.At(2 * x + k % 2, 2 * y + k / 2);
-        for (int c = 0; c < 3; ++c) sum[c] += Srgb16ToLinear(texel[c]) * double(texel[3]);
+        for (int c = 0; c < 3; ++c) sum[c] += double(texel[c]) * texel[3];
         sum[3] += texel[3];
       }
       if (!(sum[3] > 0.0)) continue;
-      for (int c = 0; c < 3; ++c) half.At(x, y)[c] = Srgb16FromLinear(static_cast<float>(sum[c] / sum[3]));
+      for (int c = 0; c < 3; ++c) half.At(x, y)[c] = static_cast<std::uint16_t>(sum[c] / sum[3] + 0.5);
       half.At(x, y)[3] = static_cast<std::uint16_t>(sum[3] / 4.0 + 0.5);
     }
   }

@@ -186,7 +186,10 @@ class Patches {
 // How much of a pixel strokes of this share of ink cover: lines `spacing` apart and share · spacing wide, across a
 // pixel of width 1.
 float LineCover(float across, float spacing, float share) {
-  const float from_middle = std::fabs(across / spacing - std::floor(across / spacing) - 0.5f) * spacing;
+  const float turns = across / spacing;
+  float part = turns - static_cast<float>(static_cast<int>(turns));  // without std::floor, which may be a call
+  if (part < 0.0f) part = part + 1.0f;
+  const float from_middle = std::fabs(part - 0.5f) * spacing;
   // Both the line and the gap may be thinner than a pixel.
   const float half = 0.5f * share * spacing;
   const float low = std::max(from_middle - 0.5f, -half), high = std::min(from_middle + 0.5f, half);
