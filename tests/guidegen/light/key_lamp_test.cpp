@@ -119,9 +119,8 @@ TEST(KeyLamp, WithoutALampTheCosineIsZero) {
   scene.world_radiance = glm::vec3(1.0f);
   EXPECT_FALSE(FindKeyLamp(scene));
   const GuidegenOptions options = Sized(16, 16, kBoth);
-  for (const float cosine : Render(scene, FrontCamera(4.0), options).guides.Plane(Layer::kCosine)) {
-    EXPECT_EQ(cosine, 0.0f);
-  }
+  const GuideSet guides = Render(scene, FrontCamera(4.0), options).guides;
+  for (const float cosine : guides.Plane(Layer::kCosine)) EXPECT_EQ(cosine, 0.0f);
   scene.lights = {PointLight({0, 0, 9}, 0.0)};
   EXPECT_FALSE(FindKeyLamp(scene)) << "a black lamp is none";
   for (const PlanItem& item : PlanGuides(scene, options)) {
