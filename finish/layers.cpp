@@ -113,13 +113,19 @@ class Layering {
     return arena.execute([&] { return internal::InkBetween(change, options_.bits == 8 ? 255 : 65535, below); });
   }
 
+  // Outlines on nothing, in one ink.
+  Expected<Picture> LinesOf(FinishStep step) const {
+    std::get<OutlinePass>(step.pass.effect).color = OutlinePass::Color::kInk;
+    Picture lines(picture_.width, picture_.height);
+    SCUMBLE_RETURN_IF_ERROR(ApplyFinish(std::span(&step, 1), step.pass.at, frame_, threads_, {}, lines));
+    return lines;
+  }
+
   // The alpha, or the darkness, of the pass's lines drawn with black ink instead of the paint's colours.
   Expected<std::vector<std::uint16_t>> SharesOf(FinishStep step, const Picture& before) const {
     std::vector<std::uint16_t> shares(before.rgba.size() / 4);
-    if (auto* const outline = std::get_if<OutlinePass>(&step.pass.effect)) {
-      outline->color = OutlinePass::Color::kInk;
-      Picture lines(before.width, before.height);
-      SCUMBLE_RETURN_IF_ERROR(ApplyFinish(std::span(&step, 1), step.pass.at, frame_, threads_, {}, lines));
+    if (std::holds_alternative<OutlinePass>(step.pass.effect)) {
+      SCUMBLE_ASSIGN(const Picture lines, LinesOf(step));
       for (std::size_t i = 0; i < shares.size(); ++i) shares[i] = lines.rgba[4 * i + 3];
       return shares;
     }
@@ -136,6 +142,13 @@ class Layering {
   }
 
   Status AddInk(const FinishStep& step, const Picture& before) {
+    const auto* outline = std::get_if<OutlinePass>(&step.pass.effect);
+    const bool has_one_ink = outline && outline->color == OutlinePass::Color::kInk;
+    if (has_one_ink && !options_.only.empty()) {
+      SCUMBLE_ASSIGN(Picture lines, LinesOf(step));
+      layers_.push_back({step.pass.name, std::move(lines), true});
+      return Ok();
+    }
     Picture target = picture_, exact;
     if (!options_.only.empty()) exact = before;
     if (step.pass.at == FinishPass::Stage::kPaint) {
@@ -143,10 +156,9 @@ class Layering {
       if (!exact.empty()) SCUMBLE_RETURN_IF_ERROR(PutGround(exact));
     }
     internal::InkChange change{before, picture_, target, std::nullopt};
-    const auto* outline = std::get_if<OutlinePass>(&step.pass.effect);
     const auto* edges = std::get_if<EdgesPass>(&step.pass.effect);
     const auto* hatch = std::get_if<HatchPass>(&step.pass.effect);
-    if (outline && outline->color == OutlinePass::Color::kInk) change.ink = outline->ink;
+    if (has_one_ink) change.ink = outline->ink;
     if (edges && edges->color == OutlinePass::Color::kInk) change.ink = edges->ink;
     if (hatch) change.ink = hatch->ink;
     if (outline || !change.ink) {
