@@ -251,7 +251,7 @@ TEST(GuideSpace, OutlinesAreMatchedByTheirDistance) {
     const double per_pixel = 200.0 / prepared->exemplar->height();  // of the guides for one of the exemplar
     GuideSet scene = MakeGuides(64, height, [](int, int) { return glm::vec3(0, 0, 1); });
     scene.Add(Layer::kOutline);
-    for (const float distance : {0.5f, 3.0f, 8.0f}) {
+    for (const float distance : {3.0f, 5.0f, 8.0f}) {
       scene.Plane(Layer::kOutline)[0] = distance;
       float values[GuideSpace::kMaxExtra];
       prepared->space->Read(scene, 0, 1.0f, values);
