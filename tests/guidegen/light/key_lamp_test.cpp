@@ -124,7 +124,9 @@ TEST(KeyLamp, WithoutALampTheCosineIsZero) {
   scene.lights = {PointLight({0, 0, 9}, 0.0)};
   EXPECT_FALSE(FindKeyLamp(scene)) << "a black lamp is none";
   for (const PlanItem& item : PlanGuides(scene, options)) {
-    if (item.layer == "cosine") EXPECT_EQ(item.cost, "none: the scene has no lamp, so it is 0");
+    if (item.layer == "cosine") {
+      EXPECT_EQ(item.cost, "none: the scene has no lamp, so it is 0");
+    }
   }
 }
 
