@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -80,7 +81,12 @@ std::optional<PointEffect> PointEffectOf(const FinishStep& step, const FinishFra
     std::optional<PointEffect> operator()(const ToonPass& one) { return internal::MakeToon(one, frame); }
     std::optional<PointEffect> operator()(const RenderPass& one) { return internal::MakeRender(one, frame); }
     std::optional<PointEffect> operator()(const TonesPass& one) { return internal::MakeTones(one); }
-    std::optional<PointEffect> operator()(const ShadowsPass& one) { return internal::MakeShadows(one, frame); }
+    std::optional<PointEffect> operator()(const ShadowsPass& one) {
+      if (!(one.soften > 0.0)) return internal::MakeShadows(one, frame);
+      const auto shade = std::make_shared<const internal::FloatPlane>(internal::SoftShade(one, frame));
+      return [shade, effect = internal::MakeShadows(one, frame, *shade)](
+                 std::size_t first, std::size_t count, OklabBlock& block) { effect(first, count, block); };
+    }
     std::optional<PointEffect> operator()(const DepthPass& one) {
       if (one.blur > 0.0) {
         const Picture before = step.share.empty() ? Picture() : picture;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 
+#include "finish/area/float_plane.h"
 #include "finish/finish.h"
 
 namespace scumble::internal {
@@ -13,6 +14,10 @@ namespace scumble::internal {
 // The pass's filter of Oklab colours (finish/area/smooth_filters.h), several times.
 void Smooth(const SmoothPass& pass, double strength, std::span<const std::uint8_t> only, const FinishFrame& frame,
             Picture& picture);
+
+// By pixel how much of it is in shade, under a Gaussian of the pass's `soften` over pixels of the same object.
+// Background has no shade. O(pixels · soften).
+FloatPlane SoftShade(const ShadowsPass& pass, const FinishFrame& frame);
 
 // The extended difference of Gaussians (Winnemöller, Kyprianidis, Olsen, "XDoG: An eXtended difference-of-Gaussians
 // compendium", 2012, section 2.5): U = (1 + p) G(σ) - p G(1.6 σ) of a tone of 0 … 1; ink is 0 where U reaches the

@@ -292,6 +292,22 @@ void ReduceRow(const BlurSource& source, float side, int v, std::array<std::vect
   }
 }
 
+// The levels' sums, all of a strip of rows while it is in the cache.
+void ReduceAll(const BlurSource& source, float side, std::vector<BlurLevel>& levels) {
+  const int strip = std::max(8, levels.back().factor);
+  tbb::parallel_for(tbb::blocked_range<int>(0, (source.height + strip - 1) / strip, 1), [&](const auto& strips) {
+    std::array<std::vector<float>, 4> sums;  // of a row, by column of the picture
+    for (auto& sum : sums) sum.resize(std::size_t(source.width) + kBlurSpare);
+    for (int y = strips.begin() * strip; y < strips.end() * strip; y += strip) {
+      for (BlurLevel& level : levels) {
+        const int first = std::max(0, (y - level.top) / level.factor),
+                  last = std::min(level.height, (y + strip - level.top) / level.factor);
+        for (int v = first; v < last; ++v) ReduceRow(source, side, v, sums, level);
+      }
+    }
+  });
+}
+
 // Only the part of each level that pixels look at, and what a Gaussian reaches around.
 BlurSide SideOf(const BlurSource& source, float side, double most) {
   BlurSide made{side, LevelsUpTo(most), {0.0f}};
@@ -302,19 +318,21 @@ BlurSide SideOf(const BlurSource& source, float side, double most) {
     made.variances.push_back(static_cast<float>(level.sigma * level.sigma));
     const Region& used = regions.of_level[k];
     if (used.empty()) continue;
+    // Blocks begin at multiples of their size, whatever is looked at.
     const int f = level.factor, around = static_cast<int>(std::ceil(3.0 * level.sigma)) + 2 * f;
-    level.left = std::max(regions.all.x0, used.x0 - around), level.right = std::min(regions.all.x1, used.x1 + around);
-    level.top = std::max(regions.all.y0, used.y0 - around), level.bottom = std::min(regions.all.y1, used.y1 + around);
+    level.left = std::max(regions.all.x0, used.x0 - around) / f * f;
+    level.top = std::max(regions.all.y0, used.y0 - around) / f * f;
+    level.right = std::min(regions.all.x1, used.x1 + around);
+    level.bottom = std::min(regions.all.y1, used.y1 + around);
     level.width = (level.right - level.left + f - 1) / f, level.height = (level.bottom - level.top + f - 1) / f;
     for (auto& plane : level.planes) plane.resize(std::size_t(level.width) * std::size_t(level.height));
+  }
+  ReduceAll(source, side, made.levels);
+  for (BlurLevel& level : made.levels) {
+    if (level.width == 0) continue;
     // Blocks of f pixels, and straight lines between their middles, have a variance of their own.
-    const double squared = double(f) * f;
-    const double own = (squared - 1.0) / 12.0 + (f > 1 ? squared / 6.0 : 0.0);
-    tbb::parallel_for(tbb::blocked_range<int>(0, level.height, std::max(1, 16 / f)), [&](const auto& rows) {
-      std::array<std::vector<float>, 4> sums;  // of a row, by column of the picture
-      for (auto& sum : sums) sum.resize(std::size_t(level.right - level.left) + kBlurSpare);
-      for (int v = rows.begin(); v != rows.end(); ++v) ReduceRow(source, side, v, sums, level);
-    });
+    const double squared = double(level.factor) * level.factor;
+    const double own = (squared - 1.0) / 12.0 + (level.factor > 1 ? squared / 6.0 : 0.0);
     for (auto& plane : level.planes)
       plane = Blurred(plane, level.width, level.height, std::sqrt((level.sigma * level.sigma - own) / squared));
   }

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <span>
 
 #include "core/filter/oklab_rows.h"
 #include "finish/finish.h"
@@ -16,7 +17,8 @@ using PointEffect = std::function<void(std::size_t first, std::size_t count, Okl
 PointEffect MakeToon(const ToonPass& pass, const FinishFrame& frame);
 PointEffect MakeRender(const RenderPass& pass, const FinishFrame& frame);
 PointEffect MakeTones(const TonesPass& pass);
-PointEffect MakeShadows(const ShadowsPass& pass, const FinishFrame& frame);
+// `soft`: by pixel how much of it is in shade, and must outlive the effect; empty: what ShadeOf says.
+PointEffect MakeShadows(const ShadowsPass& pass, const FinishFrame& frame, std::span<const float> soft = {});
 PointEffect MakeDepth(const DepthPass& pass, const FinishFrame& frame);
 // The linear map of Monge and Kantorovich between two normal distributions (Pitié, Kokaram, "The linear
 // Monge-Kantorovitch linear colour mapping for example-based colour transfer", 2007), A = S^-½ (S^½ T S^½)^½ S^-½, in
@@ -25,6 +27,9 @@ PointEffect MakeDepth(const DepthPass& pass, const FinishFrame& frame);
 PointEffect MakePalette(const PalettePass& pass, const ColorSpread& source);
 PointEffect MakeGrade(const GradePass& pass);
 PointEffect MakeFill(const FillPass& pass);
+
+// How much of each pixel is in shade, 0 … 1, of `count` from `first` on: the larger of cast and form shadow.
+void ShadeOf(const ShadowsPass& pass, const FinishFrame& frame, std::size_t first, std::size_t count, float* out);
 
 // A colour as (L, a, b).
 struct LabColor {

@@ -1,11 +1,7 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <memory>
 #include <span>
 
-#include "finish/area/gaussian_rows.h"
-#include "finish/area/oklab_blocks.h"
 #include "finish/tone/point_effect.h"
 
 namespace scumble::internal {
@@ -25,34 +21,15 @@ class Shade {
         none_(static_cast<float>(pass.none * frame.measures.bright)) {
     if (pass.source != ShadowsPass::Source::kForm) cast_ = frame.guides->Plane(Layer::kShadow);
     if (pass.source != ShadowsPass::Source::kCast) light_ = frame.guides->Plane(Layer::kLuminance);
-    if (pass.soften > 0.0)
-      soft_ = std::make_shared<const FloatPlane>(Softened(*frame.guides, pass.soften * frame.scale));
   }
-  float At(std::size_t pixel) const { return soft_ ? (*soft_)[pixel] : HardAt(pixel); }
-
- private:
-  float HardAt(std::size_t pixel) const {
+  float At(std::size_t pixel) const {
     const float cast = cast_.empty() ? 0.0f : std::clamp(cast_[pixel], 0.0f, 1.0f);
     return light_.empty() ? cast : std::max(cast, 1.0f - SmoothStep(full_, none_, light_[pixel]));
   }
-  // Evened out within each object. Background has no shade.
-  FloatPlane Softened(const GuideSet& guides, double sigma) const {
-    const auto coverage = guides.Plane(Layer::kCoverage), object = guides.Plane(Layer::kObject);
-    FloatPlane hard(coverage.size()), keys(coverage.size());
-    ForEachOklabBlock(hard.size(), [&](std::size_t first, std::size_t count) {
-      for (std::size_t i = first; i < first + count; ++i) {
-        const bool is_covered = coverage[i] > 0.0f;
-        const float weight = is_covered ? HardAt(i) : 0.0f;
-        hard[i] = weight > 0.0f ? weight : 0.0f;  // not a number: none
-        keys[i] = is_covered ? object[i] : std::numeric_limits<float>::quiet_NaN();
-      }
-    });
-    return BlurredWithin(hard, keys, guides.width(), guides.height(), sigma);
-  }
 
+ private:
   float full_, none_;
   std::span<const float> cast_, light_;
-  std::shared_ptr<const FloatPlane> soft_;  // null: as it is
 };
 
 float Mix(float from, float to, float share) { return from + (to - from) * share; }
@@ -90,14 +67,19 @@ Look LookOf(ShadowsPass::Mode mode, const LabColor& paint, const LabColor& color
 
 }  // namespace
 
-PointEffect MakeShadows(const ShadowsPass& pass, const FinishFrame& frame) {
+void ShadeOf(const ShadowsPass& pass, const FinishFrame& frame, std::size_t first, std::size_t count, float* out) {
+  const Shade shade(pass, frame);
+  for (std::size_t i = 0; i < count; ++i) out[i] = shade.At(first + i);
+}
+
+PointEffect MakeShadows(const ShadowsPass& pass, const FinishFrame& frame, std::span<const float> soft) {
   const Shade shade(pass, frame);
   const LabColor color = ToOklab(pass.color);
   const bool changes_light =
       pass.mode == ShadowsPass::Mode::kChiaroscuro || pass.mode == ShadowsPass::Mode::kImpression;
   return [=, mode = pass.mode](std::size_t first, std::size_t count, OklabBlock& block) {
     for (std::size_t i = 0; i < count; ++i) {
-      const float share = shade.At(first + i);
+      const float share = soft.empty() ? shade.At(first + i) : soft[first + i];
       if (!(share > 0.0f) && !changes_light) continue;
       const auto [dark, light] = LookOf(mode, {block.lightness[i], block.a[i], block.b[i]}, color);
       block.lightness[i] = Mix(light.lightness, dark.lightness, share);
