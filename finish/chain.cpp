@@ -236,13 +236,6 @@ Status CheckDepths(const FinishPass& pass, const FinishMeasures& measures) {
                     pass.name + ".far");
 }
 
-Status CheckRamp(const FinishPass& pass) {
-  const auto* toon = std::get_if<ToonPass>(&pass.effect);
-  if (!toon || toon->shading != ToonPass::Shading::kRamp || toon->ramp_colors) return Ok();
-  return InputError("finish " + pass.name + ": shading is \"ramp\", and there are no colours for it: set finish." +
-                    pass.name + ".ramp to colours from dark to light, \"#202040 #fff4d0\", or to a picture's file");
-}
-
 Status CheckMask(const FinishPass& pass) {
   const FinishMask& mask = pass.mask;
   if (!(mask.near > 0.0) || !(mask.far > 0.0) || mask.near < mask.far) return Ok();
@@ -251,6 +244,13 @@ Status CheckMask(const FinishPass& pass) {
 }
 
 }  // namespace
+
+Status CheckRamp(const FinishPass& pass) {
+  const auto* toon = std::get_if<ToonPass>(&pass.effect);
+  if (!toon || toon->shading != ToonPass::Shading::kRamp || toon->ramp_colors) return Ok();
+  return InputError("finish " + pass.name + ": shading is \"ramp\", and there are no colours for it: set finish." +
+                    pass.name + ".ramp to colours from dark to light, \"#202040 #fff4d0\", or to a picture's file");
+}
 
 Status CheckFinish(std::span<const FinishStep> steps, const GuideSet* guides, const FinishMeasures& measures) {
   for (const FinishStep& step : steps) {
@@ -268,6 +268,10 @@ Status CheckFinish(std::span<const FinishStep> steps, const GuideSet* guides, co
     SCUMBLE_RETURN_IF_ERROR(CheckRamp(step.pass));
     SCUMBLE_RETURN_IF_ERROR(CheckMask(step.pass));
     const auto* outline = std::get_if<OutlinePass>(&step.pass.effect);
+    if (outline && outline->form == OutlinePass::Form::kField && outline->side != OutlinePass::Side::kCentre) {
+      return InputError("finish " + step.pass.name + ": form is \"field\", which knows no sides: set finish." +
+                        step.pass.name + ".side to \"centre\", or finish." + step.pass.name + ".form to \"strokes\"");
+    }
     if (outline && outline->thin > 0.0 && guides && guides->camera && guides->camera->IsOrthographic()) {
       return InputError("finish " + step.pass.name +
                         ": thin makes distant lines thinner, and in an orthographic view nothing gets smaller: set "

@@ -63,6 +63,9 @@ struct FinishFrame {
   const GuideSet* small_guides = nullptr;
 };
 
+// kInput where a pass is to show a ramp of colours, and has none.
+Status CheckRamp(const FinishPass& pass);
+
 // kInput where the guides lack a layer that a step reads, or where a width is to follow the depth of an orthographic
 // view, which has no sizes, where near is not before far, or where a palette has no example and a ramp no colours. The
 // message names the pass.

@@ -50,8 +50,9 @@ const std::map<std::string, std::string>& UnrecordedSettings() {
   return kValues;
 }
 
-// Any other setting that one side lacks counts as a difference: another version may use another value for it.
-Status CheckSettings(const std::filesystem::path& path, const std::string& found, const std::string& wanted) {
+}  // namespace
+
+Status CheckSameSettings(const std::filesystem::path& path, const std::string& found, const std::string& wanted) {
   if (found.empty() || wanted.empty()) return Ok();
   const auto there = Parts(found), here = Parts(wanted);
   const auto value_of = [](const std::map<std::string, std::string>& parts, const std::string& name) {
@@ -68,6 +69,8 @@ Status CheckSettings(const std::filesystem::path& path, const std::string& found
   }
   return Ok();
 }
+
+namespace {
 
 // A plain PNG needs no module.
 Expected<StoredPicture> Inspect(const std::filesystem::path& path) {
@@ -100,7 +103,7 @@ Status CheckWholePicture(const std::filesystem::path& path, const PictureShape& 
     return InputError(path.string() + " has " + std::to_string(stored.bits) + " bits a channel, not " +
                       std::to_string(shape.bits));
   }
-  SCUMBLE_RETURN_IF_ERROR(CheckSettings(path, stored.settings, shape.settings));
+  SCUMBLE_RETURN_IF_ERROR(CheckSameSettings(path, stored.settings, shape.settings));
   if (const auto read = ReadPicture(path); !read) return read.error();
   return Ok();
 }
@@ -125,7 +128,7 @@ Status CheckWholeGuides(const std::filesystem::path& path, const GuideShape& sha
   }
   const auto settings = info.header.attributes.find(kSettingsKey);
   if (settings != info.header.attributes.end()) {
-    SCUMBLE_RETURN_IF_ERROR(CheckSettings(path, settings->second, shape.settings));
+    SCUMBLE_RETURN_IF_ERROR(CheckSameSettings(path, settings->second, shape.settings));
   }
   GuideReadOptions options;
   options.required = shape.layers;

@@ -24,6 +24,10 @@ struct PictureShape {
                          // samples); a file without settings, and "" here, are not compared
 };
 
+// Whether two texts of settings agree, as PictureShape::settings says; the error names the first that differs. Any
+// setting that one side lacks counts as a difference: another version may use another value for it.
+Status CheckSameSettings(const std::filesystem::path& path, const std::string& found, const std::string& wanted);
+
 // Channels of a picture that WritePicture writes to a file of that name: 4, and 3 for JPEG, which has no alpha.
 int PictureChannels(const std::filesystem::path& path);
 

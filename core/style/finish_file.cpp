@@ -68,7 +68,7 @@ Expected<FinishPass> ReadPass(const toml::table& table, const std::string& file,
     } else if (const auto* pairs = node.as_array(); pairs && FindFinishKey(pass, name)) {
       of_pass.push_back({name, pairs});
     } else if (!value) {
-      done = UsageError("expected a plain value");
+      done = FindFinishKey(pass, name) ? UsageError("expected a plain value") : SetFinishKey(pass, name, std::string());
     } else if (const auto* shape = std::get_if<std::string>(&*value); shape && name == kMaskKey) {
       done = SetMaskShape(*shape, std::filesystem::path(file).parent_path(), pass.mask);
     } else {
@@ -182,12 +182,14 @@ Expected<std::size_t> OverrideFinish(std::span<FinishPass> passes, const std::st
   return count;
 }
 
-Error NoSuchFinish(const std::string& text, std::span<const FinishPass> passes) {
+Error NoSuchFinish(const std::string& text, std::span<const FinishPass> passes, const std::string& style) {
   std::string names;
   for (const FinishPass& pass : passes) names += (names.empty() ? "" : ", ") + pass.name;
-  return UsageError(
-      "--set " + text + ": no finish has that name; " +
-      (names.empty() ? "there is none, give --finish or [[finish]] of style.toml" : "there are " + names));
+  return UsageError("--set " + (style.empty() ? "" : style + ":") + text + ": no finish " +
+                    (style.empty() ? "" : "of that style ") + "has that name; " +
+                    (!names.empty()  ? "there are " + names
+                     : style.empty() ? "there is none, give --finish or [[finish]] of style.toml"
+                                     : "there is none in its style.toml; those of --finish go without a style's name"));
 }
 
 }  // namespace scumble

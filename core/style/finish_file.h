@@ -32,6 +32,7 @@ bool IsOfFinish(const std::string& set);
 Expected<std::size_t> OverrideFinish(std::span<FinishPass> passes, const std::string& text);
 
 // The error where OverrideFinish sets nothing: which names there are.
-Error NoSuchFinish(const std::string& text, std::span<const FinishPass> passes);
+// `style`: that the text named before a colon.
+Error NoSuchFinish(const std::string& text, std::span<const FinishPass> passes, const std::string& style = {});
 
 }  // namespace scumble

@@ -144,6 +144,14 @@ void TurnDial(const std::string& dial, double factor, FinishPass& pass) {
     if (smooth && even > 1.0) smooth->radius = std::min(32.0, smooth->radius * even);
     if (tones && even > 1.0) tones->bins = std::max(2, static_cast<int>(tones->bins / even + 0.5));
     if (smooth || tones) pass.strength *= std::min(1.0, even);
+    // Lines inside objects.
+    if (auto* const outline = std::get_if<OutlinePass>(&pass.effect)) {
+      for (const LineClass line :
+           {LineClass::kCrease, LineClass::kMaterial, LineClass::kTexture, LineClass::kSuggestive}) {
+        double& share = outline->of_class[std::size_t(line)];
+        share = UpTo(4.0, share * factor);
+      }
+    }
   } else if (dial == "light") {
     if (auto* const shadows = std::get_if<ShadowsPass>(&pass.effect)) {
       pass.strength = UpTo(1.0, pass.strength * factor);
@@ -155,6 +163,10 @@ void TurnDial(const std::string& dial, double factor, FinishPass& pass) {
       toon->tint = UpTo(1.0, toon->tint * factor);
       TurnCool(factor, *toon);
     }
+    if (auto* const outline = std::get_if<OutlinePass>(&pass.effect))
+      outline->light = std::clamp(outline->light * factor, -2.0, 2.0);
+  } else if (auto* const outline = std::get_if<OutlinePass>(&pass.effect)) {
+    outline->thin = UpTo(2.0, outline->thin * factor);
   } else if (auto* const depth = std::get_if<DepthPass>(&pass.effect)) {
     for (double* const part : {&depth->desaturate, &depth->tint, &depth->air}) *part = UpTo(1.0, *part * factor);
     depth->blur = UpTo(64.0, depth->blur * factor);

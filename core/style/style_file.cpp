@@ -386,7 +386,7 @@ Status ApplyOverride(Style& style, const std::string& text) {
   }
   if (IsOfFinish(name)) {
     SCUMBLE_ASSIGN(const std::size_t count, OverrideFinish(style, text));
-    return count > 0 ? Ok() : Status(NoSuchFinish(text, style.finish));
+    return count > 0 ? Ok() : Status(NoSuchFinish(text, style.finish, style.name));
   }
   if (name.rfind("exemplar.", 0) == 0) return SetExemplarKey(style, name, *table.get("value"));
   return SetKey(style, name, *table.get("value"), "--set", fs::path());

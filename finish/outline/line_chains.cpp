@@ -30,11 +30,12 @@ class Tracer {
     if (guides.Has(Layer::kShadow)) shadow_ = guides.Plane(Layer::kShadow);
   }
 
-  std::vector<LineChain> Trace(double shortest) {
+  std::vector<LineChain> Trace(double shortest, bool spurs) {
     std::vector<LineChain> chains;
     const auto add = [&](LineChain chain) {
       const bool is_noise = double(chain.points.size()) < (chain.closed ? 2.0 * shortest : shortest);
-      if (!is_noise || !(chain.begins && chain.ends)) chains.push_back(std::move(chain));
+      const bool is_loose = spurs ? chain.begins || chain.ends : chain.begins && chain.ends;
+      if (!is_noise || !is_loose) chains.push_back(std::move(chain));
     };
     // From ends and junctions first; what is left then are rings.
     ForEachBorder([&](const Border& border) {
@@ -216,7 +217,7 @@ std::vector<T> Blurred(const std::vector<T>& values, bool closed, const T& first
 }
 
 // Twice the blurred curve less the twice blurred one: steps of pixels vanish, bends keep their size.
-void Smooth(LineChain& chain) {
+void Smooth(float give, LineChain& chain) {
   std::vector<glm::vec2> given;
   for (const LinePoint& point : chain.points) given.push_back(point.at);
   // Where the line crosses a border rather than runs along it, the shift says little, and the neighbours say more.
@@ -240,16 +241,16 @@ void Smooth(LineChain& chain) {
     LinePoint& point = chain.points[i];
     const glm::vec2 moved = once[i] + once[i] - twice[i] - given[i];
     const float across = moved.x * point.to_owner.x + moved.y * point.to_owner.y;
-    const float most = std::clamp(across, -0.5f, 0.5f);
+    const float most = std::clamp(across, -give, give);
     point.at = given[i] + moved + point.to_owner * (most - across);
   }
 }
 
 }  // namespace
 
-std::vector<LineChain> TraceLines(BorderMap& borders, const GuideSet& guides, double shortest) {
-  std::vector<LineChain> chains = Tracer(borders, guides).Trace(shortest);
-  tbb::parallel_for(std::size_t(0), chains.size(), [&](std::size_t i) { Smooth(chains[i]); });
+std::vector<LineChain> TraceLines(BorderMap& borders, const GuideSet& guides, double shortest, bool spurs, float give) {
+  std::vector<LineChain> chains = Tracer(borders, guides).Trace(shortest, spurs);
+  tbb::parallel_for(std::size_t(0), chains.size(), [&](std::size_t i) { Smooth(give, chains[i]); });
   return chains;
 }
 

@@ -67,9 +67,6 @@ StrokeCover CoverByDistance(const OutlinePass& pass, const FinishFrame& frame, c
   const LinesBeside lines(borders, *frame.guides, width);
   const double widest = 64.0 * 4.0 * frame.scale;
   const double most = 2.0 * std::max(widest, 1.0) + 1.0, most_squared = most * most;
-  const float side = pass.side == OutlinePass::Side::kInside    ? 0.5f
-                     : pass.side == OutlinePass::Side::kOutside ? -0.5f
-                                                                : 0.0f;
   ForNearestFeature(
       borders.width, borders.height, [&](std::size_t i) { return lines.Has(i); },
       [&](std::size_t i, int x, int y, int u, int v) {
@@ -79,9 +76,7 @@ StrokeCover CoverByDistance(const OutlinePass& pass, const FinishFrame& frame, c
         const BesideLine line = lines.At(nearest);
         if (!(line.width > 0.0f)) return;
         const float away = static_cast<float>(std::sqrt(squared)) + 0.5f;
-        const float inwards = nearest == line.owner ? away : -away;
-        const float off = std::fabs(inwards - side * line.width);
-        const float edge = std::max(line.width, 1.0f) * 0.5f + 0.5f - off;
+        const float edge = std::max(line.width, 1.0f) * 0.5f + 0.5f - away;
         cover.share[i] = std::clamp(edge, 0.0f, 1.0f) * std::min(line.width, 1.0f);
         if (with_owner) cover.owner[i] = static_cast<std::uint32_t>(line.owner);
       });

@@ -35,8 +35,9 @@ void InkFromPaint(bool is_complement, std::uint16_t* texel) {
 // `frame`: with the guides of the borders, which are `factor` times smaller than the picture.
 StrokeCover CoverByStrokes(const OutlinePass& pass, const FinishFrame& frame, int factor, const LineNoise& noise,
                            BorderMap& borders, bool with_owner) {
-  std::vector<LineChain> chains =
-      TraceLines(borders, *frame.guides, std::max(kShortest, kShortest * frame.scale / factor));
+  // Of small guides a step of a border is several pixels of the picture: it is evened out, and spurs are left out.
+  const double shortest = std::max(kShortest, kShortest * frame.scale / factor);
+  std::vector<LineChain> chains = TraceLines(borders, *frame.guides, shortest, factor > 1, factor > 1 ? 1.0f : 0.5f);
   for (LineChain& chain : chains) {
     const auto times = static_cast<float>(factor);
     for (LinePoint& point : chain.points) point.at *= times;

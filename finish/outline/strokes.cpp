@@ -74,6 +74,30 @@ struct Middle {
   std::vector<std::uint32_t> owner;
 };
 
+// Which side of a line its owners lie on, -1 … 1, 1 being the left. Where two surfaces touch, now the one is nearer and
+// now the other: owners count over a stretch of the line, and a change of sides is a passage from one to the other.
+std::vector<float> SidesOf(const LineChain& chain) {
+  const auto& points = chain.points;
+  const auto count = static_cast<std::ptrdiff_t>(points.size());
+  const auto at = [&](std::ptrdiff_t i) {
+    return static_cast<std::size_t>(chain.closed ? (i % count + count) % count
+                                                 : std::clamp<std::ptrdiff_t>(i, 0, count - 1));
+  };
+  std::vector<float> own(points.size());
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    const glm::vec2 along = points[at(i + 1)].at - points[at(i - 1)].at;
+    own[std::size_t(i)] = Dot(glm::vec2(-along.y, along.x), points[std::size_t(i)].to_owner) < 0.0f ? -1.0f : 1.0f;
+  }
+  constexpr std::ptrdiff_t kStretch = 8;
+  std::vector<float> sides(points.size());
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    float sum = 0.0f;
+    for (std::ptrdiff_t k = -kStretch; k <= kStretch; ++k) sum += own[at(i + k)];
+    sides[std::size_t(i)] = std::clamp(2.0f * sum / (2 * kStretch + 1), -1.0f, 1.0f);
+  }
+  return sides;
+}
+
 Middle MiddleOf(const OutlinePass& pass, const FinishFrame& frame, const LineNoise& noise, const LineChain& chain,
                 const std::vector<float>& widths) {
   const auto& points = chain.points;
@@ -81,6 +105,7 @@ Middle MiddleOf(const OutlinePass& pass, const FinishFrame& frame, const LineNoi
   const float side = pass.side == OutlinePass::Side::kInside    ? 0.5f
                      : pass.side == OutlinePass::Side::kOutside ? -0.5f
                                                                 : 0.0f;
+  const std::vector<float> to_side = side != 0.0f ? SidesOf(chain) : std::vector<float>();
   const auto wobble = static_cast<float>(pass.wobble * frame.scale);
   const auto per_wave = static_cast<float>(1.0 / (pass.wobble_length * frame.scale));
   const auto moved = [&](glm::vec2 at, std::size_t i) {
@@ -89,9 +114,8 @@ Middle MiddleOf(const OutlinePass& pass, const FinishFrame& frame, const LineNoi
       const std::size_t after = i + 1 < count ? i + 1 : chain.closed ? 0 : i;
       const glm::vec2 along = points[after].at - points[before].at;
       const float length = std::sqrt(Dot(along, along));
-      glm::vec2 across = length > 0.0f ? glm::vec2(-along.y, along.x) / length : points[i].to_owner;
-      if (Dot(across, points[i].to_owner) < 0.0f) across = -across;
-      at += across * (side * widths[i]);
+      const glm::vec2 left = length > 0.0f ? glm::vec2(-along.y, along.x) / length : points[i].to_owner;
+      at += left * (to_side[i] * side * widths[i]);
     }
     if (wobble > 0.0f && noise.across) {
       const auto width = static_cast<std::uint32_t>(frame.guides->width());

@@ -7,12 +7,14 @@
 
 namespace scumble::internal {
 
-// From what a pixel shows to the viewer, a unit vector in view space. Guides without a camera are taken for
-// orthographic.
+// From what a pixel shows to the viewer, a unit vector in the space of the normals. Guides without a camera are taken
+// for orthographic; normals in the eye's frame are turned to it already.
 class ViewRays {
  public:
   explicit ViewRays(const GuideSet& guides)
       : per_width_(2.0f / static_cast<float>(guides.width())), per_height_(2.0f / static_cast<float>(guides.height())) {
+    const auto normal_frame = guides.attributes.find("scumble:normal_frame");
+    if (normal_frame != guides.attributes.end() && normal_frame->second == "eye") return;
     if (!guides.camera || guides.camera->IsOrthographic()) return;
     const glm::dmat4& clip = guides.camera->clip_from_view;
     if (clip[0][0] == 0.0 || clip[1][1] == 0.0) return;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/io/existing_output.h"
 #include "core/io/file/atomic_file.h"
 #include "core/io/picture/open_raster.h"
 #include "core/io/picture_file.h"
@@ -75,7 +76,8 @@ Expected<FinishedLayers> FinishWithLayers(std::span<const FinishStep> steps, con
   return made;
 }
 
-Status WriteLayers(const std::string& path, std::vector<FinishLayer> layers, const Picture& merged) {
+Status WriteLayers(const std::string& path, std::vector<FinishLayer> layers, const Picture& merged,
+                   const std::string& settings) {
   std::vector<RasterLayer> raster;
   for (auto layer = layers.rbegin(); layer != layers.rend(); ++layer) {
     RasterLayer one;
@@ -83,11 +85,13 @@ Status WriteLayers(const std::string& path, std::vector<FinishLayer> layers, con
     one.name = layer->name, one.visible = layer->visible, one.atop = layer->atop;
     raster.push_back(std::move(one));
   }
-  SCUMBLE_ASSIGN(const auto bytes, EncodeOpenRaster(raster, merged, 0, path));
+  SCUMBLE_ASSIGN(const auto bytes, EncodeOpenRaster(raster, merged, 0, path, settings));
   return WriteFileAtomically(path, std::span<const std::byte>(bytes));
 }
 
-Status CheckWholeLayers(const std::string& path, int width, int height) {
+Status CheckWholeLayers(const std::string& path, int width, int height, const std::string& settings) {
+  SCUMBLE_ASSIGN(const std::string stored, ReadLayerSettings(path));
+  SCUMBLE_RETURN_IF_ERROR(CheckSameSettings(path, stored, settings));
   SCUMBLE_ASSIGN(const Picture merged, ReadMergedLayers(path));
   if (width == 0 || (merged.width == width && merged.height == height)) return Ok();
   return InputError(fmt::format("{} is {}×{}, expected {}×{}", path, merged.width, merged.height, width, height));

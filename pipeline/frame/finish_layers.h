@@ -35,10 +35,11 @@ Expected<FinishedLayers> FinishWithLayers(std::span<const FinishStep> steps, con
                                           const LayersWanted& wanted, const FinishLayerOptions& names, int threads,
                                           const Progress& progress, Picture& picture);
 
-// An OpenRaster file of the layers. Takes them.
-Status WriteLayers(const std::string& path, std::vector<FinishLayer> layers, const Picture& merged);
+// An OpenRaster file of the layers. Takes them. `settings`: those of the picture, for CheckWholeLayers.
+Status WriteLayers(const std::string& path, std::vector<FinishLayer> layers, const Picture& merged,
+                   const std::string& settings);
 
-// Ok where a whole file of layers of that size is there; 0: of any size.
-Status CheckWholeLayers(const std::string& path, int width, int height);
+// Ok where a whole file of layers of that size and these settings is there; 0: of any size.
+Status CheckWholeLayers(const std::string& path, int width, int height, const std::string& settings);
 
 }  // namespace scumble

@@ -37,7 +37,7 @@ constexpr double kTransferShare = 0.7;  // of a frame's time that has a finish
 FinishFrame FrameOf(const FrameSettings& settings, const GuideSet& guides) {
   const FrameFinish& finish = *settings.finish;
   FinishFrame frame{&guides, finish.measures, 1.0, settings.seed};
-  frame.small_guides = finish.small_guides;
+  if (!ChangesGuides(finish.steps)) frame.small_guides = finish.small_guides;  // which no pass has changed
   if (finish.reference_height > 0) frame.scale = double(guides.height()) / finish.reference_height;
   return frame;
 }

@@ -394,8 +394,8 @@ Expected<FrameWrite> PaintPicture(StyleSet& styles, const GuideSet& guides, cons
     const std::uint64_t before = BytesWrittenByThisThread();
     if (!layers_out.empty()) {
       PaintedLayers& layers = made->layers;
-      SCUMBLE_RETURN_IF_ERROR(
-          WriteLayers(layers_out, std::move(layers.layers), layers.merged ? *layers.merged : made->picture));
+      SCUMBLE_RETURN_IF_ERROR(WriteLayers(layers_out, std::move(layers.layers),
+                                          layers.merged ? *layers.merged : made->picture, made->write.settings));
     }
     SCUMBLE_RETURN_IF_ERROR(WritePicture(output, made->picture, made->write));
     FrameReport report = std::move(made->report);

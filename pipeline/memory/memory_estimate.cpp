@@ -186,6 +186,7 @@ void AddScene(const Scene& scene, const TexturePixels& more, MemoryNeed& need) {
 void AddGuides(const Size& size, const LayerSet& layers, const SceneRequest& options, MemoryNeed& need) {
   const Bytes pixels = PixelsOf(size);
   need.Take("guides", PlanesOf(size, Made(layers)));
+  if (layers.Has(Layer::kOutline)) need.TakeTransient("distances to outlines", 3 * kFloat * PixelsOf(size));
   if (options.aa > 1) {
     // As found by the threads and as gathered, both in vectors that may have grown to twice their content, and colours.
     const Bytes of_fragment = 2 * kFloat * (ChannelsOf(Made(layers)) + 5) + kPaint;
@@ -316,10 +317,12 @@ FinishBytes OfPass(const FinishPass& pass, bool has_map) {
   if (pass.mask.picture) bytes.picture = kPaint * pass.mask.picture->rgba.size() / 4;
   if (!pass.mask.empty()) bytes.mixes = pass.mask.picture ? 2 * kPaint : Bytes(kPaint);
   if (const auto* smooth = std::get_if<SmoothPass>(&pass.effect)) transient = OfSmooth(*smooth);
-  if (std::holds_alternative<HatchPass>(pass.effect)) transient = kFloat;
+  if (std::holds_alternative<HatchPass>(pass.effect)) transient = 2 * kFloat;  // tone and patches
   // The tone and the response; with flow the tone and the tensor, plain and blurred, and the directions.
   if (const auto* edges = std::get_if<EdgesPass>(&pass.effect))
-    transient = edges->flow > 0.0 ? kFloat + 3 * kLab : 2 * kFloat;
+    transient = edges->flow > 0.0 ? kFloat + 3 * kLab : (edges->borders ? 6 : 2) * kFloat;
+  const auto* shadows = std::get_if<ShadowsPass>(&pass.effect);
+  if (shadows && shadows->soften > 0.0) transient = 6 * kFloat;  // the shade, its sums and weights
   // Two copies, sigmas, and a level of the picture's size.
   const auto* depth = std::get_if<DepthPass>(&pass.effect);
   if (depth && depth->blur > 0.0) transient = 2 * kLab + kFloat + 5 * kFloat;
@@ -335,6 +338,7 @@ FinishBytes OfPass(const FinishPass& pass, bool has_map) {
   if (outline->color != OutlinePass::Color::kInk || !pass.mask.empty()) transient += 4 + kPaint;
   if (outline->of_class[std::size_t(LineClass::kTexture)] > 0.0) transient += 3 * kFloat;
   const bool is_noisy = outline->wobble > 0.0 || outline->gaps > 0.0;
+  if (outline->form == OutlinePass::Form::kField) transient = std::max<Bytes>(transient, 2 + 2 + 2 * kFloat);
   if (outline->stick && is_noisy) transient = std::max(transient, kOutline + 2 * kFloat);
   return bytes;
 }

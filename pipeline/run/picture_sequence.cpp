@@ -71,7 +71,7 @@ Status PictureSequence::Check(int frame, const std::string& output, int width, i
   SCUMBLE_RETURN_IF_ERROR(CheckWholePicture(output, shape));
   if (request_.layers_out.empty()) return Ok();
   SCUMBLE_ASSIGN(const FrameName layers, FrameName::Parse(request_.layers_out));
-  return CheckWholeLayers(layers.At(frame), width, height);
+  return CheckWholeLayers(layers.At(frame), width, height, shape.settings);
 }
 
 bool PictureSequence::MustLookAhead(const Sequence& sequence) const {

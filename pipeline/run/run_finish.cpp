@@ -138,7 +138,8 @@ Expected<FrameWrite> Finish(const FinishRequest& request, const FrameFiles& file
                      made = std::make_shared<PictureReport>(std::move(report))]() -> Expected<FrameReport> {
     Stopwatch clock;
     const std::uint64_t before = BytesWrittenByThisThread();
-    if (!layers_out.empty()) SCUMBLE_RETURN_IF_ERROR(WriteLayers(layers_out, std::move(layers->layers), *picture));
+    if (!layers_out.empty())
+      SCUMBLE_RETURN_IF_ERROR(WriteLayers(layers_out, std::move(layers->layers), *picture, write.settings));
     SCUMBLE_RETURN_IF_ERROR(WritePicture(output, layers->alone ? *layers->alone : *picture, write));
     const double ms = clock.Lap();
     made->steps.push_back({"write", ms, ms, ms});
@@ -215,10 +216,11 @@ Expected<RunReport> RunFinish(FinishRequest request, const SequenceListener& lis
     if (!header) return header.error();
     SCUMBLE_RETURN_IF_ERROR(SetFinishFrame(state.chain, frame));
     PictureWriteOptions write{request.bits, request.png_level};
-    SCUMBLE_RETURN_IF_ERROR(
-        CheckWholePicture(output, {header->width, header->height, PictureChannels(output), PictureBits(output, write),
-                                   SettingsText(request, state.chain.passes)}));
-    return request.layers_out.empty() ? Ok() : CheckWholeLayers(layers.At(frame), header->width, header->height);
+    const std::string settings = SettingsText(request, state.chain.passes);
+    SCUMBLE_RETURN_IF_ERROR(CheckWholePicture(
+        output, {header->width, header->height, PictureChannels(output), PictureBits(output, write), settings}));
+    if (request.layers_out.empty()) return Ok();
+    return CheckWholeLayers(layers.At(frame), header->width, header->height, settings);
   };
   // A sequence that is resumed goes on with the measures of its first frame.
   work.begin = [&](std::span<const int>, const Progress&) -> Status {

@@ -118,11 +118,12 @@ Status ReadFinishFiles(const Style* style, const RunContext& context, std::vecto
     }
     if (auto* const toon = std::get_if<ToonPass>(&pass.effect)) {
       toon->ramp_colors.reset();
-      if (!toon->ramp.empty() && toon->shading == ToonPass::Shading::kRamp) {
+      if (!toon->ramp.empty()) {  // a pass may come to show it at a later frame
         Expected<ColorRamp> ramp = RampOf(toon->ramp);
         if (!ramp) return of_key("ramp", ramp.error());
         toon->ramp_colors = std::make_shared<const ColorRamp>(*std::move(ramp));
       }
+      SCUMBLE_RETURN_IF_ERROR(CheckRamp(pass));
     }
     if (auto* const hatch = std::get_if<HatchPass>(&pass.effect); hatch && hatch->strokes != kPlainStrokes) {
       Expected<HatchTexture> texture = StrokesOf(hatch->strokes, context);
@@ -149,7 +150,7 @@ std::vector<std::string> FilesOf(const std::vector<FinishPass>& passes) {
       if (IsFile(source)) files.push_back(source);
     }
     const auto* toon = std::get_if<ToonPass>(&pass.effect);
-    const bool has_ramp = toon && toon->shading == ToonPass::Shading::kRamp && !toon->ramp.empty();
+    const bool has_ramp = toon && !toon->ramp.empty();
     if (has_ramp && !IsRampText(toon->ramp)) files.push_back(toon->ramp);
     const auto* hatch = std::get_if<HatchPass>(&pass.effect);
     if (std::error_code failed; hatch && fs::is_regular_file(hatch->strokes, failed)) files.push_back(hatch->strokes);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/image/stopwatch.h"
+#include "core/style/finish_keys.h"
 #include "core/style/style_keyframes.h"
 #include "pipeline/frame/frame_painter.h"
 #include "pipeline/shell_quote.h"
@@ -28,9 +29,11 @@ Expected<Style> OpenStyleWith(const TradeSetup& setup, const std::vector<std::st
   one.sets.insert(one.sets.end(), settings.begin(), settings.end());
   SCUMBLE_ASSIGN(StyleSet styles, OpenStyles(one, context));
   Style style = std::move(styles.styles.front());
+  SCUMBLE_RETURN_IF_ERROR(SetStyleFrame(style, setup.frame.value_or(0)));
+  // The run's passes join the style's. Keys over time go by names, which both may have; at this frame all are set.
+  std::erase_if(style.tracks, [](const StyleTrack& track) { return track.name.starts_with(kFinishKeys); });
   SCUMBLE_RETURN_IF_ERROR(SetFinishFrame(styles.finish, setup.frame.value_or(0)));
   style.finish.insert(style.finish.end(), styles.finish.passes.begin(), styles.finish.passes.end());
-  SCUMBLE_RETURN_IF_ERROR(SetStyleFrame(style, setup.frame.value_or(0)));
   return style;
 }
 
@@ -140,6 +143,7 @@ Expected<VariantPainter> VariantPainter::Prepare(const TradeSetup& setup, const 
   painter.finish_.steps = FinishStepsOf(style.finish, {seen.width(), seen.height()}, &seen, [](const auto&) {});
   painter.finish_.measures = MeasuresOf(style.finish, setup.style.finish_measures, painter.guides_->ForExposure());
   painter.finish_.reference_height = style.transfer.reference_height;
+  if (painter.guides_->given.pixel_count() > 0) painter.finish_.small_guides = &painter.guides_->given;
   painter.context_ = context;
   painter.super_ = SupersampleOf(variant), painter.upscale_ = PictureFactorOf(variant);
   return painter;

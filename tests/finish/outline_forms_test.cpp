@@ -111,34 +111,38 @@ TEST(LineField, IsThatOfBruteForce) {
     return x >= 0 && y >= 0 && x < 70 && y < 50 && coverage[guides.Index(x, y)] > 0.0f;
   };
   for (const double width : {0.5, 2.5, 9.0}) {
-    for (const auto side : {OutlinePass::Side::kCentre, OutlinePass::Side::kInside, OutlinePass::Side::kOutside}) {
-      pass.width = width, pass.min_width = 0.0, pass.side = side;
-      const std::vector<double> ink = ShareOfInk(pass, guides);
-      for (int y = 0; y < 50; ++y) {
-        for (int x = 0; x < 70; ++x) {
-          double nearest = 1e9;
-          bool inside = false;
-          for (int v = 0; v < 50; ++v) {
-            for (int u = 0; u < 70; ++u) {
-              const bool c = covers(u, v);
-              const auto differs = [&](int a, int b) {
-                return a >= 0 && b >= 0 && a < 70 && b < 50 && covers(a, b) != c;
-              };
-              if (!differs(u - 1, v) && !differs(u + 1, v) && !differs(u, v - 1) && !differs(u, v + 1)) continue;
-              const double d = std::hypot(x - u, y - v);
-              if (d < nearest) nearest = d, inside = c;
-            }
+    pass.width = width, pass.min_width = 0.0;
+    const std::vector<double> ink = ShareOfInk(pass, guides);
+    for (int y = 0; y < 50; ++y) {
+      for (int x = 0; x < 70; ++x) {
+        double nearest = 1e9;
+        for (int v = 0; v < 50; ++v) {
+          for (int u = 0; u < 70; ++u) {
+            const bool c = covers(u, v);
+            const auto differs = [&](int a, int b) {
+              return a >= 0 && b >= 0 && a < 70 && b < 50 && covers(a, b) != c;
+            };
+            if (!differs(u - 1, v) && !differs(u + 1, v) && !differs(u, v - 1) && !differs(u, v + 1)) continue;
+            const double d = std::hypot(x - u, y - v);
+            nearest = std::min(nearest, d);
           }
-          if (covers(x, y) != inside) continue;  // equally near from both sides
-          const double middle =
-              side == OutlinePass::Side::kCentre ? 0.0 : (side == OutlinePass::Side::kInside ? 0.5 : -0.5);
-          const double off = std::fabs((inside ? 1.0 : -1.0) * (nearest + 0.5) - middle * width);
-          const double expected = std::clamp(std::max(width, 1.0) / 2.0 + 0.5 - off, 0.0, 1.0) * std::min(width, 1.0);
-          ASSERT_NEAR(ink[std::size_t(y) * 70 + std::size_t(x)], expected, 2e-5) << width << " at " << x << ' ' << y;
         }
+        const double off = nearest + 0.5;
+        const double expected = std::clamp(std::max(width, 1.0) / 2.0 + 0.5 - off, 0.0, 1.0) * std::min(width, 1.0);
+        ASSERT_NEAR(ink[std::size_t(y) * 70 + std::size_t(x)], expected, 2e-5) << width << " at " << x << ' ' << y;
       }
     }
   }
+}
+
+TEST(LineField, KnowsNoSides) {
+  OutlinePass pass;
+  pass.form = OutlinePass::Form::kField, pass.side = OutlinePass::Side::kInside;
+  const GuideSet guides = BallGuides(40, 12.0f);
+  const FinishStep step = StepOf(pass);
+  const Status done = CheckFinish(std::span(&step, 1), &guides);
+  ASSERT_FALSE(done);
+  EXPECT_NE(done.error().message.find("set finish.it.side to \"centre\""), std::string::npos);
 }
 
 TEST(LineField, RingHasTheWidthOfStrokes) {

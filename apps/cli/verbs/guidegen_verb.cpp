@@ -72,8 +72,8 @@ void AddGuidegenVerb(CLI::App& app, Globals& globals, Action& chosen) {
   sub->add_option(
          "--layers", verb->layers,
          "layers on top of A, normal, depth, object and material, with commas between: position, pref, albedo, "
-         "luminance, shadow, lpe.full, lpe.LDE, lpe.LSE, lpe.LDDE, lpe.LD12E, cosine, uv; with --frame or --frames "
-         "motion, to the next frame")
+         "luminance, shadow, lpe.full, lpe.LDE, lpe.LSE, lpe.LDDE, lpe.LD12E, cosine, uv, outline; with --frame or "
+         "--frames motion, to the next frame")
       ->type_name("LIST");
   auto* compression =
       sub->add_option("--compression", verb->compression, "none, rle, zips, zip or piz; all are lossless");

@@ -14,6 +14,7 @@ namespace {
 
 constexpr const char* kMimetype = "image/openraster";
 constexpr const char* kMerged = "mergedimage.png";
+constexpr const char* kSettingsEntry = "scumble/settings.txt";
 constexpr std::size_t kMaxPngBytes = std::size_t(1) << 30;
 
 std::vector<std::byte> Bytes(const std::string& text) {
@@ -135,7 +136,7 @@ std::string WithoutDpi(std::string xml) {
 }  // namespace
 
 Expected<std::vector<std::byte>> EncodeOpenRaster(std::span<const RasterLayer> layers, const Picture& merged, int dpi,
-                                                  const std::string& name) {
+                                                  const std::string& name, const std::string& settings) {
   // The first entry, stored unpacked, so that the file's type is at a fixed place near its beginning.
   std::vector<ZipEntry> entries{{"mimetype", Bytes(kMimetype)}};
   entries.push_back({"stack.xml", Bytes(Stack(layers, merged, dpi)), true});
@@ -144,7 +145,15 @@ Expected<std::vector<std::byte>> EncodeOpenRaster(std::span<const RasterLayer> l
   entries.push_back({kMerged, std::move(whole)});
   SCUMBLE_ASSIGN(auto thumbnail, EncodePng(Thumbnail(merged)));
   entries.push_back({"Thumbnails/thumbnail.png", std::move(thumbnail)});
+  if (!settings.empty()) entries.push_back({kSettingsEntry, Bytes(settings)});
   return EncodeZip(entries, name);
+}
+
+Expected<std::string> ReadLayerSettings(const std::filesystem::path& path) {
+  SCUMBLE_ASSIGN(const ZipReader zip, OpenMerged(path));
+  if (!zip.Has(kSettingsEntry)) return std::string();
+  SCUMBLE_ASSIGN(const auto bytes, zip.Read(kSettingsEntry, std::size_t(1) << 20));
+  return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
 }
 
 Expected<Picture> ReadMergedLayers(const std::filesystem::path& path) {

@@ -26,9 +26,13 @@ struct RasterLayer {
 
 // The bytes of a file with these layers, the topmost first. `merged` is their composite: painting programs read the
 // layers, file managers and Scumble read the composite. `dpi` is stored for printing; 0: none. 8 bits a channel, sRGB.
-// The same layers make the same bytes. `name` is for messages. Thread-safe.
+// The same layers make the same bytes. `name` is for messages. `settings`: a text of Scumble's own in the file, which
+// other programs pass over; empty: none. Thread-safe.
 Expected<std::vector<std::byte>> EncodeOpenRaster(std::span<const RasterLayer> layers, const Picture& merged, int dpi,
-                                                  const std::string& name);
+                                                  const std::string& name, const std::string& settings = {});
+
+// Those settings; empty where the file has none. Thread-safe.
+Expected<std::string> ReadLayerSettings(const std::filesystem::path& path);
 
 // The merged picture that a program stored beside the layers: in an .ora, or a .kra of Krita. Reads up to 1 GiB of PNG,
 // and never more than a picture of its size can take. Thread-safe.

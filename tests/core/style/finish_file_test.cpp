@@ -4,9 +4,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "core/io/picture_file.h"
 #include "core/style/color_ramp.h"
@@ -392,6 +395,35 @@ TEST_F(FinishFile, MasksAreReadBesideTheFile) {
       ErrorOf("[[finish]]\neffect = \"fill\"\nmask = \"ara.png\"\n"),
       AllOf(HasSubstr(":3: finish.mask"), HasSubstr("ara.png: there is no such file"), HasSubstr("\"radial\"")));
   EXPECT_THAT(ErrorOf("[[finish]]\neffect = \"fill\"\nmask_near = -1\n"), HasSubstr("expected metres"));
+}
+
+TEST(FinishDials, EachTurnsSomethingOfEachPreset) {
+  int presets = 0;
+  for (const std::filesystem::path& file : FindFinishPresets(SCUMBLE_SOURCE_DIR "/finish/presets")) {
+    const auto preset = LoadFinishPreset(file);
+    ASSERT_TRUE(preset) << file;
+    ++presets;
+    for (const char* const dial : kDials) {
+      const auto turned = [&](double value) {
+        std::vector<FinishPass> passes = preset->passes;
+        EXPECT_TRUE(TurnFinishDial(passes, std::string(kDialKeys) + dial, value));
+        std::string text;
+        for (const FinishPass& pass : passes) text += FinishText(pass) + "; ";
+        return text;
+      };
+      EXPECT_NE(turned(0.0), turned(1.0)) << file.stem() << ": " << dial;
+      EXPECT_NE(turned(0.0), turned(0.5)) << file.stem() << ": " << dial;
+    }
+  }
+  EXPECT_GE(presets, 12);
+}
+
+TEST(FinishDials, UnknownKeysWithKeyFramesAreUnknown) {
+  const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / "slip.toml";
+  std::ofstream(file) << "[[finish]]\neffect = \"outline\"\nwidht = [[1, 0], [12, 4]]\n";
+  const auto preset = LoadFinishPreset(file);
+  ASSERT_FALSE(preset);
+  EXPECT_THAT(preset.error().message, HasSubstr("width")) << "the nearest name";
 }
 
 }  // namespace

@@ -185,6 +185,13 @@ TEST_F(CliFinishLayers, GoWithSequences) {
   EXPECT_EQ(kept(RunOk(With(run, {"l.####.ora"})).Json()), 1) << "a frame without its layers is made again";
   EXPECT_EQ(Bytes("l.0002.ora"), before);
   EXPECT_EQ(kept(RunOk(With(run, {"l.####.ora"})).Json()), 3);
+  // Pictures that were made anew without their layers.
+  const Arguments wide = With(run, {"l.####.ora", "--set", "finish.outline.width=9"});
+  Arguments bare = wide;
+  bare.erase(std::find(bare.begin(), bare.end(), "--layers-out"), std::find(bare.begin(), bare.end(), "--set"));
+  EXPECT_EQ(kept(RunOk(bare).Json()), 0);
+  EXPECT_EQ(kept(RunOk(wide).Json()), 0) << "the layers are those of thin lines";
+  EXPECT_EQ(ReadMergedLayers(At("l.0002.ora"))->rgba, Read("p.0002.png").rgba);
   ExpectError(With(run, {"l.ora"}), 2, {"--layers-out l.ora is one file for 3 frames", "l.####.ora"});
   RunOk({"guidegen", kToyScene, "--size", "64x48", "--frames", "1-2", "-o", "g.####.exr"});
   RunOk({"finish", "p.####.png", "g.####.exr", "--frames", "1-2", "--finish", "outline", "-o", "f.####.png",

@@ -81,5 +81,30 @@ TEST_F(CliToon, ARampCoversThePaint) {
   EXPECT_FALSE(Contains(said("gooch"), "covered by"));
 }
 
+// Colours are read for frames that come to show them, and missing ones are told before anything is cast.
+TEST_F(CliToon, RampsOverTime) {
+  const auto with = [&](const Arguments& more) {
+    Arguments all{"stylize", kBall, "--size", "32", "--style", "render", "--finish", "toon"};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  };
+  const Arguments ramp{"--set", "finish.toon.ramp=\"#000000 #ff0000\""};
+  Arguments moving = with(ramp);
+  moving.insert(moving.end(),
+                {"--set", "finish.toon.shading=[[1,\"plain\"],[3,\"ramp\"]]", "--frames", "1-3", "-o", "m.####.png"});
+  RunOk(moving);
+  Arguments still = with(ramp);
+  still.insert(still.end(), {"--set", "finish.toon.shading=\"ramp\"", "--frame", "3", "-o", "s.png"});
+  RunOk(still);
+  const auto third = ReadPicture(At("m.0003.png")), alone = ReadPicture(At("s.png")),
+             first = ReadPicture(At("m.0001.png"));
+  ASSERT_TRUE(third && alone && first);
+  EXPECT_EQ(third->rgba, alone->rgba);
+  EXPECT_NE(first->rgba, third->rgba);
+  const CommandResult bare = Run(with({"--set", "finish.toon.shading=\"ramp\"", "-o", "b.png"}));
+  EXPECT_EQ(bare.code, 3);
+  EXPECT_TRUE(Contains(bare.err, "there are no colours for it")) << bare.err;
+}
+
 }  // namespace
 }  // namespace scumble
