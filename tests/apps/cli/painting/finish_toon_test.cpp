@@ -84,7 +84,7 @@ TEST_F(CliToon, ARampCoversThePaint) {
 // Colours are read for frames that come to show them, and missing ones are told before anything is cast.
 TEST_F(CliToon, RampsOverTime) {
   const auto with = [&](const Arguments& more) {
-    Arguments all{"stylize", kBall, "--size", "32", "--style", "render", "--finish", "toon"};
+    Arguments all{"stylize", Scene("ball.glb"), "--size", "32", "--style", "render", "--finish", "toon"};
     all.insert(all.end(), more.begin(), more.end());
     return all;
   };
