@@ -34,6 +34,7 @@ class Classifier {
         guides_(guides),
         give_(guides, kDepthTolerance),
         crease_(EdgeRules::CreaseCosine(pass.crease_angle)),
+        owner_(guides),
         coverage_(guides.Plane(Layer::kCoverage)),
         depth_(guides.Plane(Layer::kDepth)),
         object_(guides.Plane(Layer::kObject)),
@@ -50,7 +51,7 @@ class Classifier {
                        std::optional<std::size_t> after) const {
     const bool covers_p = coverage_[p] > 0.0f, covers_q = coverage_[q] > 0.0f;
     if (!covers_p && !covers_q) return 0;
-    if (!only_.empty() && !only_[covers_q && (!covers_p || depth_[q] < depth_[p]) ? q : p]) return 0;
+    if (!only_.empty() && !only_[owner_.Of(p, q)]) return 0;
     const std::optional<LineClass> line = covers_p == covers_q ? Inside(before, p, q, after) : LineClass::kSilhouette;
     return line && IsOn(*line) ? static_cast<std::uint8_t>(1 + int(*line)) : 0;
   }
@@ -99,6 +100,7 @@ class Classifier {
   const GuideSet& guides_;
   DepthTolerance give_;
   float crease_;
+  BorderOwner owner_;
   std::span<const float> coverage_, depth_, object_, material_, shadow_;
   std::vector<glm::vec3> colors_;
   float texture_step_;

@@ -17,6 +17,20 @@ struct BorderMap {
   std::vector<std::uint8_t> right, below;
 };
 
+// The pixel that a border between p and q belongs to: the nearer one.
+class BorderOwner {
+ public:
+  explicit BorderOwner(const GuideSet& guides)
+      : coverage_(guides.Plane(Layer::kCoverage)), depth_(guides.Plane(Layer::kDepth)) {}
+  bool IsSecond(std::size_t p, std::size_t q) const {
+    return coverage_[q] > 0.0f && (!(coverage_[p] > 0.0f) || depth_[q] < depth_[p]);
+  }
+  std::size_t Of(std::size_t p, std::size_t q) const { return IsSecond(p, q) ? q : p; }
+
+ private:
+  std::span<const float> coverage_, depth_;
+};
+
 // A border counts where its class has a width. The guides must hold the pass's layers. `only`: by pixel; borders whose
 // nearer pixel has 0 do not count; empty: all do. `scale`: pixels for one of the reference height.
 BorderMap FindBorders(const OutlinePass& pass, const GuideSet& guides, double scale,

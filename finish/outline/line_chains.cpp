@@ -26,7 +26,7 @@ struct Corner {
 class Tracer {
  public:
   Tracer(BorderMap& map, const GuideSet& guides)
-      : map_(map), coverage_(guides.Plane(Layer::kCoverage)), depth_(guides.Plane(Layer::kDepth)) {
+      : map_(map), owner_(guides), coverage_(guides.Plane(Layer::kCoverage)) {
     if (guides.Has(Layer::kShadow)) shadow_ = guides.Plane(Layer::kShadow);
   }
 
@@ -120,7 +120,7 @@ class Tracer {
   LinePoint PointOf(const Border& border) {
     const auto [x, y, is_right] = border;
     const std::size_t p = std::size_t(y) * map_.width + x, q = is_right ? p + 1 : p + std::size_t(map_.width);
-    const bool q_owns = coverage_[q] > 0.0f && (!(coverage_[p] > 0.0f) || depth_[q] < depth_[p]);
+    const bool q_owns = owner_.IsSecond(p, q);
     const glm::vec2 across = is_right ? glm::vec2(1, 0) : glm::vec2(0, 1);  // from p to q
     const auto line = static_cast<LineClass>((At(border) & ~kTaken) - 1);
     const glm::vec2 at = is_right ? glm::vec2(x + 1, y + 0.5f) : glm::vec2(x + 0.5f, y + 1);
@@ -153,7 +153,8 @@ class Tracer {
   }
 
   BorderMap& map_;
-  std::span<const float> coverage_, depth_, shadow_;
+  BorderOwner owner_;
+  std::span<const float> coverage_, shadow_;
 };
 
 // A Gaussian of sigma 4 borders.

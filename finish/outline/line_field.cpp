@@ -17,11 +17,7 @@ struct BesideLine {
 class LinesBeside {
  public:
   LinesBeside(const BorderMap& borders, const GuideSet& guides, const LineWidth& width)
-      : borders_(borders),
-        width_of_(width),
-        coverage_(guides.Plane(Layer::kCoverage)),
-        depth_(guides.Plane(Layer::kDepth)),
-        width_(static_cast<std::size_t>(borders.width)) {}
+      : borders_(borders), width_of_(width), owner_(guides), width_(static_cast<std::size_t>(borders.width)) {}
 
   bool Has(std::size_t i) const {
     return borders_.right[i] || borders_.below[i] || (i % width_ > 0 && borders_.right[i - 1]) ||
@@ -32,7 +28,7 @@ class LinesBeside {
     BesideLine widest;
     const auto offer = [&](std::uint8_t border, std::size_t p, std::size_t q) {
       if (!border) return;
-      const std::size_t owner = Owner(p, q);
+      const std::size_t owner = owner_.Of(p, q);
       const float width = width_of_.At(owner, static_cast<LineClass>(border - 1));
       if (width > widest.width) widest = {width, owner};
     };
@@ -44,14 +40,9 @@ class LinesBeside {
   }
 
  private:
-  // The pixel that a line between p and q belongs to: the nearer one.
-  std::size_t Owner(std::size_t p, std::size_t q) const {
-    return coverage_[q] > 0.0f && (!(coverage_[p] > 0.0f) || depth_[q] < depth_[p]) ? q : p;
-  }
-
   const BorderMap& borders_;
   const LineWidth& width_of_;
-  std::span<const float> coverage_, depth_;
+  BorderOwner owner_;
   std::size_t width_;
 };
 

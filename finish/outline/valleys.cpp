@@ -7,7 +7,7 @@
 #include <cmath>
 #include <optional>
 
-#include "finish/outline/view_rays.h"
+#include "finish/tone/view_rays.h"
 
 namespace scumble::internal {
 namespace {

@@ -2,24 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/glm.hpp>
 
 #include "core/image/exact_math.h"
 
 namespace scumble::internal {
-namespace {
-
-// Where the line of sight through a place of the picture, in pixels, meets the plane one metre before the eye.
-glm::dvec2 SightAt(const glm::dmat4& view_from_clip, double x, double y, int width, int height) {
-  const glm::dvec4 clip(2.0 * x / width - 1.0, 1.0 - 2.0 * y / height, 0.0, 1.0);
-  const glm::dvec4 at = view_from_clip * clip;
-  return glm::dvec2(at.x, at.y) / -at.z;  // in homogeneous coordinates
-}
-
-}  // namespace
-
 RampRows::RampRows(const ToonPass& pass, const FinishFrame& frame)
-    : width_(static_cast<std::size_t>(frame.guides->width())) {
+    : rays_(*frame.guides), width_(static_cast<std::size_t>(frame.guides->width())) {
   const GuideSet& guides = *frame.guides;
   if (pass.ramp_rows == ToonPass::Rows::kDepth) {
     depth_ = guides.Plane(Layer::kDepth);
@@ -32,15 +20,6 @@ RampRows::RampRows(const ToonPass& pass, const FinishFrame& frame)
     return;
   }
   for (int c = 0; c < 3; ++c) normal_[c] = guides.Plane(Layer::kNormal, c);
-  const auto frame_of_normals = guides.attributes.find("scumble:normal_frame");
-  const bool face_eye = frame_of_normals != guides.attributes.end() && frame_of_normals->second == "eye";
-  if (!guides.camera || guides.camera->IsOrthographic() || face_eye) return;
-  const glm::dmat4 view_from_clip = glm::inverse(guides.camera->clip_from_view);
-  const auto sight = [&](double x, double y) { return SightAt(view_from_clip, x, y, guides.width(), guides.height()); };
-  const glm::dvec2 first = sight(0.5, 0.5), right = sight(1.5, 0.5) - first, down = sight(0.5, 1.5) - first;
-  if (!std::isfinite(first.x + first.y + right.x + right.y + down.x + down.y)) return;  // no camera that sees
-  x_[0] = float(first.x), x_[1] = float(right.x), x_[2] = float(down.x);
-  y_[0] = float(first.y), y_[1] = float(right.y), y_[2] = float(down.y);
 }
 
 float RampRows::Depth(std::size_t pixel) const {
@@ -54,10 +33,10 @@ void RampRows::At(std::size_t first, std::size_t count, float* rows) const {
     for (std::size_t i = 0; i < count; ++i) rows[i] = Depth(first + i);
     return;
   }
-  const auto column = static_cast<float>(first % width_), row = static_cast<float>(first / width_);
-  const float x0 = x_[0] + x_[1] * column + x_[2] * row, y0 = y_[0] + y_[1] * column + y_[2] * row;
+  const int column = static_cast<int>(first % width_), row = static_cast<int>(first / width_);
   for (std::size_t i = 0; i < count; ++i) {
-    const float x = x0 + x_[1] * static_cast<float>(i), y = y0 + y_[1] * static_cast<float>(i);
+    const glm::vec2 sight = rays_.SightAt(column + static_cast<int>(i), row);
+    const float x = sight.x, y = sight.y;
     const float along = normal_[2][first + i] - normal_[0][first + i] * x - normal_[1][first + i] * y;
     const float away = 1.0f - std::fabs(along) / std::sqrt(1.0f + x * x + y * y);
     rows[i] = away > 0.0f ? away : 0.0f;  // NaN faces the viewer

@@ -8,6 +8,7 @@
 #include "finish/finish.h"
 #include "finish/tone/depth_scale.h"
 #include "finish/tone/point_effect.h"
+#include "finish/tone/view_rays.h"
 
 namespace scumble::internal {
 
@@ -26,10 +27,8 @@ class RampRows {
   Curve of_depth_;
 
   std::span<const float> normal_[3];
+  ViewRays rays_;
   std::size_t width_ = 1;
-  // The place in the plane one metre before the eye, of the first pixel's centre and by columns and rows; 0 where all
-  // lines of sight are parallel.
-  float x_[3] = {}, y_[3] = {};
 };
 
 // The ramp's colours in Oklab, interpolated along rows and columns.

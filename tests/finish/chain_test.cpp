@@ -11,29 +11,6 @@
 namespace scumble {
 namespace {
 
-// Guides with every layer that some effect reads.
-GuideSet AllGuides(int size) {
-  GuideSet guides = BallGuides(size, 0.4f * static_cast<float>(size));
-  for (const Layer layer :
-       {Layer::kMaterial, Layer::kAlbedo, Layer::kLuminance, Layer::kShadow, Layer::kLpeFull, Layer::kPref})
-    guides.Add(layer);
-  for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
-    guides.Plane(Layer::kLuminance)[i] = std::max(0.0f, guides.Plane(Layer::kNormal)[i]);
-    guides.Plane(Layer::kShadow)[i] = static_cast<float>(i % 7) / 6.0f;
-  }
-  return guides;
-}
-
-Picture CoveredPicture(const GuideSet& guides) {
-  Picture picture = ColorfulPicture(guides.width(), guides.height());
-  for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
-    const float coverage = guides.Plane(Layer::kCoverage)[i];
-    picture.rgba[4 * i + 3] = static_cast<std::uint16_t>(coverage * 65535.0f);
-    if (coverage == 0.0f) std::fill_n(picture.rgba.begin() + std::ptrdiff_t(4 * i), 3, std::uint16_t{0});
-  }
-  return picture;
-}
-
 class EveryEffect : public ::testing::TestWithParam<std::string> {
  protected:
   FinishStep Step(double strength = 1.0) {

@@ -1,6 +1,7 @@
 // Guides by formula, and pictures of one colour, for the tests of finishing effects.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <glm/glm.hpp>
@@ -91,6 +92,30 @@ inline Picture ColorfulPicture(int width, int height) {
       texel[2] = static_cast<std::uint16_t>((x * 977 + y * 3571) % 65536);
       texel[3] = 65535;
     }
+  }
+  return picture;
+}
+
+// Guides with every layer that some effect reads.
+inline GuideSet AllGuides(int size) {
+  GuideSet guides = BallGuides(size, 0.4f * static_cast<float>(size));
+  for (const Layer layer :
+       {Layer::kMaterial, Layer::kAlbedo, Layer::kLuminance, Layer::kShadow, Layer::kLpeFull, Layer::kPref})
+    guides.Add(layer);
+  for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
+    guides.Plane(Layer::kLuminance)[i] = std::max(0.0f, guides.Plane(Layer::kNormal)[i]);
+    guides.Plane(Layer::kShadow)[i] = static_cast<float>(i % 7) / 6.0f;
+  }
+  return guides;
+}
+
+// Many colours, with the alpha of the coverage.
+inline Picture CoveredPicture(const GuideSet& guides) {
+  Picture picture = ColorfulPicture(guides.width(), guides.height());
+  for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
+    const float coverage = guides.Plane(Layer::kCoverage)[i];
+    picture.rgba[4 * i + 3] = static_cast<std::uint16_t>(coverage * 65535.0f);
+    if (coverage == 0.0f) std::fill_n(picture.rgba.begin() + std::ptrdiff_t(4 * i), 3, std::uint16_t{0});
   }
   return picture;
 }

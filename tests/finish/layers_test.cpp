@@ -13,29 +13,6 @@ namespace {
 
 using ::testing::ElementsAre;
 
-GuideSet LitBall(int size) {
-  GuideSet guides = BallGuides(size, 0.4f * static_cast<float>(size));
-  for (const Layer layer :
-       {Layer::kMaterial, Layer::kAlbedo, Layer::kLuminance, Layer::kShadow, Layer::kLpeFull, Layer::kPref})
-    guides.Add(layer);
-  for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
-    guides.Plane(Layer::kLuminance)[i] = std::max(0.0f, guides.Plane(Layer::kNormal)[i]);
-    guides.Plane(Layer::kShadow)[i] = static_cast<float>(i % 7) / 6.0f;
-  }
-  return guides;
-}
-
-// With the alpha of the ball's soft rim.
-Picture PaintedBall(const GuideSet& guides) {
-  Picture picture = ColorfulPicture(guides.width(), guides.height());
-  for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
-    const float coverage = guides.Plane(Layer::kCoverage)[i];
-    picture.rgba[4 * i + 3] = static_cast<std::uint16_t>(coverage * 65535.0f);
-    if (coverage == 0.0f) std::fill_n(picture.rgba.begin() + std::ptrdiff_t(4 * i), 3, std::uint16_t{0});
-  }
-  return picture;
-}
-
 // The second over the first, with straight alpha in 0 … 1, or atop it.
 void Lay(const FinishLayer& layer, std::vector<double>& flat) {
   for (std::size_t i = 0; i < flat.size(); i += 4) {
@@ -112,8 +89,8 @@ class LayeredFinish : public ::testing::Test {
     return options;
   }
 
-  GuideSet guides_ = LitBall(60);
-  Picture picture_ = PaintedBall(guides_), made_;
+  GuideSet guides_ = AllGuides(60);
+  Picture picture_ = CoveredPicture(guides_), made_;
   FinishFrame frame_{&guides_, MeasureFinish(guides_), 1.0, 7};
 };
 

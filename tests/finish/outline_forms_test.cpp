@@ -77,15 +77,29 @@ TEST(Suggestive, NoneOnABallAndNoneAcrossObjects) {
   EXPECT_EQ(Total(ShareOfInk(SuggestiveAlone(), guides)), 0.0);
 }
 
-// The cosine is that to the viewer, not to the axis of the view: on a plane seen askew it is least nowhere.
+// The cosine is that to the viewer, not to the axis of the view, whose least is more than a pixel aside here.
 TEST(Suggestive, KnowsPerspective) {
-  GuideSet guides = GuidesOf(120, 120, [](glm::vec2) { return SeenPoint{true, {0.6f, 0.0f, 0.8f}, 5.0f, 1.0f}; });
+  const auto angle_of_ray = [](float x) { return std::atan(2.0f * x / 120.0f - 1.0f); };
+  GuideSet guides = GuidesOf(120, 9, [&](glm::vec2 at) {
+    const float angle = ValleyAngle(at.x - 60.5f) - angle_of_ray(at.x);
+    return SeenPoint{true, {std::sin(angle), 0.0f, std::cos(angle)}, 5.0f, 1.0f};
+  });
+  const auto place = [&] {
+    const std::vector<double> ink = ShareOfInk(SuggestiveAlone(), guides);
+    double weight = 0.0, weighted = 0.0;
+    for (std::size_t x = 0; x < 120; ++x) weight += ink[4 * 120 + x], weighted += ink[4 * 120 + x] * (double(x) + 0.5);
+    return weighted / weight;
+  };
+  EXPECT_GT(std::fabs(place() - 60.5), 1.0) << "without a camera";
   GuideCamera camera;
   camera.clip_from_view = glm::dmat4(0.0);
-  camera.clip_from_view[0][0] = camera.clip_from_view[1][1] = 1.0;
+  camera.clip_from_view[0][0] = 1.0, camera.clip_from_view[1][1] = 120.0 / 9.0;
   camera.clip_from_view[2][2] = -1.0, camera.clip_from_view[2][3] = -1.0, camera.clip_from_view[3][2] = -0.2;
   guides.camera = camera;
-  EXPECT_EQ(Total(ShareOfInk(SuggestiveAlone(), guides)), 0.0);
+  EXPECT_NEAR(place(), 60.5, 0.51);
+  const double turned = place();
+  guides.attributes["scumble:normal_frame"] = "eye";
+  EXPECT_GT(std::fabs(place() - turned), 0.9) << "normals that are turned to the eye already";
 }
 
 TEST(Gaps, LeaveOutTheirShare) {
