@@ -2,16 +2,17 @@
 """Pairs of pictures to be judged by eye alone, for choosing a measure of paint (docs/paint-texture.md).
 
     /usr/bin/python3 bench/paint_pairs.py --choose        # anew: forgets all votes
-    /usr/bin/python3 bench/paint_pairs.py --draw          # pictures and sheets without names, into out/paint-pairs/
-    /usr/bin/python3 bench/paint_pairs.py --read FILE     # adds one reading: {"1": ["A", "why"], …}
-    /usr/bin/python3 bench/paint_pairs.py                 # agreement of the readings; of figures, on the open half
-    /usr/bin/python3 bench/paint_pairs.py --measure       # anew: the figures of all pictures (build/bench/paint_figures)
-    /usr/bin/python3 bench/paint_pairs.py --locked        # of figures, on the locked half: has been used
+    /usr/bin/python3 bench/paint_pairs.py --draw locked   # pictures and sheets without names, into out/paint-pairs/
+    /usr/bin/python3 bench/paint_pairs.py --read FILE     # adds one reading of the locked pairs: {"121": ["A", "why"], …}
+    /usr/bin/python3 bench/paint_pairs.py                 # agreement of the readings; of figures, on the open pairs
+    /usr/bin/python3 bench/paint_pairs.py --measure       # anew: the figures of all pairs (build/bench/paint_figures)
+    /usr/bin/python3 bench/paint_pairs.py --locked        # of figures, on the locked pairs: has been used
 
-Ten paintings on four scenes; of each twelve pairs of ways to draw it, good ones and deliberately bad ones. Every third
-pair holds the style as it is. Which pairs, which side is A, what part is shown, and which half is locked away is
-decided by hashes. A sheet shows the exemplar beside A and B, at the size at which it is used. Whoever reads the sheets
-must not have seen anything else. One reading is a vote for each pair with a reason.
+Two sets of pairs of ways to draw a painting on a scene, good ones and deliberately bad ones: 120 by which the measure was
+chosen, and 80 that were locked away until it was. Every third pair holds the style as it is. Which pairs, which side is
+A and what part is shown is decided by hashes. A sheet shows the exemplar beside A and B, at the size at which it is used.
+Whoever reads the sheets must not have seen anything else. One reading is a vote for each pair with a reason. Figures are
+those of what the sheet shows: of a part, if it shows a part.
 """
 
 import argparse
@@ -30,10 +31,16 @@ ROOT = Path(__file__).resolve().parent.parent
 PAIRS = ROOT / "bench/paint_pairs.json"
 FIGURES = ROOT / "bench/paint_figures.json"
 OUT = ROOT / "out/paint-pairs"
-SAMPLES = [("oil", "suzanne"), ("watercolour", "snail"), ("graphite", "toys"), ("gouache", "stilllife"),
-           ("pastel", "toys"), ("ink", "suzanne"), ("plein-air", "stilllife"), ("charcoal", "snail"),
-           ("woodcut", "suzanne"), ("coloured-pencil", "snail")]
-PAIRS_OF_EACH = 12
+OPEN = [("oil", "suzanne"), ("watercolour", "snail"), ("graphite", "toys"), ("gouache", "stilllife"),
+        ("pastel", "toys"), ("ink", "suzanne"), ("plein-air", "stilllife"), ("charcoal", "snail"),
+        ("woodcut", "suzanne"), ("coloured-pencil", "snail")]
+LOCKED = [("chiaroscuro", "toys"), ("sanguine", "suzanne"), ("sumi-e", "snail"), ("pointillism", "stilllife"),
+          ("scene-oil", "toys"), ("oil", "stilllife"), ("watercolour", "toys"), ("pastel", "snail"),
+          ("plein-air", "suzanne"), ("gouache", "suzanne")]
+PAIRS_OF_EACH = {False: 12, True: 8}  # open, locked
+# Keys that styles had when the open pairs were read, and have no longer.
+KEYS_THEN = {"oil": ["threshold=0.07", "hybrid=0", "variety=15"],
+             "watercolour": ["threshold=0.08", "hybrid=0", "blend_radius=2", "variety=15"]}
 CROPS = {"snail": [(380, 60), (130, 180), (330, 240)], "stilllife": [(280, 140), (480, 60), (400, 240)],
          "suzanne": [(280, 30), (60, 240), (400, 240)], "toys": [(230, 20), (60, 220), (420, 150)]}
 CROP = 300
@@ -71,24 +78,27 @@ def lot(*parts):
 
 def choose():
     pairs = []
-    for style, scene in SAMPLES:
-        chosen = set()
-        while len(chosen) < PAIRS_OF_EACH:
-            turn = len(chosen)
-            names = sorted(WAYS, key=lambda way: lot(style, scene, turn, way, len(pairs)))
-            two = ["as it is", next(name for name in names if name != "as it is")] if turn % 3 == 0 else names[:2]
-            two.sort(key=lambda way: lot("side", style, scene, turn, way))
-            salt = 0
-            while frozenset(two) in chosen:
-                salt += 1
-                two = sorted(WAYS, key=lambda way: lot(style, scene, turn, way, salt))[:2]
-            chosen.add(frozenset(two))
-            crop = CROPS[scene][lot("crop", style, turn) % 3] if turn % 2 else None
-            pairs.append({"style": style, "scene": scene, "A": two[0], "B": two[1], "crop": crop,
-                          "locked": False, "votes": []})
-    for i in sorted(range(len(pairs)), key=lambda i: lot("locked", i))[: len(pairs) // 2]:
-        pairs[i]["locked"] = True
+    for locked, samples in ((False, OPEN), (True, LOCKED)):
+        for style, scene in samples:
+            chosen = set()
+            while len(chosen) < PAIRS_OF_EACH[locked]:
+                pairs.append(chosen_pair(style, scene, locked, chosen, len(pairs)))
     save(pairs)
+
+
+def chosen_pair(style, scene, locked, chosen, count):
+    """One that is not among the `chosen`, which it joins. `count`: of pairs before it."""
+    turn = len(chosen)
+    names = sorted(WAYS, key=lambda way: lot(style, scene, turn, way, count))
+    two = ["as it is", next(name for name in names if name != "as it is")] if turn % 3 == 0 else names[:2]
+    two.sort(key=lambda way: lot("side", style, scene, turn, way))
+    salt = 0
+    while frozenset(two) in chosen:
+        salt += 1
+        two = sorted(WAYS, key=lambda way: lot(style, scene, turn, way, salt))[:2]
+    chosen.add(frozenset(two))
+    crop = CROPS[scene][lot("crop", style, turn) % 3] if turn % 2 else None
+    return {"style": style, "scene": scene, "A": two[0], "B": two[1], "crop": crop, "locked": locked, "votes": []}
 
 
 def save(pairs):
@@ -176,12 +186,14 @@ def guides(style, scene, height):
 def picture_file(style, scene, way, height):
     """Without paper."""
     name = "%s-%s-%d-%s" % (style, scene, height, way.replace(" ", "_").replace(",", ""))
+    keys = KEYS_THEN.get(style, []) if (style, scene) in OPEN else []
     file = OUT / "pictures" / (name + ".png")
     if not file.exists():
         file.parent.mkdir(parents=True, exist_ok=True)
         marks = [part for part in WAYS[way] if part.isupper()]
         options = ["--set", "transfer.paper="]
-        for part in WAYS[way]:
+        given = [part.split("=")[0] for part in WAYS[way]]
+        for part in [key for key in keys if key.split("=")[0] not in given] + WAYS[way]:
             if "=" in part:
                 options += ["--set", "transfer." + part]
             elif not part.isupper():
@@ -237,11 +249,11 @@ def draw_row(pair):
     return np.concatenate([np.full((26, row.shape[1], 3), 0.97), row], 0), panels[0].shape[1] + 8, panels[1].shape[1] + 8
 
 
-def draw(pairs):
+def draw(pairs, locked):
     """Two whole pictures or three crops a sheet."""
     (OUT / "sheets").mkdir(parents=True, exist_ok=True)
     for is_crop, rows_a_sheet in ((False, 2), (True, 3)):
-        numbers = [i for i, pair in enumerate(pairs) if bool(pair["crop"]) == is_crop]
+        numbers = [i for i, pair in enumerate(pairs) if bool(pair["crop"]) == is_crop and pair["locked"] == locked]
         for begin in range(0, len(numbers), rows_a_sheet):
             part = numbers[begin:begin + rows_a_sheet]
             rows = [draw_row(pairs[i]) for i in part]
@@ -261,6 +273,8 @@ def draw(pairs):
 def add_reading(pairs, path):
     votes = json.loads(Path(path).read_text(encoding="utf-8"))
     for number, pair in enumerate(pairs, 1):
+        if not pair["locked"]:
+            continue
         vote = votes.get(str(number))
         if not vote or vote[0] not in ("A", "B", "=") or not vote[1].strip():
             sys.exit("%s: pair %d: expected [\"A\", \"B\" or \"=\", a reason], found %s" % (path, number, vote))
@@ -269,23 +283,30 @@ def add_reading(pairs, path):
 
 
 def measure(pairs):
-    """The figures of each whole picture, crops and all: half the pairs show one at 360 lines, half at 540."""
+    """The figures of what each sheet shows, whole pictures or parts."""
     wanted = {}
     for pair in pairs:
-        height = 540 if pair["crop"] else 360
         for side in "AB":
-            wanted.setdefault((pair["style"], pair["scene"], height), set()).add(pair[side])
+            wanted.setdefault((pair["style"], pair["scene"], tuple(pair["crop"] or ())), set()).add(pair[side])
     figures = {}
-    for (style, scene, height), ways in sorted(wanted.items()):
+    for (style, scene, crop), ways in sorted(wanted.items()):
+        height = 540 if crop else 360
         files = {str(picture_file(style, scene, way, height)): way for way in sorted(ways)}
+        part = ["--part", *map(str, crop), str(CROP)] if crop else []
         done = subprocess.run([str(ROOT / "build/bench/paint_figures"), str(ROOT / "exemplars" / style),
-                               str(guides(style, scene, height)), *files], capture_output=True, text=True, check=True)
+                               str(guides(style, scene, height)), *part, *files], capture_output=True, text=True)
+        if done.returncode != 0:
+            sys.exit(done.stderr)
         for line in map(json.loads, done.stdout.splitlines()):
             way = files[line.pop("picture")]
-            figures["%s %s %d %s" % (style, scene, height, way)] = {k: round(v, 4) for k, v in line.items()}
-        print(style, scene, height, flush=True)
+            figures[key_of(style, scene, crop) + way] = {k: round(v, 4) for k, v in line.items()}
+        print(style, scene, *crop, flush=True)
     rows = ",\n ".join("%s: %s" % (json.dumps(name), json.dumps(of)) for name, of in sorted(figures.items()))
     FIGURES.write_text("{%s}\n" % rows, encoding="utf-8")
+
+
+def key_of(style, scene, crop):
+    return "%s %s %s " % (style, scene, "%d,%d" % tuple(crop) if crop else "whole")
 
 
 def agreement(pairs, locked):
@@ -293,19 +314,17 @@ def agreement(pairs, locked):
     agree, and of all that a majority decided."""
     figures = json.loads(FIGURES.read_text(encoding="utf-8"))
     part = [pair for pair in pairs if pair["locked"] == locked and majority(pair)]
-    print("%s half: %d pairs that a majority decided, %d of them unanimously"
+    print("%s: %d pairs that a majority decided, %d of them unanimously"
           % ("locked" if locked else "open", len(part), sum(map(is_agreed, part))))
-    for name in ("both", "energy", "missing", "texture"):
+    for name in ("energy", "both", "missing", "paint", "texture"):
         def agrees(pair):
-            key = "%s %s %d " % (pair["style"], pair["scene"], 540 if pair["crop"] else 360)
-            a, b = (figures[key + pair[side]][name] for side in "AB")
+            a, b = (figures[key_of(pair["style"], pair["scene"], pair["crop"]) + pair[side]][name] for side in "AB")
             return ("A" if a < b else "B") == majority(pair)
         agreed = [pair for pair in part if is_agreed(pair)]
         print("%-8s %3.0f%% of all, %3.0f%% of the unanimous" % (name, 100 * sum(map(agrees, part)) / len(part),
                                                               100 * sum(map(agrees, agreed)) / len(agreed)))
-        if not locked:
-            wrong = [i + 1 for i, pair in enumerate(pairs) if pair in agreed and not agrees(pair)]
-            print("         wrong where all agree: " + ", ".join(map(str, wrong)))
+        wrong = [i + 1 for i, pair in enumerate(pairs) if pair in agreed and not agrees(pair)]
+        print("         wrong where all agree: " + ", ".join(map(str, wrong)))
 
 
 def majority(pair):
@@ -316,33 +335,36 @@ def majority(pair):
 
 
 def is_agreed(pair):
-    return len({vote[0] for vote in pair["votes"]}) == 1 and pair["votes"][0][0] != "="
+    return {vote[0] for vote in pair["votes"]} in ({"A"}, {"B"})
 
 
 def report(pairs):
-    readings = len(pairs[0]["votes"])
-    print("%d pairs, %d readings; all readings agree on %d, a majority chose in %d"
-          % (len(pairs), readings, sum(map(is_agreed, pairs)), sum(majority(pair) is not None for pair in pairs)))
-    for i in range(readings):
-        for j in range(i):
-            both = [p for p in pairs if "=" not in (p["votes"][i][0], p["votes"][j][0])]
-            same = sum(p["votes"][i][0] == p["votes"][j][0] for p in both)
-            print("readings %d and %d: the same side in %d of %d" % (j + 1, i + 1, same, len(both)))
+    for locked in (False, True):
+        part = [pair for pair in pairs if pair["locked"] == locked]
+        readings = len(part[0]["votes"])
+        print("%s: %d pairs, %d readings; all readings agree on %d, a majority chose in %d"
+              % ("locked" if locked else "open", len(part), readings, sum(map(is_agreed, part)),
+                 sum(majority(pair) is not None for pair in part)))
+        for i in range(readings):
+            for j in range(i):
+                both = [p for p in part if "=" not in (p["votes"][i][0], p["votes"][j][0])]
+                same = sum(p["votes"][i][0] == p["votes"][j][0] for p in both)
+                print("readings %d and %d: the same side in %d of %d" % (j + 1, i + 1, same, len(both)))
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--choose", action="store_true", help="pick the pairs anew and forget all votes")
-    parser.add_argument("--draw", action="store_true", help="draw pictures and sheets")
+    parser.add_argument("--draw", choices=("open", "locked"), help="draw pictures and sheets of these pairs")
     parser.add_argument("--measure", action="store_true", help="measure all pictures anew")
-    parser.add_argument("--locked", action="store_true", help="judge the figures by the locked half")
-    parser.add_argument("--read", metavar="FILE", help="add one reading")
+    parser.add_argument("--locked", action="store_true", help="judge the figures by the locked pairs")
+    parser.add_argument("--read", metavar="FILE", help="add one reading of the locked pairs")
     options = parser.parse_args()
     if options.choose:
         choose()
     pairs = json.loads(PAIRS.read_text(encoding="utf-8"))
     if options.draw:
-        draw(pairs)
+        draw(pairs, options.draw == "locked")
     elif options.read:
         add_reading(pairs, options.read)
     elif options.measure:

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/image/guides.h"
 #include "core/image/hash.h"
 #include "measure/texture/normal_tone.h"
 #include "measure/texture/paint_pyramid.h"
@@ -41,12 +42,15 @@ using internal::Distributions;
 using internal::FeatureGroup;
 using internal::FeaturesOf;
 using internal::kCells;
+using internal::kNoSurface;
 using internal::kOctaves;
 using internal::kQuantiles;
 using internal::NormalTone;
 using internal::OneExemplar;
 using internal::PaintFeatures;
 using internal::Quantiles;
+using internal::Surface;
+using internal::SurfaceOf;
 using internal::Weights;
 
 // Rings of equal area on the disc of normals, from the middle out, and the cells of each.
@@ -75,12 +79,13 @@ std::size_t CellOf(float x, float y) {
 using Pixels = std::vector<std::uint32_t>;
 using CellPixels = std::array<Pixels, kCells>;
 
-// The valid pixels of a group that `counts`, by cell.
+// The pixels of a group that have this exemplar and `count`, by cell.
 template <class Counts>
-CellPixels PixelsOf(const FeatureGroup& group, const Counts& counts) {
+CellPixels PixelsOf(const FeatureGroup& group, std::uint8_t exemplar, const Counts& counts) {
   CellPixels cells;
-  for (std::size_t i = 0; i < group.valid.size(); ++i) {
-    if (group.valid[i] && counts(i)) cells[CellOf(group.normal[0][i], group.normal[1][i])].push_back(std::uint32_t(i));
+  for (std::size_t i = 0; i < group.exemplar.size(); ++i) {
+    if (group.exemplar[i] == exemplar && counts(i))
+      cells[CellOf(group.normal[0][i], group.normal[1][i])].push_back(std::uint32_t(i));
   }
   return cells;
 }
@@ -195,6 +200,10 @@ GuidedTexture& GuidedTexture::operator=(GuidedTexture&&) noexcept = default;
 
 Expected<GuidedTexture> GuidedTexture::Of(std::span<const EnergyExemplar> exemplars, int threads) {
   if (exemplars.empty()) return InputError("a texture distance needs an exemplar, and there is none");
+  if (exemplars.size() >= internal::kNoExemplar) {
+    return InputError("a texture distance takes fewer than 255 exemplars, and there are " +
+                      std::to_string(exemplars.size()));
+  }
   for (const EnergyExemplar& exemplar : exemplars) {
     const std::size_t pixels = std::size_t(exemplar.picture->width) * std::size_t(exemplar.picture->height);
     if (exemplar.usable.size() != pixels || exemplar.normal[0].size() != pixels ||
@@ -208,10 +217,11 @@ Expected<GuidedTexture> GuidedTexture::Of(std::span<const EnergyExemplar> exempl
   arena.execute([&] {
     Sums halves;
     for (const EnergyExemplar& exemplar : exemplars) {
-      std::vector<float> surface(exemplar.usable.size());
-      for (std::size_t i = 0; i < surface.size(); ++i) surface[i] = exemplar.usable[i] ? 0.0f : -1.0f;
+      std::vector<Surface> surface(exemplar.usable.size());
+      for (std::size_t i = 0; i < surface.size(); ++i) surface[i] = exemplar.usable[i] ? SurfaceOf(0, 0) : kNoSurface;
       NormalTone tone(*exemplar.picture, exemplar.normal, exemplar.usable);
-      const PaintFeatures features = FeaturesOf(*exemplar.picture, exemplar.normal, std::move(surface), tone);
+      const NormalTone* const tones[] = {&tone};
+      const PaintFeatures features = FeaturesOf(*exemplar.picture, exemplar.normal, std::move(surface), tones);
       OneExemplar one{std::move(tone), {}, 0.0f};
       if (!exemplar.more_guides.empty()) {
         const auto first = std::find_if(exemplar.usable.begin(), exemplar.usable.end(), [](auto u) { return u != 0; });
@@ -223,10 +233,11 @@ Expected<GuidedTexture> GuidedTexture::Of(std::span<const EnergyExemplar> exempl
         const int octave = OctaveOf(g);
         const auto width = std::size_t(exemplar.picture->width >> octave), block = std::size_t(kBlock >> octave);
         const auto half = [&](std::size_t i) { return (i % width / block + i / width / block) % 2; };
-        one.groups[g] = DistributionsOf(features[g], g, PixelsOf(features[g], [](std::size_t) { return true; }));
+        one.groups[g] = DistributionsOf(features[g], g, PixelsOf(features[g], 0, [](std::size_t) { return true; }));
         const Distributions first =
-            DistributionsOf(features[g], g, PixelsOf(features[g], [&](std::size_t i) { return half(i) == 0; }));
-        halves[g].Add(first, features[g], PixelsOf(features[g], [&](std::size_t i) { return half(i) == 1; }), octave);
+            DistributionsOf(features[g], g, PixelsOf(features[g], 0, [&](std::size_t i) { return half(i) == 0; }));
+        halves[g].Add(first, features[g], PixelsOf(features[g], 0, [&](std::size_t i) { return half(i) == 1; }),
+                      octave);
       }
       impl->exemplars.push_back(std::move(one));
     }
@@ -247,26 +258,30 @@ Expected<GuidedTextureReport> GuidedTexture::Measure(const EnergyTarget& target,
   Sums sums;
   tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
   arena.execute([&] {
-    for (const OneExemplar& exemplar : impl_->exemplars) {
-      const auto is_own = [&](std::size_t i) {
-        if (!has_conditions) return &exemplar == impl_->exemplars.data();
-        const float wanted = target.more_guides[0][i], off = std::abs(exemplar.condition - wanted);
-        return std::all_of(impl_->exemplars.begin(), impl_->exemplars.end(), [&](const OneExemplar& rival) {
-          const float further = std::abs(rival.condition - wanted);
-          return off < further || (off == further && &exemplar <= &rival);
-        });
+    const std::vector<OneExemplar>& exemplars = impl_->exemplars;
+    const auto nearest = [&](std::size_t i) -> std::uint8_t {
+      if (!has_conditions) return 0;
+      const float wanted = target.more_guides[0][i];
+      const auto nearer = [&](const OneExemplar& a, const OneExemplar& b) {
+        return std::abs(a.condition - wanted) < std::abs(b.condition - wanted);
       };
-      std::vector<float> own(surface.begin(), surface.end());
-      bool any = false;
-      for (std::size_t i = 0; i < own.size(); ++i) {
-        if (!(target.coverage[i] >= 0.999f) || !is_own(i)) own[i] = -1.0f;
-        any = any || own[i] >= 0.0f;
-      }
-      if (!any) continue;
-      const PaintFeatures features = FeaturesOf(*target.picture, target.normal, std::move(own), exemplar.tone);
+      return std::uint8_t(std::min_element(exemplars.begin(), exemplars.end(), nearer) - exemplars.begin());
+    };
+    std::vector<Surface> surfaces(pixels, kNoSurface);
+    std::vector<std::uint8_t> is_used(exemplars.size());
+    for (std::size_t i = 0; i < pixels; ++i) {
+      if (!(target.coverage[i] >= 0.999f) || !(surface[i] >= 0.0f)) continue;
+      const std::uint8_t own = nearest(i);
+      surfaces[i] = SurfaceOf(IdOf(surface[i]), own), is_used[own] = 1;
+    }
+    std::vector<const NormalTone*> tones;
+    for (const OneExemplar& exemplar : exemplars) tones.push_back(&exemplar.tone);
+    const PaintFeatures features = FeaturesOf(*target.picture, target.normal, std::move(surfaces), tones);
+    for (std::size_t k = 0; k < exemplars.size(); ++k) {
+      if (!is_used[k]) continue;
       for (std::size_t g = 0; g < kGroups; ++g) {
-        sums[g].Add(exemplar.groups[g], features[g], PixelsOf(features[g], [](std::size_t) { return true; }),
-                    OctaveOf(g));
+        const CellPixels cells = PixelsOf(features[g], std::uint8_t(k), [](std::size_t) { return true; });
+        sums[g].Add(exemplars[k].groups[g], features[g], cells, OctaveOf(g));
       }
     }
   });

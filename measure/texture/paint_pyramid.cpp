@@ -17,7 +17,7 @@ struct Level {
   int width = 0, height = 0;
   std::array<Plane, 3> detail;  // Oklab beside the tone
   std::array<Plane, 2> normal;
-  Plane surface;
+  std::vector<Surface> surface;
 
   std::size_t Index(int x, int y) const { return std::size_t(y) * std::size_t(width) + std::size_t(x); }
 };
@@ -38,23 +38,23 @@ Level Halved(const Level& level) {
       };
       for (std::size_t c = 0; c < 3; ++c) half.detail[c][to] = mean(level.detail[c]);
       for (std::size_t c = 0; c < 2; ++c) half.normal[c][to] = mean(level.normal[c]);
-      const float first = level.surface[upper];
+      const Surface first = level.surface[upper];
       const bool same =
           level.surface[upper + 1] == first && level.surface[lower] == first && level.surface[lower + 1] == first;
-      half.surface[to] = same ? first : -1.0f;
+      half.surface[to] = same ? first : kNoSurface;
     }
   });
   return half;
 }
 
-// Where all pixels up to `reach` away have one surface.
-std::vector<std::uint8_t> ValidWithin(const Level& level, int reach) {
-  std::vector<std::uint8_t> along(level.surface.size()), valid(level.surface.size());
+// The exemplars of pixels whose neighbours up to `reach` away have the same surface.
+std::vector<std::uint8_t> ExemplarsWithin(const Level& level, int reach) {
+  std::vector<std::uint8_t> along(level.surface.size()), exemplar(level.surface.size(), kNoExemplar);
   tbb::parallel_for(0, level.height, [&](int y) {
     int same = 0;  // pixels up to this one that have its surface
     for (int x = 0; x < level.width; ++x) {
-      const float here = level.surface[level.Index(x, y)];
-      same = here < 0.0f ? 0 : x > 0 && level.surface[level.Index(x - 1, y)] == here ? same + 1 : 1;
+      const Surface here = level.surface[level.Index(x, y)];
+      same = here == kNoSurface ? 0 : x > 0 && level.surface[level.Index(x - 1, y)] == here ? same + 1 : 1;
       if (same > 2 * reach) along[level.Index(x - reach, y)] = 1;
     }
   });
@@ -66,10 +66,10 @@ std::vector<std::uint8_t> ValidWithin(const Level& level, int reach) {
         const std::size_t q = level.Index(x, v);
         same = along[q] && level.surface[q] == level.surface[i];
       }
-      valid[i] = same;
+      if (same) exemplar[i] = ExemplarOf(level.surface[i]);
     }
   });
-  return valid;
+  return exemplar;
 }
 
 // The mean of the values on either side less the one in the middle.
@@ -93,35 +93,36 @@ FeatureGroup StrokesOf(const Level& level) {
       group.planes.push_back(SecondDifference(fine, level, dx, dy));
     }
   }
-  group.valid = ValidWithin(level, kReach);
+  group.exemplar = ExemplarsWithin(level, kReach);
   group.normal = level.normal;
   return group;
 }
 
 }  // namespace
 
-PaintFeatures FeaturesOf(const Picture& picture, const NormalPlanes& normal, std::vector<float> surface,
-                         const NormalTone& tone) {
+PaintFeatures FeaturesOf(const Picture& picture, const NormalPlanes& normal, std::vector<Surface> surface,
+                         std::span<const NormalTone* const> tones) {
   Level level;
   level.width = picture.width, level.height = picture.height;
   level.surface = std::move(surface);
   PaintFeatures features;
-  FeatureGroup& tones = features[0];
-  tones.planes.assign(3, Plane(level.surface.size()));
+  FeatureGroup& raw = features[0];
+  raw.planes.assign(3, Plane(level.surface.size()));
   for (Plane& plane : level.detail) plane.resize(level.surface.size());
   for (std::size_t c = 0; c < 2; ++c) level.normal[c].assign(normal[c].begin(), normal[c].end());
   tbb::parallel_for(0, level.height, [&](int y) {
     for (int x = 0; x < level.width; ++x) {
       const std::size_t i = level.Index(x, y);
-      if (level.surface[i] < 0.0f) continue;
+      if (level.surface[i] == kNoSurface) continue;
+      const NormalTone& tone = *tones[ExemplarOf(level.surface[i])];
       const glm::vec3 color = OklabOf(picture.rgba.data() + 4 * i), off = color - tone.At(normal[0][i], normal[1][i]);
       for (int c = 0; c < 3; ++c) {
-        tones.planes[std::size_t(c)][i] = color[c], level.detail[std::size_t(c)][i] = off[c];
+        raw.planes[std::size_t(c)][i] = color[c], level.detail[std::size_t(c)][i] = off[c];
       }
     }
   });
-  tones.valid = ValidWithin(level, 1);
-  tones.normal = level.normal;
+  raw.exemplar = ExemplarsWithin(level, 1);
+  raw.normal = level.normal;
   for (std::size_t octave = 0; octave < kOctaves; ++octave) {
     if (octave > 0) level = Halved(level);
     features[1 + octave] = StrokesOf(level);

@@ -13,11 +13,12 @@
 namespace scumble::internal {
 
 inline constexpr int kOctaves = 4;
+inline constexpr std::uint8_t kNoExemplar = 0xff;
 
 // Values of one octave. Its picture is the whole one, each side divided by 2 once an octave.
 struct FeatureGroup {
   std::vector<std::vector<float>> planes;    // by feature
-  std::vector<std::uint8_t> valid;           // not 0: the features see one surface alone
+  std::vector<std::uint8_t> exemplar;        // the pixel's own, or kNoExemplar where the features see two surfaces
   std::array<std::vector<float>, 2> normal;  // x and y
 };
 
@@ -29,10 +30,15 @@ struct FeatureGroup {
 // that the paint is blurred.
 using PaintFeatures = std::array<FeatureGroup, 1 + kOctaves>;
 
-// `surface`: by pixel the number of its surface, below 0 where nothing is measured; features are valid where all pixels
-// in reach have one number. Colours are straight; alpha does not matter. O(pixels). Runs in the caller's arena; the
-// bytes do not depend on its threads.
-PaintFeatures FeaturesOf(const Picture& picture, const NormalPlanes& normal, std::vector<float> surface,
-                         const NormalTone& tone);
+// A pixel's surface: its object's id and, in the upper byte, the exemplar that it is compared with.
+using Surface = std::uint32_t;
+inline constexpr Surface kNoSurface = 0xffffffff;  // nothing is measured
+inline Surface SurfaceOf(std::uint32_t id, std::uint8_t exemplar) { return std::uint32_t(exemplar) << 24 | id; }
+inline std::uint8_t ExemplarOf(Surface surface) { return std::uint8_t(surface >> 24); }  // or kNoExemplar
+
+// `surface` by pixel; features are valid where all pixels in reach have one. `tones` by exemplar. Colours are straight;
+// alpha does not matter. O(pixels). Runs in the caller's arena; the bytes do not depend on its threads.
+PaintFeatures FeaturesOf(const Picture& picture, const NormalPlanes& normal, std::vector<Surface> surface,
+                         std::span<const NormalTone* const> tones);
 
 }  // namespace scumble::internal

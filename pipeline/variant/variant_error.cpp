@@ -172,12 +172,17 @@ Status TradeReference::MeasurePaint(const Picture& picture, const SourceField* f
   return Ok();
 }
 
-Status TradeReference::MeasureTexture(const GuidedTexture& exemplars, const Picture& picture,
-                                      TradeMeasure& measure) const {
+Expected<GuidedTextureReport> TradeReference::TextureOf(const GuidedTexture& exemplars, const Picture& picture) const {
   const std::vector<float> one(guides_->Has(Layer::kObject) ? 0 : guides_->pixel_count());
   const std::span<const float> surface = one.empty() ? guides_->Plane(Layer::kObject) : std::span(one);
-  SCUMBLE_ASSIGN(const GuidedTextureReport report, exemplars.Measure(Target(picture), surface, threads_));
-  if (report.measured > 0) measure.texture = report.distance;
+  return exemplars.Measure(Target(picture), surface, threads_);
+}
+
+Status TradeReference::MeasureTexture(const GuidedTexture& exemplars, const Picture& picture,
+                                      TradeMeasure& measure) const {
+  SCUMBLE_ASSIGN(const GuidedTextureReport paint, TextureOf(exemplars, picture));
+  SCUMBLE_ASSIGN(const OutlineReport outlines, MeasureOutlines(picture, *guides_, threads_));
+  if (paint.measured > 0) measure.texture = paint.distance * (1.0 + kOutlinesInTexture * outlines.error);
   return Ok();
 }
 

@@ -10,6 +10,7 @@
 #include "core/image/guides.h"
 #include "measure/energy/energy.h"
 #include "measure/texture/guided_texture.h"
+#include "measure/texture/outline_error.h"
 #include "measure/tradeoff/report.h"
 #include "transfer/transfer.h"
 
@@ -20,6 +21,10 @@ struct GuideDifference {
   double rms = 0.0;
   double flip = 0.0;
 };
+
+// What outlines that are off count for: where two pictures have the same paint, the eye looks at their outlines
+// (docs/paint-texture.md).
+inline constexpr double kOutlinesInTexture = 0.2;
 
 class TradeReference {
  public:
@@ -34,7 +39,9 @@ class TradeReference {
                       TradeMeasure& measure) const;
   // The exemplars as MeasureTexture takes them.
   Expected<GuidedTexture> Texture() const { return GuidedTexture::Of(Exemplars(), threads_); }
-  // Fills in the distance of the picture's texture from that of the exemplars, which are this reference's.
+  // How the picture's paint differs from that of the exemplars, which are this reference's, without its outlines.
+  Expected<GuidedTextureReport> TextureOf(const GuidedTexture& exemplars, const Picture& picture) const;
+  // Fills in `texture`: the distance of the picture's paint, times 1 and kOutlinesInTexture of its error at outlines.
   Status MeasureTexture(const GuidedTexture& exemplars, const Picture& picture, TradeMeasure& measure) const;
   // Fills in what the field shows of the mosaic.
   Status MeasureMosaic(const Picture& picture, const SourceField& field, TradeMeasure& measure) const;
