@@ -41,9 +41,9 @@ struct Tensor {
   float xx = 0.0f, xy = 0.0f, yy = 0.0f;
 };
 
-// What bends less than this, in radians a pixel of the reference height, squared, and in no direction more than in
-// others, has no axis of its own.
-constexpr float kLeastBend = 1e-5f, kLeastCoherence = 0.15f;
+// What bends less than this, in radians a pixel of the reference height, and in no direction more than in others, has
+// no axis of its own.
+constexpr float kLeastBend = 0.003f, kLeastCoherence = 0.15f;
 
 // The axis in which the tensor is largest: half the angle of (xx - yy, 2 xy). The less sure it is, the more it turns to
 // `fixed`, so that a picture of another size, or the next frame, has nearly the same. Not against `fixed`. `least` is
@@ -92,7 +92,7 @@ class Patches {
       for (int x = 0; x < width; ++x) patch_[guides.Index(x, y)] = NearestPoint(x, y);
     });
     Sum(guides, height);
-    const auto least = static_cast<float>(kLeastBend / (frame.scale * frame.scale));  // normals turn more a pixel there
+    const auto least = static_cast<float>(kLeastBend / frame.scale);  // normals turn more a pixel there
     for (auto& patch : of_cell_) {
       for (Part& part : patch) {
         Tensor& sum = part.tensor;
@@ -176,9 +176,12 @@ class Patches {
         if (object_[right] != object_[p] || object_[below] != object_[p]) continue;
         const glm::vec3 n = guides.Vec3(Layer::kNormal, p);
         const glm::vec3 dx = guides.Vec3(Layer::kNormal, right) - n, dy = guides.Vec3(Layer::kNormal, below) - n;
-        part.tensor.xx += dx.x * dx.x + dx.y * dx.y + dx.z * dx.z;
-        part.tensor.xy += dx.x * dy.x + dx.y * dy.y + dx.z * dy.z;
-        part.tensor.yy += dy.x * dy.x + dy.y * dy.y + dy.z * dy.z;
+        const float xx = dx.x * dx.x + dx.y * dx.y + dx.z * dx.z, xy = dx.x * dy.x + dx.y * dy.y + dx.z * dy.z,
+                    yy = dy.x * dy.x + dy.y * dy.y + dy.z * dy.z;
+        // Lengths, not their squares: a crease then counts as much beside a bend in pictures of any size.
+        const float length = std::sqrt(xx + yy);
+        if (!(length > 0.0f)) continue;
+        part.tensor.xx += xx / length, part.tensor.xy += xy / length, part.tensor.yy += yy / length;
       }
     }
     return parts;
