@@ -97,14 +97,15 @@ void PrintFigures(const TradeReference& reference, const GuidedTexture& texture,
   patches.samples = kPatches;
   OrStop(reference.MeasurePaint(picture, nullptr, patches, measure));
   OrStop(reference.MeasureTexture(texture, picture, measure));
-  const double paint = OrStop(reference.TextureOf(texture, picture)).distance;
+  const double outlines = OrStop(MeasureOutlines(picture, reference.guides())).error;
+  const double with_outlines = measure.texture.value_or(NAN);
   const nlohmann::ordered_json line = {{"picture", file},
                                        {"both", measure.both.mean},
                                        {"energy", measure.energy.mean},
                                        {"missing", measure.missing.mean},
-                                       {"texture", measure.texture.value_or(NAN)},
-                                       {"paint", paint},
-                                       {"outlines", OrStop(MeasureOutlines(picture, reference.guides())).error}};
+                                       {"texture", with_outlines},
+                                       {"paint", with_outlines / (1.0 + kOutlinesInTexture * outlines)},
+                                       {"outlines", outlines}};
   std::printf("%s\n", line.dump().c_str());
   std::fflush(stdout);
 }

@@ -3,16 +3,16 @@
 
     /usr/bin/python3 bench/paint_pairs.py --choose        # anew: forgets all votes
     /usr/bin/python3 bench/paint_pairs.py --draw locked   # pictures and sheets without names, into out/paint-pairs/
-    /usr/bin/python3 bench/paint_pairs.py --read FILE     # adds one reading of the locked pairs: {"121": ["A", "why"], …}
+    /usr/bin/python3 bench/paint_pairs.py --read FILE     # a reading of the locked pairs: {"121": ["A", "why"], …}
     /usr/bin/python3 bench/paint_pairs.py                 # agreement of the readings; of figures, on the open pairs
     /usr/bin/python3 bench/paint_pairs.py --measure       # anew: the figures of all pairs (build/bench/paint_figures)
     /usr/bin/python3 bench/paint_pairs.py --locked        # of figures, on the locked pairs: has been used
 
-Two sets of pairs of ways to draw a painting on a scene, good ones and deliberately bad ones: 120 by which the measure was
-chosen, and 80 that were locked away until it was. Every third pair holds the style as it is. Which pairs, which side is
-A and what part is shown is decided by hashes. A sheet shows the exemplar beside A and B, at the size at which it is used.
-Whoever reads the sheets must not have seen anything else. One reading is a vote for each pair with a reason. Figures are
-those of what the sheet shows: of a part, if it shows a part.
+Two sets of pairs of ways to draw a painting on a scene, good ones and deliberately bad ones: 120 by which the measure
+was chosen, and 80 that were locked away until it was. Every third pair holds the style as it is. Which pairs, which
+side is A and what part is shown is decided by hashes. A sheet shows the exemplar beside A and B, at the size at which
+it is used. Whoever reads the sheets must not have seen anything else. One reading is a vote for each pair with a
+reason. Figures are those of what the sheet shows: of a part, if it shows a part.
 """
 
 import argparse

@@ -31,7 +31,7 @@ struct TradeMeasure {
   Quartiles guides_ms, transfer_ms, total_ms;  // wall clock
   double prepare_ms = 0.0;              // the style, once, with empty caches: tables, trees, exemplars at this size
   std::size_t memory_bytes = 0;         // the peak
-  std::optional<double> texture;        // measure/texture/guided_texture.h; ranks
+  std::optional<double> texture;        // measure/texture/: paint and outlines; ranks
   Estimate both, energy, missing;       // measure/energy/energy.h
   std::optional<double> guide_degrees;  // mean angle between a pixel's normal and that of its source, exact guides
   std::optional<double> coherence;      // 0 … 1

@@ -172,15 +172,11 @@ Status TradeReference::MeasurePaint(const Picture& picture, const SourceField* f
   return Ok();
 }
 
-Expected<GuidedTextureReport> TradeReference::TextureOf(const GuidedTexture& exemplars, const Picture& picture) const {
-  const std::vector<float> one(guides_->Has(Layer::kObject) ? 0 : guides_->pixel_count());
-  const std::span<const float> surface = one.empty() ? guides_->Plane(Layer::kObject) : std::span(one);
-  return exemplars.Measure(Target(picture), surface, threads_);
-}
-
 Status TradeReference::MeasureTexture(const GuidedTexture& exemplars, const Picture& picture,
                                       TradeMeasure& measure) const {
-  SCUMBLE_ASSIGN(const GuidedTextureReport paint, TextureOf(exemplars, picture));
+  const std::vector<float> one(guides_->Has(Layer::kObject) ? 0 : guides_->pixel_count());
+  const std::span<const float> surface = one.empty() ? guides_->Plane(Layer::kObject) : std::span(one);
+  SCUMBLE_ASSIGN(const GuidedTextureReport paint, exemplars.Measure(Target(picture), surface, threads_));
   SCUMBLE_ASSIGN(const OutlineReport outlines, MeasureOutlines(picture, *guides_, threads_));
   if (paint.measured > 0) measure.texture = paint.distance * (1.0 + kOutlinesInTexture * outlines.error);
   return Ok();

@@ -39,8 +39,6 @@ class TradeReference {
                       TradeMeasure& measure) const;
   // The exemplars as MeasureTexture takes them.
   Expected<GuidedTexture> Texture() const { return GuidedTexture::Of(Exemplars(), threads_); }
-  // How the picture's paint differs from that of the exemplars, which are this reference's, without its outlines.
-  Expected<GuidedTextureReport> TextureOf(const GuidedTexture& exemplars, const Picture& picture) const;
   // Fills in `texture`: the distance of the picture's paint, times 1 and kOutlinesInTexture of its error at outlines.
   Status MeasureTexture(const GuidedTexture& exemplars, const Picture& picture, TradeMeasure& measure) const;
   // Fills in what the field shows of the mosaic.

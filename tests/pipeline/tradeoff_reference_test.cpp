@@ -97,6 +97,40 @@ TEST(TradeReference, AnotherPictureScoresMoreAndWithoutAFieldSaysNothingOfTheMos
                measure.repetition);
 }
 
+// Where paint is the same, `texture` differs by what outlines do: kOutlinesInTexture of their error.
+TEST(TradeReference, TextureCountsOutlines) {
+  constexpr int kTextured = 192;
+  SphereOptions options;
+  options.size = kTextured;
+  auto made = RenderSphereGuides(options);
+  ASSERT_TRUE(made.ok());
+  const auto guides = std::make_shared<const GuideSet>(std::move(made->guides));
+  const Painted painted = Paint(LitSphereStyle(kTextured), *guides);
+  const TradeReference reference(guides, painted.style, 0.0, 0);
+  const auto texture = reference.Texture();
+  ASSERT_TRUE(texture.ok());
+  // Other paint, in the same outline, and in one whose pixels beside the background are half transparent.
+  Picture sharp = Noise(kTextured, 7);
+  for (std::size_t i = 3; i < sharp.rgba.size(); i += 4) sharp.rgba[i] = painted.picture.rgba[i];
+  Picture frayed = sharp;
+  for (int y = 1; y < kTextured - 1; ++y) {
+    for (int x = 1; x < kTextured - 1; ++x) {
+      const bool is_border = sharp.At(x - 1, y)[3] == 0 || sharp.At(x + 1, y)[3] == 0;
+      if (is_border && sharp.At(x, y)[3] != 0) frayed.At(x, y)[3] = 32768;
+    }
+  }
+  TradeMeasure clean, soft;
+  ASSERT_TRUE(reference.MeasureTexture(*texture, sharp, clean).ok());
+  ASSERT_TRUE(reference.MeasureTexture(*texture, frayed, soft).ok());
+  const auto error = MeasureOutlines(sharp, *guides), more = MeasureOutlines(frayed, *guides);
+  ASSERT_TRUE(error.ok() && more.ok());
+  ASSERT_GT(more->error, error->error);
+  ASSERT_TRUE(clean.texture && soft.texture);
+  ASSERT_GT(*clean.texture, 0.0);
+  EXPECT_NEAR(*soft.texture / *clean.texture,
+              (1.0 + kOutlinesInTexture * more->error) / (1.0 + kOutlinesInTexture * error->error), 1e-9);
+}
+
 // All normals turned by an angle about z: the distance of each is 2 sin(angle / 2) · |(x, y)|, and the mean of x² + y²
 // over the unit disc is a half.
 TEST(TradeReference, TheDifferenceOfNormalsIsTheirRootMeanSquareDistance) {
