@@ -3,6 +3,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -13,6 +14,7 @@
 #include "core/image/check.h"
 #include "finish/area/area_effects.h"
 #include "finish/area/ink.h"
+#include "finish/area/oklab_blocks.h"
 #include "finish/finish.h"
 #include "finish/outline/outline.h"
 #include "finish/tone/point_effect.h"
@@ -104,22 +106,32 @@ std::optional<PointEffect> PointEffectOf(const FinishStep& step, const FinishFra
   return std::visit(make, pass.effect);
 }
 
+// Whether the step may leave some of what was before.
+bool IsWeighed(const PointStep& one) {
+  const FinishStep& step = *one.step;
+  return step.pass.strength < 1.0 || !step.only.empty() || !step.share.empty() || !one.coverage.empty();
+}
+
 // Where the step changes nothing or only part of it, puts back what was before.
 void Weigh(const PointStep& one, std::size_t first, std::size_t count, const OklabBlock& before, OklabBlock& block) {
   const FinishStep& step = *one.step;
   const auto strength = static_cast<float>(step.pass.strength);
-  if (strength >= 1.0f && step.only.empty() && step.share.empty() && one.coverage.empty()) return;
-  for (std::size_t i = 0; i < count; ++i) {
-    const bool is_for_it =
-        (step.only.empty() || step.only[first + i]) && (one.coverage.empty() || one.coverage[first + i] > 0.0f);
-    const float masked =
-        step.share.empty() ? strength : strength * (static_cast<float>(step.share[first + i]) / 65535.0f);
-    const float share = is_for_it ? masked : 0.0f;
-    const auto mix = [&](float from, float to) { return share >= 1.0f ? to : from + (to - from) * share; };
-    block.lightness[i] = mix(before.lightness[i], block.lightness[i]);
-    block.a[i] = mix(before.a[i], block.a[i]);
-    block.b[i] = mix(before.b[i], block.b[i]);
-  }
+  std::array<float, internal::kOklabBlock> shares;
+  std::fill_n(shares.begin(), count, strength);
+  for (std::size_t i = 0; i < count && !step.share.empty(); ++i)
+    shares[i] = strength * (static_cast<float>(step.share[first + i]) / 65535.0f);
+  for (std::size_t i = 0; i < count && !step.only.empty(); ++i) shares[i] = step.only[first + i] ? shares[i] : 0.0f;
+  const float* const coverage = one.coverage.empty() ? nullptr : one.coverage.data() + first;
+  for (std::size_t i = 0; i < count && coverage; ++i) shares[i] = coverage[i] > 0.0f ? shares[i] : 0.0f;
+  const auto mix = [&](const float* from, float* to) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const float mixed = from[i] + (to[i] - from[i]) * shares[i];
+      to[i] = shares[i] >= 1.0f ? to[i] : mixed;
+    }
+  };
+  mix(before.lightness.data(), block.lightness.data());
+  mix(before.a.data(), block.a.data());
+  mix(before.b.data(), block.b.data());
 }
 
 // Texels whose colour no step changes keep their bits, those of alpha 0 too.
@@ -128,17 +140,12 @@ void PaintBlock(std::span<const PointStep> steps, std::size_t first, std::size_t
   internal::OklabFromTexels(texels, count, given);
   block = given;
   for (const PointStep& one : steps) {
-    before = block;
+    const bool is_weighed = IsWeighed(one);
+    if (is_weighed) before = block;
     one.apply(first, count, block);
-    Weigh(one, first, count, before, block);
+    if (is_weighed) Weigh(one, first, count, before, block);
   }
-  std::uint16_t made[4 * internal::kOklabBlock];
-  std::copy_n(texels, 4 * count, made);
-  internal::TexelsFromOklab(block, count, made);
-  for (std::size_t i = 0; i < count; ++i) {
-    const bool same = block.lightness[i] == given.lightness[i] && block.a[i] == given.a[i] && block.b[i] == given.b[i];
-    if (!same && texels[4 * i + 3] != 0) std::copy_n(made + 4 * i, 3, texels + 4 * i);
-  }
+  internal::PutBlock(given, 1.0f, nullptr, count, block, texels);
 }
 
 bool PaintPoints(std::span<const PointStep> steps, internal::RowProgress& progress, Picture& picture) {

@@ -1,13 +1,15 @@
 // What finishing effects promise of size and time, measured: prints two tables.
 //   half size: FLIP between an effect at 540 lines and the effect at 1080 lines, halved. Both see one painting.
 //   flicker: of effects under a slow move of the camera, beside that of the painting alone (measure/compare/flicker.h).
-//   finish_measures [half|flicker]
+//   finish_measures [half|flicker [NAME [FOLDER]]]
+// `half` may be of chains with NAME in their name alone; FOLDER: where it puts both pictures of each.
 #include <algorithm>
 #include <cstdio>
 #include <glm/gtc/matrix_transform.hpp>
 #include <string>
 #include <vector>
 
+#include "core/io/picture_file.h"
 #include "core/style/finish_file.h"
 #include "core/style/finish_keys.h"
 #include "core/style/style_file.h"
@@ -87,7 +89,7 @@ Picture Halved(const Picture& picture) {
   return half;
 }
 
-Status MeasureHalfSize() {
+Status MeasureHalfSize(const std::string& part, const std::string& folder) {
   std::printf("| effect, 540 lines against 1080 halved | stilllife, FLIP | snail |\n|---|---|---|\n");
   std::vector<std::string> rows;
   for (const char* const name : {"stilllife", "snail"}) {
@@ -98,7 +100,8 @@ Status MeasureHalfSize() {
     SceneSettings small = large;
     small.width = 960, small.height = 540;
     SCUMBLE_ASSIGN(const Picture painted, stylizer.Paint(large, {.style = SCUMBLE_SOURCE_DIR "/exemplars/oil"}));
-    const std::vector<Chain> chains = ChainsToMeasure(MeasureColors(painted));
+    std::vector<Chain> chains = ChainsToMeasure(MeasureColors(painted));
+    std::erase_if(chains, [&](const Chain& chain) { return chain.name.find(part) == std::string::npos; });
     LayerSet layers;
     for (const Chain& chain : chains) {
       for (const FinishPass& pass : chain.passes) layers.Add(RequiredLayers(pass));
@@ -111,7 +114,13 @@ Status MeasureHalfSize() {
       Picture whole = painted, half = Halved(painted);
       SCUMBLE_RETURN_IF_ERROR(ApplyChain(chains[i], {&large_guides, measures, 1.0, 0}, whole));
       SCUMBLE_RETURN_IF_ERROR(ApplyChain(chains[i], {&small_guides, measures, 0.5, 0}, half));
-      SCUMBLE_ASSIGN(const FlipReport report, MeasureFlip(Halved(whole), half));
+      const Picture halved = Halved(whole);
+      SCUMBLE_ASSIGN(const FlipReport report, MeasureFlip(halved, half));
+      if (!folder.empty()) {
+        const std::string file = folder + "/" + name + " " + chains[i].name;
+        SCUMBLE_RETURN_IF_ERROR(WritePicture(file + ", halved.png", halved, {8, 1}));
+        SCUMBLE_RETURN_IF_ERROR(WritePicture(file + ", 540 lines.png", half, {8, 1}));
+      }
       char text[32];
       std::snprintf(text, sizeof text, " %.3f%s |", report.mean, report.mean > 0.05 ? " !" : "");
       if (rows.size() <= i) rows.push_back("| " + chains[i].name + " |");
@@ -215,9 +224,9 @@ Status MeasureFlickerOfEffects() {
 }  // namespace scumble
 
 int main(int count, char** arguments) {
-  const std::string which = count > 1 ? arguments[1] : "";
+  const std::string which = count > 1 ? arguments[1] : "", part = count > 2 ? arguments[2] : "";
   scumble::Status done = scumble::Ok();
-  if (which != "flicker") done = scumble::MeasureHalfSize();
+  if (which != "flicker") done = scumble::MeasureHalfSize(part, count > 3 ? arguments[3] : "");
   if (done && which != "half") done = scumble::MeasureFlickerOfEffects();
   if (!done) return std::fprintf(stderr, "%s\n", done.error().message.c_str()), 1;
   return 0;

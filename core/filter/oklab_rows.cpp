@@ -37,6 +37,13 @@ void FromLinearHere(const OklabBlock& linear, std::size_t count, OklabBlock& blo
   }
 }
 
+void FromGreysHere(float* greys, std::size_t count) {
+  for (std::size_t i = 0; i < count; i += hn::Lanes(Floats())) {
+    const Lane value = hn::Load(Floats(), greys + i);
+    hn::Store(CubeRoot(Select(Less(0.0f, value), Min(value, 1.0f), 0.0f)).v, Floats(), greys + i);
+  }
+}
+
 HWY_INLINE LaneColor LinearOf(Lane lightness, Lane a, Lane b, Lane chroma) {
   return LinearFromRoots(RootsFromOklab({lightness, a * chroma, b * chroma}));
 }
@@ -75,6 +82,7 @@ namespace scumble::internal {
 
 HWY_EXPORT(DecodeHere);
 HWY_EXPORT(FromLinearHere);
+HWY_EXPORT(FromGreysHere);
 HWY_EXPORT(EncodeHere);
 
 // Vectors may reach beyond the last texel, so the texels go through a whole block.
@@ -91,6 +99,14 @@ void OklabFromPlanes(const std::array<const float*, 3>& planes, std::size_t coun
   std::copy_n(planes[1], count, linear.a.begin());
   std::copy_n(planes[2], count, linear.b.begin());
   HWY_DYNAMIC_DISPATCH(FromLinearHere)(linear, count, block);
+}
+
+void LightnessFromGreys(const float* greys, std::size_t count, float* lightness) {
+  alignas(64) std::array<float, kOklabBlock> values;
+  std::copy_n(greys, count, values.begin());
+  std::fill(values.begin() + std::ptrdiff_t(count), values.end(), 0.0f);
+  HWY_DYNAMIC_DISPATCH(FromGreysHere)(values.data(), count);
+  std::copy_n(values.begin(), count, lightness);
 }
 
 void TexelsFromOklab(const OklabBlock& block, std::size_t count, std::uint16_t* texels) {

@@ -40,16 +40,18 @@ float Tanh(float x) {
   return static_cast<float>((e - 1.0) / (e + 1.0));
 }
 
-// The share of ink, or of paper; whether there is any.
-bool SharesOf(const EdgesPass& pass, const float* response, std::size_t count, float* share) {
-  const auto threshold = static_cast<float>(pass.threshold), slope = static_cast<float>(pass.slope);
-  const bool on_paper = pass.draw == EdgesPass::Draw::kPaint;
-  if (!on_paper && *std::min_element(response, response + count) >= threshold) return false;
-  for (std::size_t i = 0; i < count; ++i) {
-    const float ink = response[i] >= threshold ? 0.0f : -Tanh(slope * (response[i] - threshold));
-    share[i] = on_paper ? 1.0f - ink : ink;
-  }
-  return true;
+// Whether any of them is below `limit`. A loop that compilers make vectors of.
+bool AnyBelow(const float* values, std::size_t count, float limit) {
+  int below = 0;
+  for (std::size_t i = 0; i < count; ++i) below |= values[i] < limit ? 1 : 0;
+  return below != 0;
+}
+
+// The share of ink, or of paper.
+float ShareOf(const EdgesPass& pass, float response) {
+  const float below = response - static_cast<float>(pass.threshold);
+  const float ink = below >= 0.0f ? 0.0f : -Tanh(static_cast<float>(pass.slope) * below);
+  return pass.draw == EdgesPass::Draw::kPaint ? 1.0f - ink : ink;
 }
 
 }  // namespace
@@ -64,25 +66,31 @@ void DrawEdges(const EdgesPass& pass, double strength, std::span<const std::uint
   // As outlines have it: a third as light and half as colourful.
   const float chroma = pass.color == OutlinePass::Color::kComplement ? -0.5f : 0.5f;
   ForEachOklabBlock(tone.size(), [&](std::size_t first, std::size_t count) {
-    std::array<float, kOklabBlock> share;
-    if (!SharesOf(pass, response.data() + first, count, share.data())) return;
+    const float* const responses = response.data() + first;
+    if (!on_paper && !AnyBelow(responses, count, static_cast<float>(pass.threshold))) return;
+    // Few pixels have ink: these alone are mixed, side by side.
     std::uint16_t* const texels = picture.rgba.data() + 4 * first;
     std::uint16_t made[4 * kOklabBlock];
-    std::copy_n(texels, 4 * count, made);
-    OklabBlock block;
-    OklabFromTexels(texels, count, block);
+    std::array<std::uint16_t, kOklabBlock> where;
+    std::array<float, kOklabBlock> share;
+    std::size_t found = 0;
     for (std::size_t i = 0; i < count; ++i) {
+      if (!on_paper && !(responses[i] < static_cast<float>(pass.threshold))) continue;
+      if (texels[4 * i + 3] == 0 || (!only.empty() && !only[first + i])) continue;
+      share[found] = ShareOf(pass, responses[i]) * static_cast<float>(strength);
+      if (!(share[found] > 0.0f)) continue;
+      std::copy_n(texels + 4 * i, 4, made + 4 * found);
+      where[found++] = static_cast<std::uint16_t>(i);
+    }
+    OklabBlock block;
+    OklabFromTexels(made, found, block);
+    for (std::size_t i = 0; i < found; ++i) {
       float &l = block.lightness[i], &a = block.a[i], &b = block.b[i];
       const LabColor other = of_paint ? LabColor{l / 3.0f, a * chroma, b * chroma} : fixed;
-      const float part = share[i] * static_cast<float>(strength);
-      l += (other.lightness - l) * part, a += (other.a - a) * part, b += (other.b - b) * part;
+      l += (other.lightness - l) * share[i], a += (other.a - a) * share[i], b += (other.b - b) * share[i];
     }
-    TexelsFromOklab(block, count, made);
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::size_t p = first + i;
-      if (share[i] > 0.0f && texels[4 * i + 3] != 0 && (only.empty() || only[p]))
-        std::copy_n(made + 4 * i, 3, texels + 4 * i);
-    }
+    TexelsFromOklab(block, found, made);
+    for (std::size_t i = 0; i < found; ++i) std::copy_n(made + 4 * i, 3, texels + 4 * std::size_t(where[i]));
   });
 }
 

@@ -176,19 +176,19 @@ EdgeFlow FlowOfTone(const FlowPlane& plane, double sigma) {
   for (auto* one : {&tensor.xx, &tensor.xy, &tensor.yy}) one->resize(std::size_t(width) * std::size_t(height));
   tbb::parallel_for(tbb::blocked_range<int>(0, height, 16), [&](const auto& rows) {
     for (int y = rows.begin(); y != rows.end(); ++y) {
-      const auto place = [&](int x, int v) {
-        return std::size_t(std::clamp(v, 0, height - 1)) * std::size_t(width) +
-               std::size_t(std::clamp(x, 0, width - 1));
-      };
-      for (int x = 0; x < width; ++x) {
-        const std::size_t i = place(x, y);
-        const auto beside = [&](std::size_t q) {
-          return plane.values[!plane.keys || plane.keys[q] == plane.keys[i] ? q : i];
+      const auto row = [&](int v) { return std::ptrdiff_t(std::clamp(v, 0, height - 1)) * width; };
+      const std::ptrdiff_t own = row(y), above = row(y - 1), below = row(y + 1);
+      const auto put = [&](int x, int before, int after) {
+        const auto beside = [&](std::ptrdiff_t q) {
+          return plane.values[!plane.keys || plane.keys[q] == plane.keys[own + x] ? q : own + x];
         };
-        const float dx = beside(place(x + 1, y)) - beside(place(x - 1, y)),
-                    dy = beside(place(x, y + 1)) - beside(place(x, y - 1));
+        const float dx = beside(own + after) - beside(own + before), dy = beside(below + x) - beside(above + x);
+        const auto i = std::size_t(own + x);
         tensor.xx[i] = dx * dx, tensor.xy[i] = dx * dy, tensor.yy[i] = dy * dy;
-      }
+      };
+      put(0, 0, std::min(1, width - 1));
+      if (width > 1) put(width - 1, width - 2, width - 1);
+      for (int x = 1; x < width - 1; ++x) put(x, x - 1, x + 1);
     }
   });
   return FlowOf(tensor, width, height, sigma);
@@ -219,6 +219,19 @@ void ForEachRun(const FlowPlane& plane, const EdgeFlow& flow, FloatPlane& out, c
   });
 }
 
+// Whether holds(value) is true of all places of a square of ForEachRun and of `reach` around.
+template <class Holds>
+bool AllAround(const FlowPlane& plane, int x, int y, int reach, const Holds& holds) {
+  const int left = std::max(0, x - reach), right = std::min(plane.width, x + kFlowSide + reach);
+  for (int v = std::max(0, y - reach); v < std::min(plane.height, y + kFlowSide + reach); ++v) {
+    const float* const row = plane.values + std::ptrdiff_t(v) * plane.width;
+    int fails = 0;
+    for (int u = left; u < right; ++u) fails |= holds(row[u]) ? 0 : 1;
+    if (fails != 0) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 FloatPlane FlowResponse(const FloatPlane& tone, std::span<const float> keys, int width, int height,
@@ -230,24 +243,28 @@ FloatPlane FlowResponse(const FloatPlane& tone, std::span<const float> keys, int
   across.narrow.resize(across.wide.size(), 0.0f);
   const AlongWeights along{GaussianWeights(lengths.along), flow.x.data(), flow.y.data()};
   FloatPlane between(tone.size());
-  ForEachRun(
-      of_tone, flow, between, [](int, int) { return false; },
-      [&](FlowRun& run) {
-        HWY_DYNAMIC_DISPATCH(AcrossHere)
-        (of_tone, across, run);
-      });
+  // Where all is of one tone there is no edge.
+  const auto is_even_around = [&](int x, int y) {
+    const float here = tone[std::size_t(y) * std::size_t(width) + std::size_t(x)];
+    const auto is_here = [&](float value) { return value == here; };
+    if (!AllAround(of_tone, x, y, static_cast<int>(across.wide.size()) + 1, is_here)) return false;
+    const float even = factors.level + (factors.narrow + factors.wide) * here;
+    for (int v = y; v < std::min(height, y + kFlowSide); ++v) {
+      const auto row = between.begin() + std::ptrdiff_t(v) * width;
+      std::fill(row + x, row + std::min(width, x + kFlowSide), even);
+    }
+    return true;
+  };
+  ForEachRun(of_tone, flow, between, is_even_around, [&](FlowRun& run) {
+    HWY_DYNAMIC_DISPATCH(AcrossHere)
+    (of_tone, across, run);
+  });
 
   FloatPlane out = between;
   const FlowPlane of_between{between.data(), of_tone.keys, width, height};
   const int reach = static_cast<int>(along.weights.size());
   const auto is_enough_around = [&](int x, int y) {
-    float least = factors.enough;
-    for (int v = std::max(0, y - reach); v < std::min(height, y + kFlowSide + reach); ++v) {
-      for (int u = std::max(0, x - reach); u < std::min(width, x + kFlowSide + reach); ++u)
-        least = std::min(least, between[std::size_t(v) * std::size_t(width) + std::size_t(u)]);
-      if (least < factors.enough) return false;
-    }
-    return true;
+    return AllAround(of_between, x, y, reach, [&](float value) { return value >= factors.enough; });
   };
   ForEachRun(of_between, flow, out, is_enough_around, [&](FlowRun& run) {
     HWY_DYNAMIC_DISPATCH(AlongHere)(of_between, along, run);

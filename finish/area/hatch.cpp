@@ -30,26 +30,46 @@ Axis AxisAt(double degrees) {
   return {static_cast<float>(CosDegrees(degrees)), static_cast<float>(-SinDegrees(degrees))};
 }
 
+// The axis turned by the angle of that cosine and sine.
+Axis Turned(Axis axis, glm::vec2 by) { return {axis.x * by.x - axis.y * by.y, axis.x * by.y + axis.y * by.x}; }
+
+// How far a place lies along the axis, and across it.
+glm::vec2 Along(glm::vec2 at, Axis axis) { return {at.x * axis.x + at.y * axis.y, at.y * axis.x - at.x * axis.y}; }
+
 // Sums of a structure tensor.
 struct Tensor {
   float xx = 0.0f, xy = 0.0f, yy = 0.0f;
 };
 
-// What bends less than a degree a pixel over a patch, or in no direction more than in others, has no axis.
-constexpr float kLeastBend = 1e-5f, kLeastCoherence = 0.15f;
+// What bends less than this, in radians a pixel of the reference height, and in no direction more than in others, has
+// no axis of its own.
+constexpr float kLeastBend = 0.003f, kLeastCoherence = 0.15f;
 
-// The axis in which the tensor is largest: half the angle of (xx - yy, 2 xy). False: there is none.
-bool MainAxis(const Tensor& sum, float pixels, Axis& axis) {
-  const float difference = sum.xx - sum.yy, twice = 2.0f * sum.xy, trace = sum.xx + sum.yy;
-  const float length = std::sqrt(difference * difference + twice * twice);
-  if (!(trace > kLeastBend * pixels) || !(length > kLeastCoherence * trace)) return false;
+// The axis in which the tensor is largest: half the angle of (xx - yy, 2 xy). The less sure it is, the more it turns to
+// `fixed`, so that a picture of another size, or the next frame, has nearly the same. Not against `fixed`. `least` is
+// of the trace.
+Axis MainAxis(const Tensor& sum, float least, Axis fixed) {
+  const float trace = sum.xx + sum.yy;
+  if (!(trace > 0.0f)) return fixed;
+  const glm::vec2 own = glm::vec2(sum.xx - sum.yy, 2.0f * sum.xy) / trace;
+  const float coherence = std::sqrt(own.x * own.x + own.y * own.y);
+  const float doubt = std::clamp(1.0f - 0.5f * std::min(trace / least, coherence / kLeastCoherence), 0.0f, 1.0f);
+  const glm::vec2 twice_fixed(fixed.x * fixed.x - fixed.y * fixed.y, 2.0f * fixed.x * fixed.y);
+  const glm::vec2 mixed = own * (1.0f - doubt) + twice_fixed * doubt;
+  const float length = std::sqrt(mixed.x * mixed.x + mixed.y * mixed.y);
+  if (!(length > 1e-6f)) return fixed;
   // Half angles without a trigonometric function: cos = sqrt((1 + c) / 2), and so on.
-  const float c = difference / length;
-  axis.x = std::sqrt(std::max(0.0f, 0.5f * (1.0f + c)));
-  axis.y = std::sqrt(std::max(0.0f, 0.5f * (1.0f - c)));
-  if (twice < 0.0f) axis.y = -axis.y;
-  return true;
+  const float c = mixed.x / length;
+  Axis axis(std::sqrt(std::max(0.0f, 0.5f * (1.0f + c))), std::sqrt(std::max(0.0f, 0.5f * (1.0f - c))));
+  if (mixed.y < 0.0f) axis.y = -axis.y;
+  return axis.x * fixed.x + axis.y * fixed.y < 0.0f ? -axis : axis;
 }
+
+// How strokes run somewhere: their direction, and the middle of their patch, in pixels.
+struct Run {
+  Axis axis;
+  glm::vec2 middle{0.0f, 0.0f};
+};
 
 // The patches of a picture.
 class Patches {
@@ -59,12 +79,9 @@ class Patches {
         cell_(static_cast<float>(std::max(4.0, pass.patch * frame.scale))),
         columns_(static_cast<int>(static_cast<float>(width) / cell_) + 3),
         rows_(static_cast<int>(static_cast<float>(height) / cell_) + 3),
-        seed_(frame.seed) {
-    const Axis fixed = AxisAt(pass.angle);
-    if (pass.along == HatchPass::Along::kFixed) {
-      axis_of_all_ = fixed;
-      return;
-    }
+        seed_(frame.seed),
+        fixed_(AxisAt(pass.angle)) {
+    if (pass.along == HatchPass::Along::kFixed) return;
     const GuideSet& guides = *frame.guides;
     object_ = guides.Plane(Layer::kObject);
     patch_.resize(guides.pixel_count());
@@ -75,24 +92,26 @@ class Patches {
       for (int x = 0; x < width; ++x) patch_[guides.Index(x, y)] = NearestPoint(x, y);
     });
     Sum(guides, height);
+    const auto least = static_cast<float>(kLeastBend / frame.scale);  // normals turn more a pixel there
     for (auto& patch : of_cell_) {
       for (Part& part : patch) {
-        if (!MainAxis(part.tensor, part.pixels, part.axis)) {
-          part.axis = fixed;
-        } else if (pass.along == HatchPass::Along::kAlong) {
-          part.axis = {-part.axis.y, part.axis.x};
-        }
+        Tensor& sum = part.tensor;
+        if (pass.along == HatchPass::Along::kAlong) sum = {sum.yy, -sum.xy, sum.xx};
+        part.axis = MainAxis(sum, least * part.pixels, fixed_);
       }
     }
   }
 
-  Axis At(std::size_t pixel) const {
-    if (patch_.empty()) return axis_of_all_;
-    for (const Part& part : of_cell_[std::size_t(patch_[pixel])]) {
-      if (part.object == object_[pixel]) return part.axis;
+  Run At(std::size_t pixel) const {
+    if (patch_.empty()) return {fixed_};
+    const auto patch = std::size_t(patch_[pixel]);
+    for (const Part& part : of_cell_[patch]) {
+      if (part.object == object_[pixel]) return {part.axis, points_[patch] * cell_};
     }
-    return axis_of_all_;
+    return {fixed_};
   }
+  // The direction of strokes where the surface has none.
+  Axis fixed() const { return fixed_; }
 
  private:
   // One object's share of a patch.
@@ -157,9 +176,12 @@ class Patches {
         if (object_[right] != object_[p] || object_[below] != object_[p]) continue;
         const glm::vec3 n = guides.Vec3(Layer::kNormal, p);
         const glm::vec3 dx = guides.Vec3(Layer::kNormal, right) - n, dy = guides.Vec3(Layer::kNormal, below) - n;
-        part.tensor.xx += dx.x * dx.x + dx.y * dx.y + dx.z * dx.z;
-        part.tensor.xy += dx.x * dy.x + dx.y * dy.y + dx.z * dy.z;
-        part.tensor.yy += dy.x * dy.x + dy.y * dy.y + dy.z * dy.z;
+        const float xx = dx.x * dx.x + dx.y * dx.y + dx.z * dx.z, xy = dx.x * dy.x + dx.y * dy.y + dx.z * dy.z,
+                    yy = dy.x * dy.x + dy.y * dy.y + dy.z * dy.z;
+        // Lengths, not their squares: a crease then counts as much beside a bend in pictures of any size.
+        const float length = std::sqrt(xx + yy);
+        if (!(length > 0.0f)) continue;
+        part.tensor.xx += xx / length, part.tensor.xy += xy / length, part.tensor.yy += yy / length;
       }
     }
     return parts;
@@ -176,7 +198,7 @@ class Patches {
   float cell_;
   int columns_, rows_;
   std::uint64_t seed_;
-  Axis axis_of_all_{1.0f, 0.0f};
+  Axis fixed_;
   std::span<const float> object_;
   std::vector<int> patch_;         // by pixel; empty: all strokes have one direction
   std::vector<glm::vec2> points_;  // of the grid, in cells, from the cell (-1, -1) on
@@ -202,13 +224,13 @@ float LineCover(float across, float spacing, float share) {
 class Strokes {
  public:
   Strokes(const HatchPass& pass, double spacing) : spacing_(static_cast<float>(spacing)) {
-    if (pass.texture) texture_.emplace(*pass.texture, spacing);
+    if (pass.texture) texture_.emplace(*pass.texture, spacing, pass.spacing);
   }
   // `at` in pixels, along the strokes and across them; `layer` counts from 0; `share`: of ink, wanted.
   float Cover(glm::vec2 at, int layer, float share) const {
     // Layers of one spacing would meet in a pattern.
     const float wider = 1.0f + 0.137f * static_cast<float>(layer);
-    if (texture_) return texture_->Cover(at / wider + glm::vec2(91.7f * static_cast<float>(layer)), share);
+    if (texture_) return texture_->Cover(at / wider + glm::vec2(13.1f * spacing_ * static_cast<float>(layer)), share);
     return LineCover(at.y, spacing_ * wider, share);
   }
 
@@ -224,7 +246,7 @@ void DrawHatch(const HatchPass& pass, double strength, std::span<const std::uint
   const Patches patches(pass, frame, picture.width, picture.height);
   const FloatPlane tones =
       ToneOf(pass.tone == HatchPass::Tone::kLight ? EdgesPass::Tone::kLight : EdgesPass::Tone::kPaint, frame, picture);
-  const auto spacing = static_cast<float>(std::max(2.0, pass.spacing * frame.scale));
+  const auto spacing = static_cast<float>(std::max(1.0, pass.spacing * frame.scale));
   const auto wobble = static_cast<float>(pass.wobble * frame.scale);
   const auto fullest = static_cast<float>(pass.fullest), from = static_cast<float>(pass.bare);
   const Strokes strokes(pass, spacing);
@@ -232,7 +254,11 @@ void DrawHatch(const HatchPass& pass, double strength, std::span<const std::uint
   for (int k = 0; k < pass.layers && wobble > 0.0f; ++k)
     strays.emplace_back(Hash(frame.seed, 4, k), 6.0f * spacing, nullptr, picture.width, picture.height);
   std::array<glm::vec2, kMostLayers> turns;  // the cosine and sine of each layer's turn
-  for (int k = 0; k < kMostLayers; ++k) turns[std::size_t(k)] = AxisAt(k * pass.cross);
+  std::array<Axis, kMostLayers> fixed;       // the direction of each where the surface has none
+  for (int k = 0; k < kMostLayers; ++k) {
+    turns[std::size_t(k)] = AxisAt(k * pass.cross);
+    fixed[std::size_t(k)] = Turned(patches.fixed(), turns[std::size_t(k)]);
+  }
   const auto width = static_cast<std::size_t>(picture.width);
   tbb::parallel_for(tbb::blocked_range<int>(0, picture.height, 8), [&](const auto& rows) {
     for (int y = rows.begin(); y != rows.end(); ++y) {
@@ -242,17 +268,18 @@ void DrawHatch(const HatchPass& pass, double strength, std::span<const std::uint
         if (pixel[3] == 0 || (!only.empty() && !only[p])) continue;
         float left = from > 0.0f ? std::min(1.0f, tones[p] / from) : 1.0f;  // of the tone, after the layers so far
         if (left >= 1.0f) continue;
-        const Axis axis = patches.At(p);
-        const glm::vec2 at(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
+        const auto [axis, middle] = patches.At(p);
+        const glm::vec2 off = glm::vec2(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f) - middle;
         float bare = 1.0f;
         for (int k = 0; k < pass.layers && left < 1.0f; ++k) {
           const float most = k + 1 < pass.layers ? fullest : 1.0f;
           const float share = std::min(1.0f - left, most);
-          const glm::vec2 turn = turns[std::size_t(k)];
-          const Axis along(axis.x * turn.x - axis.y * turn.y, axis.x * turn.y + axis.y * turn.x);
-          float across = at.y * along.x - at.x * along.y;
+          // Strokes turn about the middle of their patch: a direction that is a little off would count, far from it,
+          // as another place. Those of the fixed direction go on from patch to patch.
+          const glm::vec2 here = Along(off, Turned(axis, turns[std::size_t(k)])) + Along(middle, fixed[std::size_t(k)]);
+          float across = here.y;
           if (wobble > 0.0f) across += wobble * strays[std::size_t(k)].At(static_cast<int>(x), y);
-          bare *= 1.0f - strokes.Cover({at.x * along.x + at.y * along.y, across}, k, share);
+          bare *= 1.0f - strokes.Cover({here.x, across}, k, share);
           left = share < 1.0f ? left / (1.0f - share) : 1.0f;
         }
         std::uint16_t ink[4] = {pass.ink[0], pass.ink[1], pass.ink[2], 0};

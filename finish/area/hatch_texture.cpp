@@ -75,12 +75,14 @@ float LevelFor(float share) {
 
 }  // namespace
 
-TextureStrokes::TextureStrokes(const HatchTexture& texture, double spacing) {
+TextureStrokes::TextureStrokes(const HatchTexture& texture, double spacing, double reference) {
   const auto pixels = static_cast<float>(spacing) * kSpacingsOfTexture;  // of the texture's side
+  const float least = std::max(pixels, static_cast<float>(reference) * kSpacingsOfTexture);
   std::size_t level = 0;
-  while (level + 1 < texture.levels.size() && static_cast<float>(texture.levels[level + 1].size) >= pixels) ++level;
+  while (level + 1 < texture.levels.size() && static_cast<float>(texture.levels[level + 1].size) >= least) ++level;
   level_ = &texture.levels[level];
   texels_per_pixel_ = static_cast<float>(level_->size) / pixels;
+  samples_ = std::max(2, static_cast<int>(std::ceil(texels_per_pixel_)));
 }
 
 // The nearest: means of several would lie nearer to the middle, and ink would no longer be what the tone lacks.
@@ -97,10 +99,15 @@ float TextureStrokes::Cover(glm::vec2 at, float share) const {
   if (!(share > 0.0f)) return 0.0f;
   if (share >= 1.0f) return 1.0f;
   const float level = LevelFor(share);
+  const float step = 1.0f / static_cast<float>(samples_), first = 0.5f * step - 0.5f;
   float sum = 0.0f;
-  for (const glm::vec2 off : {glm::vec2(-0.25f, -0.25f), {0.25f, -0.25f}, {-0.25f, 0.25f}, {0.25f, 0.25f}})
-    sum += std::clamp((level - Threshold((at + off) * texels_per_pixel_)) / kEdge + 0.5f, 0.0f, 1.0f);
-  return 0.25f * sum;
+  for (int v = 0; v < samples_; ++v) {
+    for (int u = 0; u < samples_; ++u) {
+      const glm::vec2 off(first + step * static_cast<float>(u), first + step * static_cast<float>(v));
+      sum += std::clamp((level - Threshold((at + off) * texels_per_pixel_)) / kEdge + 0.5f, 0.0f, 1.0f);
+    }
+  }
+  return sum * step * step;
 }
 
 }  // namespace internal

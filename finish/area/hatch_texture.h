@@ -13,8 +13,9 @@ inline constexpr float kSpacingsOfTexture = 24.0f;
 // The texture at a size, softened to keep edges of strokes from being jagged. Keeps a reference to the texture.
 class TextureStrokes {
  public:
-  // `spacing`: from stroke to stroke, pixels.
-  TextureStrokes(const HatchTexture& texture, double spacing);
+  // `spacing`: from stroke to stroke, pixels; `reference`: that of the reference height. A smaller picture looks at the
+  // larger one's level, several times a pixel, so that it has the same strokes.
+  TextureStrokes(const HatchTexture& texture, double spacing, double reference);
 
   // How much of the pixel around `at`, in pixels along and across the strokes, is ink, where `share` of all is. The
   // mean over the texture is `share`.
@@ -25,6 +26,7 @@ class TextureStrokes {
 
   const HatchTexture::Level* level_;
   float texels_per_pixel_;
+  int samples_;  // of a pixel, each way
 };
 
 }  // namespace scumble::internal

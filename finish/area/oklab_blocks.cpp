@@ -13,11 +13,21 @@ void PutBlock(const OklabBlock& before, float share, const std::uint8_t* only, s
   mix(before.lightness, after.lightness), mix(before.a, after.a), mix(before.b, after.b);
   std::uint16_t made[4 * kOklabBlock];
   std::copy_n(texels, 4 * count, made);
-  TexelsFromOklab(after, count, made);
+  std::array<std::uint32_t, kOklabBlock> puts;
+  std::uint32_t leaves = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const bool same =
-        after.lightness[i] == before.lightness[i] && after.a[i] == before.a[i] && after.b[i] == before.b[i];
-    if (!same && texels[4 * i + 3] != 0 && (!only || only[i])) std::copy_n(made + 4 * i, 3, texels + 4 * i);
+        (after.lightness[i] == before.lightness[i]) & (after.a[i] == before.a[i]) & (after.b[i] == before.b[i]);
+    puts[i] = !same & (texels[4 * i + 3] != 0) & (!only || only[i]) ? 1u : 0u;
+    leaves |= puts[i] ^ 1u;
+  }
+  TexelsFromOklab(after, count, made);
+  if (leaves == 0) {
+    std::copy_n(made, 4 * count, texels);
+    return;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    if (puts[i]) std::copy_n(made + 4 * i, 3, texels + 4 * i);
   }
 }
 
@@ -32,20 +42,24 @@ FloatPlane ToneOf(EdgesPass::Tone of, const FinishFrame& frame, const Picture& p
     });
     return tone;
   }
-  const auto coverage = frame.guides->Plane(Layer::kCoverage);
+  const GuideSet& guides = *frame.guides;
+  const auto coverage = guides.Plane(Layer::kCoverage);
   const bool of_light = of == EdgesPass::Tone::kLight;
-  const auto luminance = of_light ? frame.guides->Plane(Layer::kLuminance) : std::span<const float>();
   const auto per_bright = static_cast<float>(1.0 / frame.measures.bright);
   ForEachOklabBlock(pixels, [&](std::size_t first, std::size_t count) {
-    std::array<float, kOklabBlock> light;
-    std::array<const float*, 3> planes{light.data(), light.data(), light.data()};
-    for (std::size_t i = 0; i < count && of_light; ++i) light[i] = luminance[first + i] * per_bright;
-    for (std::size_t c = 0; c < 3 && !of_light; ++c)
-      planes[c] = frame.guides->Plane(Layer::kAlbedo, static_cast<int>(c)).data() + first;
-    OklabBlock block;
-    OklabFromPlanes(planes, count, block);
+    float* const out = tone.data() + first;
+    if (of_light) {
+      const float* const light = guides.Plane(Layer::kLuminance).data() + first;
+      for (std::size_t i = 0; i < count; ++i) out[i] = light[i] * per_bright;
+      LightnessFromGreys(out, count, out);
+    } else {
+      const auto plane = [&](int c) { return guides.Plane(Layer::kAlbedo, c).data() + first; };
+      OklabBlock block;
+      OklabFromPlanes({plane(0), plane(1), plane(2)}, count, block);
+      std::copy_n(block.lightness.begin(), count, out);
+    }
     // Background has no tone: it counts as bare paper.
-    for (std::size_t i = 0; i < count; ++i) tone[first + i] = coverage[first + i] > 0.0f ? block.lightness[i] : 1.0f;
+    for (std::size_t i = 0; i < count; ++i) out[i] = coverage[first + i] > 0.0f ? out[i] : 1.0f;
   });
   return tone;
 }

@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 #include <memory>
 #include <span>
@@ -39,20 +40,17 @@ PointEffect MakeDepth(const DepthPass& pass, const FinishFrame& frame) {
   const bool has_air = pass.air > 0.0;
   const auto desaturate = static_cast<float>(pass.desaturate), tint = static_cast<float>(pass.tint);
   return [=](std::size_t first, std::size_t count, OklabBlock& block) {
+    std::array<float, kOklabBlock> shares;
+    scale->Shares(depth.data() + first, count, shares.data());
     for (std::size_t i = 0; i < count; ++i) {
-      const float at = depth[first + i];
-      const auto u = static_cast<float>(scale->Share(at));
-      float &lightness = block.lightness[i], &a = block.a[i], &b = block.b[i];
-      if (u > 0.0f) {
-        const float kept = 1.0f - desaturate * u, taken = tint * u;
-        a = kept * a, b = kept * b;
-        a += (color.a - a) * taken, b += (color.b - b) * taken;
-      }
-      if (!has_air) continue;
-      const auto share = static_cast<float>(air->Share(scale->Distance(at)));
-      if (!(share > 0.0f)) continue;
-      lightness += (color.lightness - lightness) * share;
-      a += (color.a - a) * share, b += (color.b - b) * share;
+      const float kept = 1.0f - desaturate * shares[i], taken = tint * shares[i];
+      const float a = kept * block.a[i], b = kept * block.b[i];
+      block.a[i] = a + (color.a - a) * taken, block.b[i] = b + (color.b - b) * taken;
+    }
+    for (std::size_t i = 0; i < count && has_air; ++i) {
+      const auto share = static_cast<float>(air->Share(scale->Distance(depth[first + i])));
+      block.lightness[i] += (color.lightness - block.lightness[i]) * share;
+      block.a[i] += (color.a - block.a[i]) * share, block.b[i] += (color.b - block.b[i]) * share;
     }
   };
 }

@@ -44,7 +44,8 @@ class DepthScale {
     near_ = Of(near);
     const double span = Of(far) - near_;
     per_span_ = span != 0.0 ? 1.0 / span : 0.0;
-    focus_ = pass.focus > 0.0 ? Of(pass.focus) : near_;
+    focus_depth_ = static_cast<float>(pass.focus > 0.0 ? pass.focus : near);
+    focus_ = Of(focus_depth_);
     gamma_ = pass.gamma;
     if (gamma_ != 1.0)
       power_ = Curve(1.0, [gamma = pass.gamma](double u) { return u > 0.0 ? Exp2(gamma * Log2(u)) : 0.0; });
@@ -52,14 +53,20 @@ class DepthScale {
   }
   // Depth above 0, infinity allowed. Unclamped: 0 near, 1 far.
   double Distance(float depth) const { return (Of(depth) - near_) * per_span_; }
-  bool IsBeforeFocus(float depth) const { return Of(depth) < focus_; }
-  // 0 … 1.
-  double Share(float depth) const {
-    double u = std::min(std::fabs(Of(depth) - focus_) * std::fabs(per_span_), 1.0);
-    if (!(u >= 0.0)) u = 1.0;
-    if (gamma_ != 1.0) u = power_.At(u);
-    if (layers_ > 1) u = std::min(std::floor(u * layers_), layers_ - 1.0) / (layers_ - 1);
-    return u;
+  bool IsBeforeFocus(float depth) const { return depth < focus_depth_; }
+  // 0 … 1, of many.
+  void Shares(const float* depth, std::size_t count, float* out) const {
+    const auto focus = static_cast<float>(focus_), per_span = static_cast<float>(std::fabs(per_span_));
+    const auto clamped = [](float u) { return u < 1.0f ? u : 1.0f; };  // NaN is 1
+    if (inverse_) {
+      for (std::size_t i = 0; i < count; ++i) out[i] = clamped(std::fabs(-1.0f / depth[i] - focus) * per_span);
+    } else {
+      for (std::size_t i = 0; i < count; ++i) out[i] = clamped(std::fabs(depth[i] - focus) * per_span);
+    }
+    for (std::size_t i = 0; i < count && gamma_ != 1.0; ++i) out[i] = static_cast<float>(power_.At(double(out[i])));
+    const auto layers = static_cast<float>(layers_);
+    for (std::size_t i = 0; i < count && layers_ > 1; ++i)
+      out[i] = std::min(static_cast<float>(static_cast<int>(out[i] * layers)), layers - 1.0f) / (layers - 1.0f);
   }
 
  private:
@@ -67,6 +74,7 @@ class DepthScale {
 
   bool inverse_;
   double near_ = 0.0, per_span_ = 0.0, focus_ = 0.0, gamma_ = 1.0;
+  float focus_depth_ = 0.0f;
   int layers_ = 0;
   Curve power_;
 };

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 
@@ -13,7 +14,7 @@ float SmoothStep(float from, float to, float x) {
   return t * t * (3.0f - 2.0f * t);
 }
 
-// How much of a pixel is in shade, 0 … 1: the larger of cast and form shadow.
+// How much of pixels is in shade, 0 … 1: the larger of cast and form shadow.
 class Shade {
  public:
   Shade(const ShadowsPass& pass, const FinishFrame& frame)
@@ -22,9 +23,11 @@ class Shade {
     if (pass.source != ShadowsPass::Source::kForm) cast_ = frame.guides->Plane(Layer::kShadow);
     if (pass.source != ShadowsPass::Source::kCast) light_ = frame.guides->Plane(Layer::kLuminance);
   }
-  float At(std::size_t pixel) const {
-    const float cast = cast_.empty() ? 0.0f : std::clamp(cast_[pixel], 0.0f, 1.0f);
-    return light_.empty() ? cast : std::max(cast, 1.0f - SmoothStep(full_, none_, light_[pixel]));
+  void Of(std::size_t first, std::size_t count, float* out) const {
+    std::fill_n(out, count, 0.0f);
+    for (std::size_t i = 0; i < count && !cast_.empty(); ++i) out[i] = std::clamp(cast_[first + i], 0.0f, 1.0f);
+    for (std::size_t i = 0; i < count && !light_.empty(); ++i)
+      out[i] = std::max(out[i], 1.0f - SmoothStep(full_, none_, light_[first + i]));
   }
 
  private:
@@ -42,9 +45,10 @@ struct Look {
 // Below this chroma paint counts more and more as grey.
 constexpr float kGrey = 0.04f;
 
-Look LookOf(ShadowsPass::Mode mode, const LabColor& paint, const LabColor& color) {
+template <ShadowsPass::Mode kMode>
+Look LookOf(const LabColor& paint, const LabColor& color) {
   const auto& [lightness, a, b] = paint;
-  switch (mode) {
+  switch (kMode) {
     case ShadowsPass::Mode::kBlack:
       return {{0.0f, 0.0f, 0.0f}, paint};
     case ShadowsPass::Mode::kDarker:
@@ -65,27 +69,56 @@ Look LookOf(ShadowsPass::Mode mode, const LabColor& paint, const LabColor& color
   return {paint, paint};
 }
 
+// `shares`: of shade.
+template <ShadowsPass::Mode kMode>
+void PaintShade(const float* shares, const LabColor& color, std::size_t count, OklabBlock& block) {
+  constexpr bool kChangesLight = kMode == ShadowsPass::Mode::kChiaroscuro || kMode == ShadowsPass::Mode::kImpression;
+  for (std::size_t i = 0; i < count; ++i) {
+    const LabColor paint{block.lightness[i], block.a[i], block.b[i]};
+    const auto [dark, light] = LookOf<kMode>(paint, color);
+    const bool stays = !kChangesLight && !(shares[i] > 0.0f);
+    block.lightness[i] = stays ? paint.lightness : Mix(light.lightness, dark.lightness, shares[i]);
+    block.a[i] = stays ? paint.a : Mix(light.a, dark.a, shares[i]);
+    block.b[i] = stays ? paint.b : Mix(light.b, dark.b, shares[i]);
+  }
+}
+
+using ShadePainter = void (*)(const float* shares, const LabColor& color, std::size_t count, OklabBlock& block);
+
+ShadePainter PainterOf(ShadowsPass::Mode mode) {
+  using Mode = ShadowsPass::Mode;
+  switch (mode) {
+    case Mode::kBlack:
+      return PaintShade<Mode::kBlack>;
+    case Mode::kDarker:
+      return PaintShade<Mode::kDarker>;
+    case Mode::kColor:
+      return PaintShade<Mode::kColor>;
+    case Mode::kComplement:
+      return PaintShade<Mode::kComplement>;
+    case Mode::kChiaroscuro:
+      return PaintShade<Mode::kChiaroscuro>;
+    case Mode::kImpression:
+      return PaintShade<Mode::kImpression>;
+    case Mode::kNegative:
+      return PaintShade<Mode::kNegative>;
+  }
+  return PaintShade<Mode::kDarker>;
+}
+
 }  // namespace
 
 void ShadeOf(const ShadowsPass& pass, const FinishFrame& frame, std::size_t first, std::size_t count, float* out) {
-  const Shade shade(pass, frame);
-  for (std::size_t i = 0; i < count; ++i) out[i] = shade.At(first + i);
+  Shade(pass, frame).Of(first, count, out);
 }
 
 PointEffect MakeShadows(const ShadowsPass& pass, const FinishFrame& frame, std::span<const float> soft) {
   const Shade shade(pass, frame);
   const LabColor color = ToOklab(pass.color);
-  const bool changes_light =
-      pass.mode == ShadowsPass::Mode::kChiaroscuro || pass.mode == ShadowsPass::Mode::kImpression;
-  return [=, mode = pass.mode](std::size_t first, std::size_t count, OklabBlock& block) {
-    for (std::size_t i = 0; i < count; ++i) {
-      const float share = soft.empty() ? shade.At(first + i) : soft[first + i];
-      if (!(share > 0.0f) && !changes_light) continue;
-      const auto [dark, light] = LookOf(mode, {block.lightness[i], block.a[i], block.b[i]}, color);
-      block.lightness[i] = Mix(light.lightness, dark.lightness, share);
-      block.a[i] = Mix(light.a, dark.a, share);
-      block.b[i] = Mix(light.b, dark.b, share);
-    }
+  return [=, paint = PainterOf(pass.mode)](std::size_t first, std::size_t count, OklabBlock& block) {
+    std::array<float, kOklabBlock> shares;
+    if (soft.empty()) shade.Of(first, count, shares.data());
+    paint(soft.empty() ? shares.data() : soft.data() + first, color, count, block);
   };
 }
 

@@ -12,10 +12,10 @@ namespace scumble {
 namespace {
 
 // White paper with black ink: the share of ink by pixel.
-std::vector<double> HatchOf(HatchPass pass, const GuideSet& guides, int threads = 0) {
+std::vector<double> HatchOf(HatchPass pass, const GuideSet& guides, double scale = 1.0) {
   pass.ink = {0, 0, 0};
   const Picture made =
-      Finished(StepOf(pass), &guides, PlainPicture(guides.width(), guides.height(), 65535, 65535, 65535), {}, threads);
+      Finished(StepOf(pass), &guides, PlainPicture(guides.width(), guides.height(), 65535, 65535, 65535), {}, 0, scale);
   std::vector<double> ink;
   for (std::size_t i = 0; i < made.rgba.size(); i += 4) ink.push_back(1.0 - made.rgba[i] / 65535.0);
   return ink;
@@ -139,6 +139,34 @@ TEST(Hatch, LooksAtPaintToo) {
   EXPECT_NE(Finished(StepOf(pass), nullptr, grey).rgba, grey.rgba);
 }
 
+// How much the ink of a picture of half the size differs from the mean of four pixels of the whole one, by pixel.
+double ChangeAtHalfSize(const HatchPass& pass, const GuideSet& whole, const GuideSet& half) {
+  const auto large = HatchOf(pass, whole), small = HatchOf(pass, half, 0.5);
+  const auto width = std::size_t(half.width());
+  double sum = 0.0;
+  for (std::size_t i = 0; i < small.size(); ++i) {
+    const double* const at = large.data() + 4 * width * (i / width) + 2 * (i % width);
+    sum += std::fabs(small[i] - 0.25 * (at[0] + at[1] + at[2 * width] + at[2 * width + 1]));
+  }
+  return sum / double(small.size());
+}
+
+// A ball in grey light, whose normals turn in all directions.
+GuideSet HatchedBall(int size) {
+  GuideSet guides = BallGuides(size, 0.45f * static_cast<float>(size));
+  guides.Add(Layer::kLuminance);
+  for (float& value : guides.Plane(Layer::kLuminance)) value = 0.125f;
+  return guides;
+}
+
+TEST(Hatch, HalfTheSizeHasTheSameStrokesAtTheSamePlaces) {
+  for (const double spacing : {7.0, 5.0, 2.5}) {
+    HatchPass pass;
+    pass.spacing = spacing;
+    EXPECT_LT(ChangeAtHalfSize(pass, HatchedBall(1000), HatchedBall(500)), 0.02) << spacing;
+  }
+}
+
 std::shared_ptr<const HatchTexture> Bundled(const std::string& tool) {
   const Expected<Picture> picture = ReadPicture(SCUMBLE_SOURCE_DIR "/finish/hatching/" + tool + ".png");
   EXPECT_TRUE(picture) << tool;
@@ -160,6 +188,14 @@ TEST(HatchTexture, InkIsWhatTheToneLacks) {
         EXPECT_NEAR(Mean(HatchOf(pass, FlatInLight(tone))), 1.0 - tone, spacing > 4.0 ? 0.01 : 0.02)
             << tool << spacing << ' ' << tone;
     }
+  }
+}
+
+TEST(HatchTexture, HalfTheSizeHasTheSameStrokesAtTheSamePlaces) {
+  for (const char* const tool : {"pencil", "pen", "charcoal"}) {
+    HatchPass pass;
+    pass.texture = Bundled(tool), pass.spacing = 13.0;
+    EXPECT_LT(ChangeAtHalfSize(pass, HatchedBall(600), HatchedBall(300)), 0.03) << tool;
   }
 }
 
