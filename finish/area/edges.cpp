@@ -70,7 +70,7 @@ void DrawEdges(const EdgesPass& pass, double strength, std::span<const std::uint
     if (!on_paper && !AnyBelow(responses, count, static_cast<float>(pass.threshold))) return;
     // Few pixels have ink: these alone are mixed, side by side.
     std::uint16_t* const texels = picture.rgba.data() + 4 * first;
-    std::uint16_t made[4 * kOklabBlock];
+    std::array<std::uint16_t, 4 * kOklabBlock> made{};
     std::array<std::uint16_t, kOklabBlock> where;
     std::array<float, kOklabBlock> share;
     std::size_t found = 0;
@@ -79,18 +79,18 @@ void DrawEdges(const EdgesPass& pass, double strength, std::span<const std::uint
       if (texels[4 * i + 3] == 0 || (!only.empty() && !only[first + i])) continue;
       share[found] = ShareOf(pass, responses[i]) * static_cast<float>(strength);
       if (!(share[found] > 0.0f)) continue;
-      std::copy_n(texels + 4 * i, 4, made + 4 * found);
+      std::copy_n(texels + 4 * i, 4, made.data() + 4 * found);
       where[found++] = static_cast<std::uint16_t>(i);
     }
     OklabBlock block;
-    OklabFromTexels(made, found, block);
+    OklabFromTexels(made.data(), found, block);
     for (std::size_t i = 0; i < found; ++i) {
       float &l = block.lightness[i], &a = block.a[i], &b = block.b[i];
       const LabColor other = of_paint ? LabColor{l / 3.0f, a * chroma, b * chroma} : fixed;
       l += (other.lightness - l) * share[i], a += (other.a - a) * share[i], b += (other.b - b) * share[i];
     }
-    TexelsFromOklab(block, found, made);
-    for (std::size_t i = 0; i < found; ++i) std::copy_n(made + 4 * i, 3, texels + 4 * std::size_t(where[i]));
+    TexelsFromOklab(block, found, made.data());
+    for (std::size_t i = 0; i < found; ++i) std::copy_n(made.data() + 4 * i, 3, texels + 4 * std::size_t(where[i]));
   });
 }
 

@@ -33,43 +33,41 @@ Axis AxisAt(double degrees) {
 // The axis turned by the angle of that cosine and sine.
 Axis Turned(Axis axis, glm::vec2 by) { return {axis.x * by.x - axis.y * by.y, axis.x * by.y + axis.y * by.x}; }
 
-// How far a place lies along the axis, and across it.
-glm::vec2 Along(glm::vec2 at, Axis axis) { return {at.x * axis.x + at.y * axis.y, at.y * axis.x - at.x * axis.y}; }
-
 // Sums of a structure tensor.
 struct Tensor {
   float xx = 0.0f, xy = 0.0f, yy = 0.0f;
 };
 
-// What bends less than this, in radians a pixel of the reference height, and in no direction more than in others, has
-// no axis of its own.
+// What bends less than this, in radians a pixel of the reference height, or in no direction more than in others, has no
+// axis of its own.
 constexpr float kLeastBend = 0.003f, kLeastCoherence = 0.15f;
 
-// The axis in which the tensor is largest: half the angle of (xx - yy, 2 xy). The less sure it is, the more it turns to
-// `fixed`, so that a picture of another size, or the next frame, has nearly the same. Not against `fixed`. `least` is
-// of the trace.
-Axis MainAxis(const Tensor& sum, float least, Axis fixed) {
-  const float trace = sum.xx + sum.yy;
-  if (!(trace > 0.0f)) return fixed;
-  const glm::vec2 own = glm::vec2(sum.xx - sum.yy, 2.0f * sum.xy) / trace;
-  const float coherence = std::sqrt(own.x * own.x + own.y * own.y);
-  const float doubt = std::clamp(1.0f - 0.5f * std::min(trace / least, coherence / kLeastCoherence), 0.0f, 1.0f);
-  const glm::vec2 twice_fixed(fixed.x * fixed.x - fixed.y * fixed.y, 2.0f * fixed.x * fixed.y);
-  const glm::vec2 mixed = own * (1.0f - doubt) + twice_fixed * doubt;
-  const float length = std::sqrt(mixed.x * mixed.x + mixed.y * mixed.y);
-  if (!(length > 1e-6f)) return fixed;
-  // Half angles without a trigonometric function: cos = sqrt((1 + c) / 2), and so on.
-  const float c = mixed.x / length;
-  Axis axis(std::sqrt(std::max(0.0f, 0.5f * (1.0f + c))), std::sqrt(std::max(0.0f, 0.5f * (1.0f - c))));
-  if (mixed.y < 0.0f) axis.y = -axis.y;
-  return axis.x * fixed.x + axis.y * fixed.y < 0.0f ? -axis : axis;
+// Strokes have one of so many directions, so that those of neighbouring patches go on from one to the other, and those
+// of a picture of half the size, or of the next frame, lie where they lay.
+constexpr int kDirections = 24;
+
+// The directions in which strokes may run, half a turn of them from the angle on.
+std::array<Axis, kDirections> DirectionsFrom(double degrees) {
+  std::array<Axis, kDirections> directions;
+  for (int i = 0; i < kDirections; ++i) directions[std::size_t(i)] = AxisAt(degrees + i * 180.0 / kDirections);
+  return directions;
 }
 
-// How strokes run somewhere: their direction, and the middle of their patch, in pixels.
-struct Run {
-  Axis axis;
-  glm::vec2 middle{0.0f, 0.0f};
-};
+// That of the directions which is nearest to the tensor's largest axis, whose double angle is that of (xx - yy, 2 xy).
+// The first, if there is no such axis. `least` is of the trace.
+Axis MainAxis(const Tensor& sum, float least, const std::array<Axis, kDirections>& directions) {
+  const glm::vec2 own(sum.xx - sum.yy, 2.0f * sum.xy);
+  const float trace = sum.xx + sum.yy, length = std::sqrt(own.x * own.x + own.y * own.y);
+  if (!(trace > least) || !(length > kLeastCoherence * trace)) return directions[0];
+  const auto likeness = [&](Axis axis) {
+    return own.x * (axis.x * axis.x - axis.y * axis.y) + own.y * 2.0f * axis.x * axis.y;
+  };
+  Axis best = directions[0];
+  for (const Axis axis : directions) {
+    if (likeness(axis) > likeness(best)) best = axis;
+  }
+  return best;
+}
 
 // The patches of a picture.
 class Patches {
@@ -80,7 +78,7 @@ class Patches {
         columns_(static_cast<int>(static_cast<float>(width) / cell_) + 3),
         rows_(static_cast<int>(static_cast<float>(height) / cell_) + 3),
         seed_(frame.seed),
-        fixed_(AxisAt(pass.angle)) {
+        directions_(DirectionsFrom(pass.angle)) {
     if (pass.along == HatchPass::Along::kFixed) return;
     const GuideSet& guides = *frame.guides;
     object_ = guides.Plane(Layer::kObject);
@@ -97,21 +95,18 @@ class Patches {
       for (Part& part : patch) {
         Tensor& sum = part.tensor;
         if (pass.along == HatchPass::Along::kAlong) sum = {sum.yy, -sum.xy, sum.xx};
-        part.axis = MainAxis(sum, least * part.pixels, fixed_);
+        part.axis = MainAxis(sum, least * part.pixels, directions_);
       }
     }
   }
 
-  Run At(std::size_t pixel) const {
-    if (patch_.empty()) return {fixed_};
-    const auto patch = std::size_t(patch_[pixel]);
-    for (const Part& part : of_cell_[patch]) {
-      if (part.object == object_[pixel]) return {part.axis, points_[patch] * cell_};
+  Axis At(std::size_t pixel) const {
+    if (patch_.empty()) return directions_[0];
+    for (const Part& part : of_cell_[std::size_t(patch_[pixel])]) {
+      if (part.object == object_[pixel]) return part.axis;
     }
-    return {fixed_};
+    return directions_[0];
   }
-  // The direction of strokes where the surface has none.
-  Axis fixed() const { return fixed_; }
 
  private:
   // One object's share of a patch.
@@ -198,7 +193,7 @@ class Patches {
   float cell_;
   int columns_, rows_;
   std::uint64_t seed_;
-  Axis fixed_;
+  std::array<Axis, kDirections> directions_;
   std::span<const float> object_;
   std::vector<int> patch_;         // by pixel; empty: all strokes have one direction
   std::vector<glm::vec2> points_;  // of the grid, in cells, from the cell (-1, -1) on
@@ -254,11 +249,7 @@ void DrawHatch(const HatchPass& pass, double strength, std::span<const std::uint
   for (int k = 0; k < pass.layers && wobble > 0.0f; ++k)
     strays.emplace_back(Hash(frame.seed, 4, k), 6.0f * spacing, nullptr, picture.width, picture.height);
   std::array<glm::vec2, kMostLayers> turns;  // the cosine and sine of each layer's turn
-  std::array<Axis, kMostLayers> fixed;       // the direction of each where the surface has none
-  for (int k = 0; k < kMostLayers; ++k) {
-    turns[std::size_t(k)] = AxisAt(k * pass.cross);
-    fixed[std::size_t(k)] = Turned(patches.fixed(), turns[std::size_t(k)]);
-  }
+  for (int k = 0; k < kMostLayers; ++k) turns[std::size_t(k)] = AxisAt(k * pass.cross);
   const auto width = static_cast<std::size_t>(picture.width);
   tbb::parallel_for(tbb::blocked_range<int>(0, picture.height, 8), [&](const auto& rows) {
     for (int y = rows.begin(); y != rows.end(); ++y) {
@@ -268,18 +259,16 @@ void DrawHatch(const HatchPass& pass, double strength, std::span<const std::uint
         if (pixel[3] == 0 || (!only.empty() && !only[p])) continue;
         float left = from > 0.0f ? std::min(1.0f, tones[p] / from) : 1.0f;  // of the tone, after the layers so far
         if (left >= 1.0f) continue;
-        const auto [axis, middle] = patches.At(p);
-        const glm::vec2 off = glm::vec2(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f) - middle;
+        const Axis axis = patches.At(p);
+        const glm::vec2 at(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
         float bare = 1.0f;
         for (int k = 0; k < pass.layers && left < 1.0f; ++k) {
           const float most = k + 1 < pass.layers ? fullest : 1.0f;
           const float share = std::min(1.0f - left, most);
-          // Strokes turn about the middle of their patch: a direction that is a little off would count, far from it,
-          // as another place. Those of the fixed direction go on from patch to patch.
-          const glm::vec2 here = Along(off, Turned(axis, turns[std::size_t(k)])) + Along(middle, fixed[std::size_t(k)]);
-          float across = here.y;
+          const Axis along = Turned(axis, turns[std::size_t(k)]);
+          float across = at.y * along.x - at.x * along.y;
           if (wobble > 0.0f) across += wobble * strays[std::size_t(k)].At(static_cast<int>(x), y);
-          bare *= 1.0f - strokes.Cover({here.x, across}, k, share);
+          bare *= 1.0f - strokes.Cover({at.x * along.x + at.y * along.y, across}, k, share);
           left = share < 1.0f ? left / (1.0f - share) : 1.0f;
         }
         std::uint16_t ink[4] = {pass.ink[0], pass.ink[1], pass.ink[2], 0};

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <limits>
 
 #include "finish/area/area_effects.h"
@@ -33,18 +34,23 @@ FloatPlane FilledPlane(const SmoothPlanes& planes, float value) {
   return plane;
 }
 
+// At least one place, which MixAtBorders looks at.
 std::size_t SmoothPad(SmoothPass::Filter filter, double sigma, std::size_t longer_side) {
+  std::size_t pad = 0;
   switch (filter) {
     case SmoothPass::Filter::kBilateral:
-      return BilateralPad(sigma, longer_side);
+      pad = BilateralPad(sigma, longer_side);
+      break;
     case SmoothPass::Filter::kKuwahara:
-      return KuwaharaPad(sigma, longer_side);
+      pad = KuwaharaPad(sigma, longer_side);
+      break;
     case SmoothPass::Filter::kWavelets:
-      return WaveletsPad(sigma, longer_side);
+      pad = WaveletsPad(sigma, longer_side);
+      break;
     case SmoothPass::Filter::kGuided:
       break;
   }
-  return 0;
+  return std::max<std::size_t>(pad, 1);
 }
 
 // Calls visit(first, place, count) for the blocks of a row: the picture's pixel, the planes' place, and how many.
@@ -83,6 +89,30 @@ FloatPlane LaidOut(std::span<const float> plane, const SmoothPlanes& planes) {
   return out;
 }
 
+// A pixel at an object's border may show some of its neighbour, and what is smoothed has only its own: it takes the
+// neighbours' smoothed colour by the share that the given colour has of it, half at most, and is not jagged.
+void MixAtBorders(const SmoothPlanes& planes, std::size_t place, std::size_t count, const OklabBlock& given,
+                  OklabBlock& block) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t p = place + i;
+    float found = 0.0f;
+    const auto other = [&](std::size_t q) {
+      if (planes.key[q] == planes.key[p] || std::isnan(planes.key[q])) return glm::vec3(0.0f);
+      found += 1.0f;
+      return glm::vec3(planes.lightness[q], planes.a[q], planes.b[q]);
+    };
+    // By pairs: the sum is that of the turned picture.
+    const glm::vec3 others = (other(p - 1) + other(p + 1)) + (other(p - planes.stride) + other(p + planes.stride));
+    if (found == 0.0f) continue;
+    const glm::vec3 own(block.lightness[i], block.a[i], block.b[i]), way = others / found - own;
+    const float square = glm::dot(way, way);
+    if (!(square > 0.0f)) continue;
+    const glm::vec3 off = glm::vec3(given.lightness[i], given.a[i], given.b[i]) - own;
+    const float share = std::clamp(glm::dot(off, way) / square, 0.0f, 0.5f);
+    block.lightness[i] += share * way.x, block.a[i] += share * way.y, block.b[i] += share * way.z;
+  }
+}
+
 // Pixels of alpha 0, those outside `only`, and those whose colour did not change keep their bits.
 void PutSmoothed(const SmoothPlanes& planes, double strength, std::span<const std::uint8_t> only, Picture& picture) {
   ForEachSmoothRow(planes.height, [&](std::size_t y) {
@@ -93,6 +123,7 @@ void PutSmoothed(const SmoothPlanes& planes, double strength, std::span<const st
       std::copy_n(planes.lightness.data() + place, count, block.lightness.begin());
       std::copy_n(planes.a.data() + place, count, block.a.begin());
       std::copy_n(planes.b.data() + place, count, block.b.begin());
+      MixAtBorders(planes, place, count, given, block);
       PutBlock(given, static_cast<float>(strength), only.empty() ? nullptr : only.data() + first, count, block, texels);
     });
   });
