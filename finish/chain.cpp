@@ -12,6 +12,7 @@
 #include "core/filter/oklab_rows.h"
 #include "core/filter/parallel.h"
 #include "core/image/check.h"
+#include "core/image/hash.h"
 #include "finish/area/area_effects.h"
 #include "finish/area/ink.h"
 #include "finish/area/oklab_blocks.h"
@@ -158,8 +159,23 @@ bool PaintPoints(std::span<const PointStep> steps, internal::RowProgress& progre
   });
 }
 
-// The frame with the step's own lengths.
+// What the step's pass leaves to chance, for the frame. Step 0 has the frame's own seed.
+std::uint64_t SeedOf(const FinishStep& step, const FinishFrame& frame) {
+  const auto fps_of = [](const auto& effect) {
+    if constexpr (requires { effect.jitter_fps; }) {
+      return effect.jitter_fps;
+    } else {
+      return 0;
+    }
+  };
+  const std::int64_t draw =
+      JitterStep(std::visit(fps_of, step.pass.effect), frame.frame, frame.fps_numerator, frame.fps_denominator);
+  return draw == 0 ? frame.seed : Hash(frame.seed, 8, draw);
+}
+
+// The frame with the step's own lengths and seed.
 FinishFrame FrameOf(const FinishStep& step, FinishFrame frame) {
+  frame.seed = SeedOf(step, frame);
   if (step.reference_height < 0 || !frame.guides) return frame;
   frame.scale = step.reference_height > 0 ? double(frame.guides->height()) / step.reference_height : 1.0;
   return frame;

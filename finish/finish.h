@@ -58,6 +58,8 @@ struct FinishFrame {
   FinishMeasures measures;
   double scale = 1.0;      // pixels of the picture for one of the reference height
   std::uint64_t seed = 0;  // of all that is left to chance
+  // For passes that draw that anew: see JitterStep.
+  std::int64_t frame = 0, fps_numerator = 24, fps_denominator = 1;
   // Where `guides` were upsampled: what they were made of, a whole number of times smaller, with their layers. Strokes
   // are traced on these, which have no blocks.
   const GuideSet* small_guides = nullptr;

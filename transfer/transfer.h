@@ -132,9 +132,4 @@ Status Transfer(std::span<const PreparedStyle* const> styles, const StyleMap& ma
 // Puts the style's paper, or `over` instead, behind a picture that was made with TransferOptions::bare.
 Status PutBackground(const PreparedStyle& style, const Picture* over, int threads, Picture& picture);
 
-// floor(frame · jitter_fps / fps) in integers, fps = numerator / denominator: equal for a frame however a range is cut.
-// 0 for jitter_fps 0 (frozen), the frame itself for -1. jitter_fps is rounded to thousandths.
-std::int64_t JitterStep(double jitter_fps, std::int64_t frame, std::int64_t fps_numerator,
-                        std::int64_t fps_denominator);
-
 }  // namespace scumble

@@ -50,6 +50,7 @@ struct OutlinePass {
   double taper = 0.0;              // 0 … 512: ends grow thin over this length
   double wobble = 0.0;             // 0 … 16: how far lines stray
   double wobble_length = 24.0;     // 1 … 512: of the waves of that
+  int jitter_fps = 0;              // -1 … 240: draws of waves and gaps a second; 0: one; -1: one a frame
   double gaps = 0.0;               // 0 … 1: share of the line that is left out, here and there
   double gap_length = 16.0;        // 1 … 512: of the largest of them, about
   bool stick = false;              // waves and gaps stick to surfaces; false: to the picture
@@ -183,6 +184,7 @@ struct HatchPass {
   double fullest = 0.6;  // 0.05 … 1: share of ink at which a layer is full, and the next begins
   double bare = 1.0;     // 0 … 1: tone from which on nothing is hatched
   double wobble = 0.6;   // 0 … 16 pixels: how far strokes stray
+  int jitter_fps = 0;    // -1 … 240: draws of strokes a second; 0: one; -1: one a frame
   Tone tone = Tone::kLight;
   Along along = Along::kAround;
   Rgb16 ink = {0x1c1c, 0x1a1a, 0x1919};
@@ -225,6 +227,7 @@ struct PigmentPass {
   double thin = 0.25;             // 0 … 1: less of it where the picture is light
   double tremor = 1.5;            // 0 … 32 pixels: how far shapes stray
   double tremor_size = 24.0;      // 2 … 512 pixels: of the waves of that
+  int jitter_fps = 0;             // -1 … 240: draws of clouds, grains and waves a second; 0: one; -1: one a frame
   bool stick = false;             // clouds stick to surfaces; false: to the picture
 };
 

@@ -12,6 +12,8 @@
 namespace scumble {
 namespace {
 
+constexpr const char* kJitterHelp = "draws a second of what is left to chance; 0 one for all frames, -1 one for each";
+
 // Of a member of one effect.
 template <class Pass, class T>
 T& PassMember(FinishPass& pass, T Pass::*field) {
@@ -174,6 +176,7 @@ std::vector<FinishKey> OutlineKeys() {
       PassNumber("taper", &P::taper, 0.0, 512.0, "length over which lines end in a point, pixels"),
       PassNumber("wobble", &P::wobble, 0.0, 16.0, "how far lines stray, pixels"),
       PassNumber("wobble_length", &P::wobble_length, 1.0, 512.0, "of the waves of that, pixels"),
+      PassWhole("jitter_fps", &P::jitter_fps, -1, 240, kJitterHelp),
       PassNumber("gaps", &P::gaps, 0.0, 1.0, "share of lines that is left out, here and there"),
       PassNumber("gap_length", &P::gap_length, 1.0, 512.0, "of gaps, about, pixels"),
       PassFlag("stick", &P::stick, "waves and gaps stick to surfaces, not to the picture"),
@@ -267,6 +270,7 @@ std::vector<FinishKey> HatchKeys() {
           PassNumber("fullest", &P::fullest, 0.05, 1.0, "share of ink at which the next layer begins"),
           PassNumber("bare", &P::bare, 0.0, 1.0, "tone from which on nothing is hatched"),
           PassNumber("wobble", &P::wobble, 0.0, 16.0, "how far strokes stray, pixels"),
+          PassWhole("jitter_fps", &P::jitter_fps, -1, 240, kJitterHelp),
           PassText("strokes", &P::strokes, "lines; or of pencil, pen, charcoal; or the file of a threshold texture"),
           PassChoice("tone", &P::tone, {"light", "paint"}, "what is looked at: the light or the paint"),
           PassColor("ink", &P::ink, "the colour of ink")};
@@ -334,6 +338,7 @@ std::vector<FinishKey> PigmentKeys() {
           PassNumber("thin", &P::thin, 0.0, 1.0, "less pigment where it is light"),
           PassNumber("tremor", &P::tremor, 0.0, 32.0, "how far shapes stray, pixels"),
           PassNumber("tremor_size", &P::tremor_size, 2.0, 512.0, "of the waves of that, pixels"),
+          PassWhole("jitter_fps", &P::jitter_fps, -1, 240, kJitterHelp),
           PassFlag("stick", &P::stick, "clouds stick to surfaces, not to the picture")};
 }
 

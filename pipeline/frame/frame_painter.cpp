@@ -37,6 +37,8 @@ constexpr double kTransferShare = 0.7;  // of a frame's time that has a finish
 FinishFrame FrameOf(const FrameSettings& settings, const GuideSet& guides) {
   const FrameFinish& finish = *settings.finish;
   FinishFrame frame{&guides, finish.measures, 1.0, settings.seed};
+  frame.frame = settings.frame;
+  frame.fps_numerator = settings.fps.numerator, frame.fps_denominator = settings.fps.denominator;
   if (!ChangesGuides(finish.steps)) frame.small_guides = finish.small_guides;  // which no pass has changed
   if (finish.reference_height > 0) frame.scale = double(guides.height()) / finish.reference_height;
   return frame;

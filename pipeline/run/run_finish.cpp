@@ -14,6 +14,7 @@
 #include "core/style/finish_keys.h"
 #include "finish/finish.h"
 #include "pipeline/frame/finish_layers.h"
+#include "pipeline/frame/frame_painter.h"
 #include "pipeline/memory/memory_estimate.h"
 #include "pipeline/scene/run_inputs.h"
 #include "pipeline/style/finish_files.h"
@@ -48,6 +49,7 @@ std::string SettingsText(const FinishRequest& request, const std::vector<FinishP
   for (const FinishPass& pass : passes) text += (text.empty() ? "" : ", ") + FinishText(pass);
   return fmt::format("scumble {}; finish {}; seed {}; height {}", SCUMBLE_VERSION, text, request.seed,
                      request.reference_height) +
+         (request.fps ? "; fps " + FrameRateToText(*request.fps) : "") +
          (request.measures ? "; measures " + MeasuresText(*request.measures) : "") +
          (request.show_finish.empty() ? "" : "; show " + (kShowFinish + request.show_finish));
 }
@@ -117,6 +119,8 @@ Expected<FrameWrite> Finish(const FinishRequest& request, const FrameFiles& file
     Measure(*guides, context, state);
   }
   FinishFrame frame{guides ? &*guides : nullptr, state.measures.value_or(FinishMeasures()), 1.0, request.seed};
+  const FrameRate fps = guides ? RateOf(request.fps, *guides) : request.fps.value_or(FrameRate());
+  frame.frame = files.frame, frame.fps_numerator = fps.numerator, frame.fps_denominator = fps.denominator;
   if (request.reference_height > 0) frame.scale = double(picture->height) / request.reference_height;
   if (guides && ChangesGuides(steps)) {
     SCUMBLE_RETURN_IF_ERROR(ApplyToGuides(steps, frame, context.threads, {}, *guides));

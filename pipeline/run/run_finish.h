@@ -29,8 +29,9 @@ struct FinishRequest {
   int png_level = 6;
   bool fast_io = false;
   std::uint64_t seed = 0;
-  std::optional<int> frame;     // of a single picture, for names with a place for it
-  int reference_height = 1080;  // lengths are pixels at this height; 0: plain pixels
+  std::optional<FrameRate> fps;  // as TransferRequest has it
+  std::optional<int> frame;      // of a single picture, for names with a place for it
+  int reference_height = 1080;   // lengths are pixels at this height; 0: plain pixels
   SequenceRequest sequence;
 };
 

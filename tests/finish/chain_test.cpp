@@ -199,5 +199,38 @@ TEST(MeasureFinish, OfNothingAreDefaults) {
   EXPECT_EQ(measures.bright, 1.0);
 }
 
+// The picture of a frame, 24 a second.
+template <class Effect>
+Picture AtFrame(const Effect& effect, std::int64_t frame, const GuideSet& guides) {
+  Picture picture = PlainPicture(guides.width(), guides.height(), 50000, 30000, 20000);
+  const FinishStep step = StepOf(effect);
+  const FinishFrame whole{&guides, {}, 1.0, 7, frame};
+  return ApplyFinish({&step, 1}, FinishPass::Stage::kPaint, whole, 0, {}, picture) ? picture : Picture();
+}
+
+TEST(Jitter, DrawsAnewSoManyTimesASecond) {
+  GuideSet guides = BallGuides(120, 50.0f);
+  guides.Add(Layer::kLuminance);
+  for (float& value : guides.Plane(Layer::kLuminance)) value = 0.2f;
+  OutlinePass outline;
+  outline.wobble = 4.0;
+  HatchPass hatch;
+  PigmentPass pigment;
+  const auto check = [&](auto effect) {
+    const Picture still = AtFrame(effect, 0, guides);
+    EXPECT_EQ(AtFrame(effect, 5, guides).rgba, still.rgba);
+    effect.jitter_fps = 12;
+    EXPECT_EQ(AtFrame(effect, 1, guides).rgba, still.rgba);
+    const Picture second = AtFrame(effect, 2, guides);
+    EXPECT_NE(second.rgba, still.rgba);
+    EXPECT_EQ(AtFrame(effect, 3, guides).rgba, second.rgba);
+    EXPECT_NE(AtFrame(effect, 4, guides).rgba, second.rgba);
+    effect.jitter_fps = -1;
+    EXPECT_NE(AtFrame(effect, 1, guides).rgba, still.rgba);
+    EXPECT_NE(AtFrame(effect, 3, guides).rgba, AtFrame(effect, 2, guides).rgba);
+  };
+  check(outline), check(hatch), check(pigment);
+}
+
 }  // namespace
 }  // namespace scumble

@@ -85,7 +85,8 @@ TEST(Outline, OfUpsampledGuidesHasNoBlocks) {
     }
   }
   FinishStep step = StepOf(OutlinePass());
-  FinishFrame frame{&large, {}, 2.0, 8, &small};
+  FinishFrame frame{&large, {}, 2.0, 8};
+  frame.small_guides = &small;
   const auto draw = [&] {
     Picture picture(330, 330);
     EXPECT_TRUE(ApplyFinish(std::span(&step, 1), FinishPass::Stage::kPaint, frame, 0, {}, picture));

@@ -11,6 +11,7 @@
 #include "apps/cli/app/options.h"
 #include "apps/cli/app/picture_options.h"
 #include "core/style/finish_keys.h"
+#include "pipeline/frame_rate.h"
 #include "pipeline/run/run_finish.h"
 #include "pipeline/style/finish_set.h"
 
@@ -21,7 +22,7 @@ struct FinishVerb {
   FinishRequest request;
   SequenceOptions sequence;
   bool list = false;
-  std::string show;
+  std::string show, fps;
 };
 
 std::string EffectsToText(const std::vector<FinishPreset>& presets) {
@@ -111,6 +112,9 @@ Expected<ExitCode> RunFinishVerb(const FinishVerb& verb, const Globals& globals)
   if (verb.request.output.empty()) return UsageError("scumble finish: -o FILE is required");
   FinishRequest request = verb.request;
   request.show_finish = ShownFinish(verb.show);
+  if (!verb.fps.empty()) {
+    SCUMBLE_ASSIGN(request.fps, ParseFrameRate(verb.fps));
+  }
   SCUMBLE_ASSIGN(request.sequence, ToRequest(verb.sequence));
   SequencePrinter printer(globals);
   SCUMBLE_ASSIGN(const RunReport report, RunFinish(std::move(request), printer.Listener(), globals));
@@ -157,6 +161,8 @@ void AddFinishVerb(CLI::App& app, Globals& globals, Action& chosen) {
       ->capture_default_str();
   AddFastIoOption(*sub, request.fast_io);
   sub->add_option("--frame", request.frame, "the number for #### in the names")->type_name("N");
+  AddFpsOption(*sub, verb->fps,
+               "frames a second, as 24 or 24000/1001, for jitter_fps; left out: the guides' own, or 24");
   sub->add_option("--seed", request.seed, "another seed, another wobble; the same seed, the same bytes")
       ->type_name("N")
       ->check(RefuseNegative)

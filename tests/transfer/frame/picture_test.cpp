@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "core/image/color.h"
+#include "core/image/hash.h"
 #include "tests/support/transfer_fixtures.h"
 
 namespace scumble {

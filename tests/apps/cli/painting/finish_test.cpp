@@ -366,6 +366,33 @@ TEST_F(CliFinish, KeysMoveInSequences) {
   EXPECT_NE(Read("m.0003.png").rgba, Read("m.0002.png").rgba);
 }
 
+// After a transfer and with it, at the rate that is given or that the guides have.
+TEST_F(CliFinish, LinesAreDrawnAnewSoManyTimesASecond) {
+  WriteStyle("plain");
+  const Arguments boil{
+      "--finish", "outline", "--set", "finish.outline.wobble=4", "--set", "finish.outline.jitter_fps=12"};
+  const auto with = [&](Arguments arguments) {
+    arguments.insert(arguments.end(), boil.begin(), boil.end());
+    RunOk(arguments);
+  };
+  const auto scene = [](const std::string& frame, const std::string& output) {
+    return Arguments{"stylize", kBall,    "--size", "64",      "--aa", "2",  "--style",
+                     "plain",   "--bits", "16",     "--frame", frame,  "-o", output};
+  };
+  with(scene("0", "0.png")), with(scene("1", "1.png")), with(scene("2", "2.png"));
+  EXPECT_EQ(Read("1.png").rgba, Read("0.png").rgba);
+  EXPECT_NE(Read("2.png").rgba, Read("0.png").rgba);
+  RunOk(scene("2", "plain.png"));
+  RunOk({"guidegen", kBall, "--size", "64", "--aa", "2", "-o", "g.exr"});
+  RunOk({"guidegen", kBall, "--size", "64", "--aa", "2", "--fps", "48", "-o", "g48.exr"});
+  with({"finish", "plain.png", "g.exr", "--bits", "16", "--frame", "2", "-o", "after.png"});
+  EXPECT_EQ(Read("after.png").rgba, Read("2.png").rgba);
+  with({"finish", "plain.png", "g.exr", "--bits", "16", "--frame", "2", "--fps", "48", "-o", "slow.png"});
+  EXPECT_EQ(Read("slow.png").rgba, Read("0.png").rgba);
+  with({"finish", "plain.png", "g48.exr", "--bits", "16", "--frame", "2", "-o", "told.png"});
+  EXPECT_EQ(Read("told.png").rgba, Read("0.png").rgba);
+}
+
 // Key frames of a preset and of --set, with a transfer and after one: each frame is the single run with its values.
 TEST_F(CliFinish, KeysOfPresetsMoveInSequences) {
   WriteStyle("plain");
@@ -464,7 +491,7 @@ TEST_F(CliFinish, RefusesThinLinesWithoutPerspective) {
 }
 
 TEST_F(CliFinish, MasksLimitAnEffect) {
-  RunOk({"guidegen", kToys, "--size", "96x64", "-o", "g.exr"});
+  RunOk({"guidegen", kToys, "--size", "96x64", "--aa", "2", "-o", "g.exr"});
   ASSERT_TRUE(WritePicture(At("p.png"), [] {
     Picture picture(96, 64);
     for (std::size_t i = 0; i < picture.rgba.size(); ++i) picture.rgba[i] = i % 4 == 3 ? 65535 : 30000;
