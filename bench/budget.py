@@ -19,7 +19,7 @@ import runs
 
 SOURCE = pathlib.Path(__file__).resolve().parent.parent
 COUNTED = ("build", "rays", "upsample", "match", "vote", "compose", "upscale")
-TOLD = re.compile(r"budget [\d.]+ ms: at most (\d+) ms, nine times of ten, with (.+?)(, which repeats it)?$",
+TOLD = re.compile(r"budget [\d.]+ ms: at most (\d+) ms, 19 times of 20, with (.+?)(, which repeats it)?$",
                   re.MULTILINE)
 
 

@@ -159,13 +159,13 @@ bool PaintPoints(std::span<const PointStep> steps, internal::RowProgress& progre
   });
 }
 
-// What the step's pass leaves to chance, for the frame. Step 0 has the frame's own seed.
+// What the step's pass leaves to chance, for the frame. Draw 0 has the frame's own seed.
 std::uint64_t SeedOf(const FinishStep& step, const FinishFrame& frame) {
   const auto fps_of = [](const auto& effect) {
     if constexpr (requires { effect.jitter_fps; }) {
       return effect.jitter_fps;
     } else {
-      return 0;
+      return 0.0;
     }
   };
   const std::int64_t draw =
@@ -175,6 +175,7 @@ std::uint64_t SeedOf(const FinishStep& step, const FinishFrame& frame) {
 
 // The frame with the step's own lengths and seed.
 FinishFrame FrameOf(const FinishStep& step, FinishFrame frame) {
+  frame.steady_seed = frame.seed;
   frame.seed = SeedOf(step, frame);
   if (step.reference_height < 0 || !frame.guides) return frame;
   frame.scale = step.reference_height > 0 ? double(frame.guides->height()) / step.reference_height : 1.0;

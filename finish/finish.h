@@ -58,8 +58,9 @@ struct FinishFrame {
   FinishMeasures measures;
   double scale = 1.0;      // pixels of the picture for one of the reference height
   std::uint64_t seed = 0;  // of all that is left to chance
-  // For passes that draw that anew: see JitterStep.
+  // Frame and rate, for jitter_fps; see JitterStep.
   std::int64_t frame = 0, fps_numerator = 24, fps_denominator = 1;
+  std::uint64_t steady_seed = 0;  // within a step: `seed` as it was, which jitter_fps does not change
   // Where `guides` were upsampled: what they were made of, a whole number of times smaller, with their layers. Strokes
   // are traced on these, which have no blocks.
   const GuideSet* small_guides = nullptr;

@@ -15,7 +15,7 @@ Expected<FrameRate> ParseFrameRate(const std::string& text) {
   };
   const double above = number(text.substr(0, slash));
   const double below = slash == std::string::npos ? 1.0 : number(text.substr(slash + 1));
-  if (!(above > 0.0 && above <= 1e5 && below >= 1.0 && below <= 1e5)) {
+  if (!(above >= 0.001 && above <= 1e5 && below >= 1.0 && below <= 1e5)) {
     return UsageError("--fps " + text + ": expected frames a second, as 24, 23.976 or 24000/1001");
   }
   return FrameRate{static_cast<std::int64_t>(above * 1000.0 + 0.5), static_cast<std::int64_t>(below * 1000.0 + 0.5)};

@@ -1,8 +1,8 @@
 // What finishing effects promise of size and time, measured: prints two tables.
 //   half size: FLIP between an effect at 540 lines and the effect at 1080 lines, halved. Both see one painting.
 //   flicker: of effects under a slow move of the camera, beside that of the painting alone (measure/compare/flicker.h).
-//   finish_measures [half|flicker [NAME [FOLDER]]]
-// `half` may be of chains with NAME in their name alone; FOLDER: where it puts both pictures of each.
+//   finish_measures [flicker | half [NAME [FOLDER]]]
+// With NAME, `half` measures only chains whose names contain it, and puts both pictures of each into FOLDER.
 #include <algorithm>
 #include <cstdio>
 #include <glm/gtc/matrix_transform.hpp>

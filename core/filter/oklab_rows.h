@@ -20,7 +20,8 @@ void OklabFromTexels(const std::uint16_t* texels, std::size_t count, OklabBlock&
 // The same of linear Rec.709 in planes; values are clamped to 0 … 1, NaN becomes 0.
 void OklabFromPlanes(const std::array<const float*, 3>& planes, std::size_t count, OklabBlock& block);
 
-// The lightness of linear greys, clamped to 0 … 1; NaN becomes 0. Both may be the same. kOklabBlock at most.
+// The lightness of linear greys, clamped to 0 … 1; NaN becomes 0. `greys` and `lightness` may be one array. kOklabBlock
+// at most.
 void LightnessFromGreys(const float* greys, std::size_t count, float* lightness);
 
 // Encodes `count` colours. A colour that sRGB does not have loses chroma, at the same hue and lightness, until it has

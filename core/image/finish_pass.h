@@ -50,7 +50,7 @@ struct OutlinePass {
   double taper = 0.0;              // 0 … 512: ends grow thin over this length
   double wobble = 0.0;             // 0 … 16: how far lines stray
   double wobble_length = 24.0;     // 1 … 512: of the waves of that
-  int jitter_fps = 0;              // -1 … 240: draws of waves and gaps a second; 0: one; -1: one a frame
+  double jitter_fps = 0.0;         // new waves and gaps a second, up to 1000; 0: none; -1: in each frame
   double gaps = 0.0;               // 0 … 1: share of the line that is left out, here and there
   double gap_length = 16.0;        // 1 … 512: of the largest of them, about
   bool stick = false;              // waves and gaps stick to surfaces; false: to the picture
@@ -137,7 +137,7 @@ struct SmoothPass {
   double radius = 4.0;  // 0.5 … 32 pixels at the reference height: sigma in space; of kKuwahara and kGuided the reach
   double range = 0.08;  // 0.001 … 1: the Oklab distance whose share is halved; kKuwahara has none
   int passes = 2;       // 1 … 8
-  bool borders = true;  // nothing is mixed between objects
+  bool borders = true;  // each object by itself; a pixel at a border keeps its neighbour's share, half at most
   Filter filter = Filter::kBilateral;
 };
 
@@ -178,13 +178,13 @@ struct HatchPass {
   enum class Along { kAround, kAlong, kFixed };  // in the direction in which the surface bends most; across; `angle`
   double spacing = 7.0;                          // 2 … 128 pixels at the reference height, from stroke to stroke
   double patch = 64.0;                           // 8 … 1024 pixels: size of a patch of one direction
-  double angle = 45.0;   // -180 … 180 degrees, 0 along a row: where the surface has no direction, and of kFixed
-  double cross = 60.0;   // 0 … 90 degrees from one layer of strokes to the next
-  int layers = 2;        // 1 … 4
-  double fullest = 0.6;  // 0.05 … 1: share of ink at which a layer is full, and the next begins
-  double bare = 1.0;     // 0 … 1: tone from which on nothing is hatched
-  double wobble = 0.6;   // 0 … 16 pixels: how far strokes stray
-  int jitter_fps = 0;    // -1 … 240: draws of strokes a second; 0: one; -1: one a frame
+  double angle = 45.0;      // -180 … 180 degrees, 0 along a row: where the surface has no direction, and of kFixed
+  double cross = 60.0;      // 0 … 90 degrees from one layer of strokes to the next
+  int layers = 2;           // 1 … 4
+  double fullest = 0.6;     // 0.05 … 1: share of ink at which a layer is full, and the next begins
+  double bare = 1.0;        // 0 … 1: tone from which on nothing is hatched
+  double wobble = 0.6;      // 0 … 16 pixels: how far strokes stray
+  double jitter_fps = 0.0;  // new strokes a second, up to 1000; 0: none; -1: in each frame
   Tone tone = Tone::kLight;
   Along along = Along::kAround;
   Rgb16 ink = {0x1c1c, 0x1a1a, 0x1919};
@@ -227,7 +227,7 @@ struct PigmentPass {
   double thin = 0.25;             // 0 … 1: less of it where the picture is light
   double tremor = 1.5;            // 0 … 32 pixels: how far shapes stray
   double tremor_size = 24.0;      // 2 … 512 pixels: of the waves of that
-  int jitter_fps = 0;             // -1 … 240: draws of clouds, grains and waves a second; 0: one; -1: one a frame
+  double jitter_fps = 0.0;        // new clouds, grains and waves a second, up to 1000; 0: none; -1: in each frame
   bool stick = false;             // clouds stick to surfaces; false: to the picture
 };
 

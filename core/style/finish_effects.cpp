@@ -5,14 +5,13 @@
 #include <utility>
 #include <vector>
 
+#include "core/image/hash.h"
 #include "core/style/color_ramp.h"
 #include "core/style/finish_keys.h"
 #include "core/style/finish_mask_keys.h"
 
 namespace scumble {
 namespace {
-
-constexpr const char* kJitterHelp = "draws a second of what is left to chance; 0 one for all frames, -1 one for each";
 
 // Of a member of one effect.
 template <class Pass, class T>
@@ -52,6 +51,22 @@ template <class Pass>
 FinishKey PassNumber(const char* name, double Pass::*field, double least, double most, const char* help) {
   return FinishNumber(
       name, [=](FinishPass& pass) -> double& { return PassMember(pass, field); }, least, most, help);
+}
+
+// As transfer.jitter_fps.
+template <class Pass>
+FinishKey PassJitter(double Pass::*field) {
+  FinishKey key = PassNumber("jitter_fps", field, -1.0, kMostJitterFps,
+                             "redraws a second of what is random; 0: none, -1: in each frame");
+  key.set = [=](FinishPass& pass, const KeyValue& value) -> Status {
+    const auto number = AsNumber(value);
+    if (!number || !(*number == -1.0 || (*number >= 0.0 && *number <= kMostJitterFps))) {
+      return UsageError("expected -1 (in each frame), 0 (never) or up to 1000 redraws a second");
+    }
+    PassMember(pass, field) = *number;
+    return Ok();
+  };
+  return key;
 }
 
 template <class Pass>
@@ -176,7 +191,7 @@ std::vector<FinishKey> OutlineKeys() {
       PassNumber("taper", &P::taper, 0.0, 512.0, "length over which lines end in a point, pixels"),
       PassNumber("wobble", &P::wobble, 0.0, 16.0, "how far lines stray, pixels"),
       PassNumber("wobble_length", &P::wobble_length, 1.0, 512.0, "of the waves of that, pixels"),
-      PassWhole("jitter_fps", &P::jitter_fps, -1, 240, kJitterHelp),
+      PassJitter(&P::jitter_fps),
       PassNumber("gaps", &P::gaps, 0.0, 1.0, "share of lines that is left out, here and there"),
       PassNumber("gap_length", &P::gap_length, 1.0, 512.0, "of gaps, about, pixels"),
       PassFlag("stick", &P::stick, "waves and gaps stick to surfaces, not to the picture"),
@@ -234,7 +249,7 @@ std::vector<FinishKey> SmoothKeys() {
       PassNumber("radius", &P::radius, 0.5, 32.0, "of the filter, pixels: sigma; of kuwahara and guided the reach"),
       PassNumber("range", &P::range, 0.001, 1.0, "difference of colours that counts half, in Oklab; not of kuwahara"),
       PassWhole("passes", &P::passes, 1, 8, "times it is applied"),
-      PassFlag("borders", &P::borders, "objects are not mixed; wavelets also stop at normals and depths"),
+      PassFlag("borders", &P::borders, "each object is smoothed by itself; wavelets also stop at normals and depths"),
       PassChoice("filter", &P::filter, {"bilateral", "kuwahara", "guided", "wavelets"},
                  "bilateral; kuwahara: patches like brush marks; guided: fast at any radius; or wavelets")};
 }
@@ -270,7 +285,7 @@ std::vector<FinishKey> HatchKeys() {
           PassNumber("fullest", &P::fullest, 0.05, 1.0, "share of ink at which the next layer begins"),
           PassNumber("bare", &P::bare, 0.0, 1.0, "tone from which on nothing is hatched"),
           PassNumber("wobble", &P::wobble, 0.0, 16.0, "how far strokes stray, pixels"),
-          PassWhole("jitter_fps", &P::jitter_fps, -1, 240, kJitterHelp),
+          PassJitter(&P::jitter_fps),
           PassText("strokes", &P::strokes, "lines; or of pencil, pen, charcoal; or the file of a threshold texture"),
           PassChoice("tone", &P::tone, {"light", "paint"}, "what is looked at: the light or the paint"),
           PassColor("ink", &P::ink, "the colour of ink")};
@@ -338,7 +353,7 @@ std::vector<FinishKey> PigmentKeys() {
           PassNumber("thin", &P::thin, 0.0, 1.0, "less pigment where it is light"),
           PassNumber("tremor", &P::tremor, 0.0, 32.0, "how far shapes stray, pixels"),
           PassNumber("tremor_size", &P::tremor_size, 2.0, 512.0, "of the waves of that, pixels"),
-          PassWhole("jitter_fps", &P::jitter_fps, -1, 240, kJitterHelp),
+          PassJitter(&P::jitter_fps),
           PassFlag("stick", &P::stick, "clouds stick to surfaces, not to the picture")};
 }
 

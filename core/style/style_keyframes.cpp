@@ -56,7 +56,7 @@ bool TakesColors(const Style& style, const StyleKey& key, const StyleTrack& trac
 
 // Whether the key takes all values between two of the track's: whole numbers, flags and words have none.
 bool TakesFractions(const Style& style, const StyleKey& key, const StyleTrack& track) {
-  if (key.name == "transfer.jitter_fps") return false;
+  if (key.name.ends_with(".jitter_fps")) return false;  // each change would redraw
   if (TakesColors(style, key, track)) return true;
   Style scratch;
   scratch.finish = style.finish;

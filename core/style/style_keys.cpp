@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/image/hash.h"
 #include "core/io/picture_file.h"
 #include "core/style/finish_keys.h"
 
@@ -17,7 +18,6 @@ namespace scumble {
 namespace {
 
 constexpr double kMaxGuideWeight = 1000.0;
-constexpr double kMostJitterFps = 1000.0;
 
 std::string Range(double low, double high) {
   char text[80];

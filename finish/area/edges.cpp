@@ -40,7 +40,7 @@ float Tanh(float x) {
   return static_cast<float>((e - 1.0) / (e + 1.0));
 }
 
-// Whether any of them is below `limit`. A loop that compilers make vectors of.
+// Whether a value is below `limit`. No early exit, so that it vectorises.
 bool AnyBelow(const float* values, std::size_t count, float limit) {
   int below = 0;
   for (std::size_t i = 0; i < count; ++i) below |= values[i] < limit ? 1 : 0;

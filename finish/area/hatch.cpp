@@ -42,23 +42,22 @@ struct Tensor {
 // axis of its own.
 constexpr float kLeastBend = 0.003f, kLeastCoherence = 0.15f;
 
-// Strokes have one of so many directions, so that those of neighbouring patches go on from one to the other, and those
-// of a picture of half the size, or of the next frame, lie where they lay.
+// Strokes run in one of so many directions. So those of neighbouring patches join, and a smaller picture or the next
+// frame repeats them.
 constexpr int kDirections = 24;
 
-// The directions in which strokes may run, half a turn of them from the angle on.
-std::array<Axis, kDirections> DirectionsFrom(double degrees) {
+std::array<Axis, kDirections> AllDirections() {
   std::array<Axis, kDirections> directions;
-  for (int i = 0; i < kDirections; ++i) directions[std::size_t(i)] = AxisAt(degrees + i * 180.0 / kDirections);
+  for (int i = 0; i < kDirections; ++i) directions[std::size_t(i)] = AxisAt(i * 180.0 / kDirections);
   return directions;
 }
 
-// That of the directions which is nearest to the tensor's largest axis, whose double angle is that of (xx - yy, 2 xy).
-// The first, if there is no such axis. `least` is of the trace.
-Axis MainAxis(const Tensor& sum, float least, const std::array<Axis, kDirections>& directions) {
+// The direction nearest to the tensor's largest axis, whose double angle is that of (xx - yy, 2 xy). `fixed`, if there
+// is no such axis. `least` is of the trace.
+Axis MainAxis(const Tensor& sum, float least, const std::array<Axis, kDirections>& directions, Axis fixed) {
   const glm::vec2 own(sum.xx - sum.yy, 2.0f * sum.xy);
   const float trace = sum.xx + sum.yy, length = std::sqrt(own.x * own.x + own.y * own.y);
-  if (!(trace > least) || !(length > kLeastCoherence * trace)) return directions[0];
+  if (!(trace > least) || !(length > kLeastCoherence * trace)) return fixed;
   const auto likeness = [&](Axis axis) {
     return own.x * (axis.x * axis.x - axis.y * axis.y) + own.y * 2.0f * axis.x * axis.y;
   };
@@ -77,8 +76,9 @@ class Patches {
         cell_(static_cast<float>(std::max(4.0, pass.patch * frame.scale))),
         columns_(static_cast<int>(static_cast<float>(width) / cell_) + 3),
         rows_(static_cast<int>(static_cast<float>(height) / cell_) + 3),
-        seed_(frame.seed),
-        directions_(DirectionsFrom(pass.angle)) {
+        seed_(frame.steady_seed),
+        directions_(AllDirections()),
+        fixed_(AxisAt(pass.angle)) {
     if (pass.along == HatchPass::Along::kFixed) return;
     const GuideSet& guides = *frame.guides;
     object_ = guides.Plane(Layer::kObject);
@@ -95,17 +95,17 @@ class Patches {
       for (Part& part : patch) {
         Tensor& sum = part.tensor;
         if (pass.along == HatchPass::Along::kAlong) sum = {sum.yy, -sum.xy, sum.xx};
-        part.axis = MainAxis(sum, least * part.pixels, directions_);
+        part.axis = MainAxis(sum, least * part.pixels, directions_, fixed_);
       }
     }
   }
 
   Axis At(std::size_t pixel) const {
-    if (patch_.empty()) return directions_[0];
+    if (patch_.empty()) return fixed_;
     for (const Part& part : of_cell_[std::size_t(patch_[pixel])]) {
       if (part.object == object_[pixel]) return part.axis;
     }
-    return directions_[0];
+    return fixed_;
   }
 
  private:
@@ -194,6 +194,7 @@ class Patches {
   int columns_, rows_;
   std::uint64_t seed_;
   std::array<Axis, kDirections> directions_;
+  Axis fixed_;  // where the surface has no direction
   std::span<const float> object_;
   std::vector<int> patch_;         // by pixel; empty: all strokes have one direction
   std::vector<glm::vec2> points_;  // of the grid, in cells, from the cell (-1, -1) on
@@ -250,6 +251,11 @@ void DrawHatch(const HatchPass& pass, double strength, std::span<const std::uint
     strays.emplace_back(Hash(frame.seed, 4, k), 6.0f * spacing, nullptr, picture.width, picture.height);
   std::array<glm::vec2, kMostLayers> turns;  // the cosine and sine of each layer's turn
   for (int k = 0; k < kMostLayers; ++k) turns[std::size_t(k)] = AxisAt(k * pass.cross);
+  std::array<glm::vec2, kMostLayers> shifts{};  // of each layer's strokes, in later draws
+  for (int k = 0; k < kMostLayers && frame.seed != frame.steady_seed; ++k) {
+    const std::uint64_t hash = Hash(frame.seed, 9, k);
+    shifts[std::size_t(k)] = glm::vec2(UnitFloat(hash), UnitFloat(Mix64(hash))) * (kSpacingsOfTexture * spacing);
+  }
   const auto width = static_cast<std::size_t>(picture.width);
   tbb::parallel_for(tbb::blocked_range<int>(0, picture.height, 8), [&](const auto& rows) {
     for (int y = rows.begin(); y != rows.end(); ++y) {
@@ -268,7 +274,8 @@ void DrawHatch(const HatchPass& pass, double strength, std::span<const std::uint
           const Axis along = Turned(axis, turns[std::size_t(k)]);
           float across = at.y * along.x - at.x * along.y;
           if (wobble > 0.0f) across += wobble * strays[std::size_t(k)].At(static_cast<int>(x), y);
-          bare *= 1.0f - strokes.Cover({at.x * along.x + at.y * along.y, across}, k, share);
+          bare *= 1.0f -
+                  strokes.Cover(glm::vec2(at.x * along.x + at.y * along.y, across) + shifts[std::size_t(k)], k, share);
           left = share < 1.0f ? left / (1.0f - share) : 1.0f;
         }
         std::uint16_t ink[4] = {pass.ink[0], pass.ink[1], pass.ink[2], 0};

@@ -89,8 +89,8 @@ FloatPlane LaidOut(std::span<const float> plane, const SmoothPlanes& planes) {
   return out;
 }
 
-// A pixel at an object's border may show some of its neighbour, and what is smoothed has only its own: it takes the
-// neighbours' smoothed colour by the share that the given colour has of it, half at most, and is not jagged.
+// A pixel at an object's border may show some of its neighbour, and what is smoothed has only its own. So it takes the
+// neighbours' smoothed colour by the share that the given colour has of it, half at most. Borders are not jagged then.
 void MixAtBorders(const SmoothPlanes& planes, std::size_t place, std::size_t count, const OklabBlock& given,
                   OklabBlock& block) {
   for (std::size_t i = 0; i < count; ++i) {

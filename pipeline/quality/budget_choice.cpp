@@ -101,7 +101,7 @@ Expected<Variant> VariantWithin(const BudgetRequest& options, const LadderFrame&
   progress = nullptr;
   context.EndStage("calibration");
   const Variant& variant = variants[picked.variant];
-  context.Note(fmt::format("budget {:g} ms: at most {:.0f} ms, nine times of ten, with {}{}", options.budget_ms,
+  context.Note(fmt::format("budget {:g} ms: at most {:.0f} ms, 19 times of 20, with {}{}", options.budget_ms,
                            std::ceil(picked.predicted_ms), WordsOf(variant),
                            OptionsOf(variant).empty() ? "" : ", which repeats it"));
   if (!picked.fits) {

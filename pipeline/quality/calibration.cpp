@@ -209,7 +209,7 @@ class Picker {
 double PredictedMs(std::span<const double> runs_ms, double cold_ms) {
   if (runs_ms.empty()) return std::numeric_limits<double>::infinity();
   const double slowest = *std::max_element(runs_ms.begin(), runs_ms.end());
-  return slowest + (slowest - Median({runs_ms.begin(), runs_ms.end()})) + cold_ms;
+  return slowest + 2.0 * (slowest - Median({runs_ms.begin(), runs_ms.end()})) + cold_ms;
 }
 
 Expected<PickedVariant> PickVariant(const Calibration& calibration, double budget_ms, const MeasureVariant& measure) {

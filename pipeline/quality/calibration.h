@@ -1,10 +1,10 @@
 // How long each variant takes to paint a frame on this machine, and which is the most accurate that fits into a budget.
 //
 // A variant is run kCalibrationRuns times. If runs are alike, whatever their distribution, one more is slower than the
-// slowest of nine in one case of ten: that is the share of frames that may miss their budget. Two things make later
-// runs slower than those.
-//   - The machine is busier at another moment. For that, the slowest run's distance from the median is added: nothing
-//     on a quiet machine, much on a busy one.
+// slowest of nine in one case of ten. One frame of twenty may miss its budget, and two things make later runs slower
+// than those, so two margins are added.
+//   - The machine is busier at another moment: twice the slowest run's distance from the median, which is nothing on a
+//     quiet machine and much on a busy one.
 //   - A process has just begun: its first run wakes threads and touches memory. What that costs is measured once, by
 //     one quick variant, and added.
 #pragma once
@@ -37,7 +37,7 @@ using MeasureVariant = std::function<Expected<double>(std::size_t variant)>;
 
 struct PickedVariant {
   std::size_t variant = 0;    // its place in Calibration::variants
-  double predicted_ms = 0.0;  // nine frames of ten take no longer
+  double predicted_ms = 0.0;  // nineteen frames of twenty take no longer
   bool fits = false;          // otherwise it is the quickest there is
   int measured = 0;           // runs that were made for it now; 0: all times were known
 };

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <utility>
+#include <variant>
 
 #include "core/image/stopwatch.h"
 #include "core/io/existing_output.h"
@@ -44,12 +46,31 @@ GuideReadOptions ReadOptions(const FinishRequest& request, const LayerSet& requi
   return read;
 }
 
-std::string SettingsText(const FinishRequest& request, const std::vector<FinishPass>& passes) {
+bool Jitters(const FinishPass& pass) {
+  return std::visit(
+      [](const auto& effect) {
+        if constexpr (requires { effect.jitter_fps; }) {
+          return effect.jitter_fps > 0.0;
+        } else {
+          return false;
+        }
+      },
+      pass.effect);
+}
+
+// The rate that was given, or that of the guides, which need not be there.
+FrameRate RateFor(const FinishRequest& request, const std::string& guides) {
+  if (request.fps || guides.empty()) return request.fps.value_or(FrameRate());
+  const auto info = InspectGuides(guides);
+  return info ? RateOf({}, info->header) : FrameRate();
+}
+
+std::string SettingsText(const FinishRequest& request, const std::vector<FinishPass>& passes, FrameRate fps) {
   std::string text;
   for (const FinishPass& pass : passes) text += (text.empty() ? "" : ", ") + FinishText(pass);
   return fmt::format("scumble {}; finish {}; seed {}; height {}", SCUMBLE_VERSION, text, request.seed,
                      request.reference_height) +
-         (request.fps ? "; fps " + FrameRateToText(*request.fps) : "") +
+         (std::any_of(passes.begin(), passes.end(), Jitters) ? "; fps " + FrameRateToText(fps) : "") +
          (request.measures ? "; measures " + MeasuresText(*request.measures) : "") +
          (request.show_finish.empty() ? "" : "; show " + (kShowFinish + request.show_finish));
 }
@@ -119,7 +140,7 @@ Expected<FrameWrite> Finish(const FinishRequest& request, const FrameFiles& file
     Measure(*guides, context, state);
   }
   FinishFrame frame{guides ? &*guides : nullptr, state.measures.value_or(FinishMeasures()), 1.0, request.seed};
-  const FrameRate fps = guides ? RateOf(request.fps, *guides) : request.fps.value_or(FrameRate());
+  const FrameRate fps = RateFor(request, files.guides);
   frame.frame = files.frame, frame.fps_numerator = fps.numerator, frame.fps_denominator = fps.denominator;
   if (request.reference_height > 0) frame.scale = double(picture->height) / request.reference_height;
   if (guides && ChangesGuides(steps)) {
@@ -133,7 +154,7 @@ Expected<FrameWrite> Finish(const FinishRequest& request, const FrameFiles& file
   times.emplace_back("finish", watch.Lap());
   context.EndStage("finish");
   PictureWriteOptions write{request.bits, request.png_level};
-  write.fast = request.fast_io, write.settings = SettingsText(request, state.chain.passes);
+  write.fast = request.fast_io, write.settings = SettingsText(request, state.chain.passes, fps);
   PictureReport report{files.output, picture->width, picture->height, 1, false, 1, request.seed, {}, {}, {}, {}};
   for (const auto& [name, ms] : times) report.steps.push_back({name, ms, ms, ms});
   report.layers_output = files.layers;
@@ -220,7 +241,7 @@ Expected<RunReport> RunFinish(FinishRequest request, const SequenceListener& lis
     if (!header) return header.error();
     SCUMBLE_RETURN_IF_ERROR(SetFinishFrame(state.chain, frame));
     PictureWriteOptions write{request.bits, request.png_level};
-    const std::string settings = SettingsText(request, state.chain.passes);
+    const std::string settings = SettingsText(request, state.chain.passes, RateFor(request, guides.At(frame)));
     SCUMBLE_RETURN_IF_ERROR(CheckWholePicture(
         output, {header->width, header->height, PictureChannels(output), PictureBits(output, write), settings}));
     if (request.layers_out.empty()) return Ok();

@@ -30,7 +30,7 @@ struct FinishRequest {
   bool fast_io = false;
   std::uint64_t seed = 0;
   std::optional<FrameRate> fps;  // as TransferRequest has it
-  std::optional<int> frame;      // of a single picture, for names with a place for it
+  std::optional<int> frame;      // of a single picture: for names, key frames and jitter_fps
   int reference_height = 1080;   // lengths are pixels at this height; 0: plain pixels
   SequenceRequest sequence;
 };

@@ -97,6 +97,7 @@ Status SceneFrames::StartFile(const Progress& progress) {
   const NextFrame next{now_, camera_};
   SCUMBLE_ASSIGN(*guides_,
                  CastScene(now_, camera_, motion_ ? &next : nullptr, options_, layers_, context_, progress, false));
+  StoreFrameRate(options_, {}, guides_->guides);
   guides_->times.insert(guides_->times.begin(), {"load", load_ms});
   animation_.reset();
   now_ = {};
@@ -134,6 +135,7 @@ Expected<SceneGuides> SceneFrames::CastFile(int frame, const Progress& progress)
   const auto next = motion_ ? std::optional(NextFrame{next_, camera_of(next_)}) : std::nullopt;
   SCUMBLE_ASSIGN(SceneGuides guides, CastScene(now_, camera_of(now_), next ? &*next : nullptr, options_, layers_,
                                                context_, progress, false));
+  StoreFrameRate(options_, {}, guides.guides);
   guides.times.insert(guides.times.begin(), {"move", move_ms});
   if (load_ms_) guides.times.insert(guides.times.begin(), {"load", *load_ms_});
   load_ms_.reset();

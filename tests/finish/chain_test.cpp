@@ -230,6 +230,9 @@ TEST(Jitter, DrawsAnewSoManyTimesASecond) {
     EXPECT_NE(AtFrame(effect, 3, guides).rgba, AtFrame(effect, 2, guides).rgba);
   };
   check(outline), check(hatch), check(pigment);
+  // Strokes move even where nothing else is left to chance.
+  hatch.along = HatchPass::Along::kFixed, hatch.wobble = 0.0;
+  check(hatch);
 }
 
 }  // namespace

@@ -66,14 +66,14 @@ PickedVariant MustPick(const Calibration& calibration, double budget_ms, FakeClo
   return picked.ok() ? *picked : PickedVariant();
 }
 
-// slowest + (slowest − median) + the addition of a cold start, by hand.
+// slowest + 2 (slowest − median) + the addition of a cold start, by hand.
 TEST(Calibration, WhatIsPredictedLiesAsFarBeyondTheSlowestAsThatIsBeyondTheMedian) {
   EXPECT_EQ(PredictedMs(std::vector<double>{7.0}, 0.0), 7.0);
   EXPECT_EQ(PredictedMs(std::vector<double>{4.0, 4.0, 4.0}, 0.0), 4.0) << "no spread, no margin";
-  EXPECT_EQ(PredictedMs(std::vector<double>{10.0, 12.0, 11.0}, 0.0), 13.0);
-  EXPECT_EQ(PredictedMs(std::vector<double>{10.0, 20.0}, 0.0), 25.0);
-  EXPECT_EQ(PredictedMs(std::vector<double>{10.0, 12.0, 11.0}, 1.0), 14.0);
-  EXPECT_EQ(PredictedMs(std::vector<double>{10.0, 12.0, 11.0}, 3.0), 16.0);
+  EXPECT_EQ(PredictedMs(std::vector<double>{10.0, 12.0, 11.0}, 0.0), 14.0);
+  EXPECT_EQ(PredictedMs(std::vector<double>{10.0, 20.0}, 0.0), 30.0);
+  EXPECT_EQ(PredictedMs(std::vector<double>{10.0, 12.0, 11.0}, 1.0), 15.0);
+  EXPECT_EQ(PredictedMs(std::vector<double>{10.0, 12.0, 11.0}, 3.0), 17.0);
   EXPECT_EQ(PredictedMs({}, 1.0), std::numeric_limits<double>::infinity());
 }
 
@@ -129,7 +129,7 @@ TEST(Calibration, NineRunsOfTenAreWithinTheSlowestOfNineWhateverTheirSpread) {
     missed += later > PredictedMs(runs, 0.0);
   }
   EXPECT_NEAR(beyond, 400, 63);
-  EXPECT_LE(missed, beyond);
+  EXPECT_LE(missed, 200 + 45) << "one of twenty";
 }
 
 TEST(Calibration, TheMostAccurateThatFitsIsTakenAndNothingBelowItIsMeasured) {
@@ -149,13 +149,13 @@ TEST(Calibration, ASlowerWayFurtherDownIsPassedOver) {
 }
 
 TEST(Calibration, AWayThatFitsButForItsSpreadIsTooSlow) {
-  // Nine runs: 20 seven times, 29 twice; slowest 29, median 20, predicted 38.
+  // Nine runs: 20 seven times, 29 twice; slowest 29, median 20, predicted 47.
   FakeClock clock{{{20.0, 20.0, 20.0, 29.0, 20.0, 20.0, 29.0, 20.0, 20.0}, {10.0}}};
   EXPECT_EQ(MustPick(Ladder(2), 30.0, clock).variant, 1u);
   FakeClock again{clock.ms};
-  const PickedVariant enough = MustPick(Ladder(2), 38.0, again);
+  const PickedVariant enough = MustPick(Ladder(2), 47.0, again);
   EXPECT_EQ(enough.variant, 0u);
-  EXPECT_EQ(enough.predicted_ms, 38.0);
+  EXPECT_EQ(enough.predicted_ms, 47.0);
 }
 
 TEST(Calibration, WhereNothingFitsTheQuickestIsTakenAndItsTimeNamed) {

@@ -62,11 +62,11 @@ void AddPictureOptions(CLI::App& verb, PictureOptions& options, bool needed) {
   AddFastIoOption(verb, options.request.fast_io);
   verb.add_option(
           "--frame", options.request.frame,
-          "frame number, for transfer.jitter_fps, for keys of the style that change over time, and of a scene "
+          "frame number, for jitter_fps, for keys of the style that change over time, and of a scene "
           "that moves; left out: 0, of a .blend the frame that it was saved at, of glTF the nodes as they stand")
       ->type_name("N");
   AddFpsOption(verb, options.fps,
-               "frames a second, as 24 or 24000/1001, for transfer.jitter_fps, and of a glTF animation: frame N is at "
+               "frames a second, as 24 or 24000/1001, for jitter_fps, and of a glTF animation: frame N is at "
                "N / RATE s; left out: of a .blend its own, otherwise 24");
   verb.add_option("--exposure", options.exposure,
                   "stops by which the scene's light is brightened for styles of several exemplars or with weights for "

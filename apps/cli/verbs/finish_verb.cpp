@@ -160,7 +160,9 @@ void AddFinishVerb(CLI::App& app, Globals& globals, Action& chosen) {
       ->check(CLI::Range(0, 9))
       ->capture_default_str();
   AddFastIoOption(*sub, request.fast_io);
-  sub->add_option("--frame", request.frame, "the number for #### in the names")->type_name("N");
+  sub->add_option("--frame", request.frame,
+                  "the number for #### in the names, for keys that change over time, and for jitter_fps")
+      ->type_name("N");
   AddFpsOption(*sub, verb->fps,
                "frames a second, as 24 or 24000/1001, for jitter_fps; left out: the guides' own, or 24");
   sub->add_option("--seed", request.seed, "another seed, another wobble; the same seed, the same bytes")

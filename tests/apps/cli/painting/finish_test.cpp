@@ -391,6 +391,68 @@ TEST_F(CliFinish, LinesAreDrawnAnewSoManyTimesASecond) {
   EXPECT_EQ(Read("slow.png").rgba, Read("0.png").rgba);
   with({"finish", "plain.png", "g48.exr", "--bits", "16", "--frame", "2", "-o", "told.png"});
   EXPECT_EQ(Read("told.png").rgba, Read("0.png").rgba);
+  const Arguments hatch{"finish",
+                        "plain.png",
+                        "g48.exr",
+                        "--bits",
+                        "16",
+                        "--finish",
+                        "hatch",
+                        "--set",
+                        "finish.hatch.tone=paint",
+                        "--set",
+                        "finish.hatch.along=fixed",
+                        "--set",
+                        "finish.hatch.jitter_fps=12",
+                        "--set",
+                        "finish.hatch.bare=1",
+                        "--set",
+                        "finish.hatch.spacing=100"};
+  const auto hatched = [&](const Arguments& more) {
+    Arguments arguments = hatch;
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    RunOk(arguments);
+  };
+  hatched({"--frame", "0", "-o", "h0.png"}), hatched({"--frame", "2", "-o", "h2.png"});
+  EXPECT_EQ(Read("h2.png").rgba, Read("h0.png").rgba) << "it reads no layer, and yet the guides' rate";
+  hatched({"--frame", "4", "-o", "h4.png"});
+  EXPECT_NE(Read("h4.png").rgba, Read("h0.png").rgba);
+}
+
+TEST_F(CliFinish, ResumeKeepsFramesOfTheSameRate) {
+  WriteStyle("plain");
+  RunOk({"stylize", kBall, "--frames", "1-2", "--size", "48", "--style", "plain", "-o", "p.####.png"});
+  RunOk({"guidegen", kBall, "--frames", "1-2", "--size", "48", "-o", "g.####.exr"});
+  const auto kept = [&](const Arguments& more) {
+    Arguments arguments{"finish",
+                        "p.####.png",
+                        "g.####.exr",
+                        "--frames",
+                        "1-2",
+                        "--finish",
+                        "outline",
+                        "--resume",
+                        "--json",
+                        "-o",
+                        "f.####.png",
+                        "--set",
+                        "finish.outline.wobble=4"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return Contains(RunOk(arguments).out, "\"kept\": 2");
+  };
+  EXPECT_FALSE(kept({}));
+  EXPECT_TRUE(kept({"--fps", "30"})) << "no pass looks at the rate";
+  const Arguments boil{"--set", "finish.outline.jitter_fps=12"};
+  EXPECT_FALSE(kept(boil));
+  EXPECT_TRUE(kept(boil));
+  RunOk({"guidegen", kBall, "--frames", "1-2", "--size", "48", "--fps", "48", "-o", "g.####.exr"});
+  EXPECT_FALSE(kept(boil)) << "the guides' rate is another";
+  for (const char* const rate : {"fast", "0", "0.0004"}) {
+    const CommandResult wrong = Run({"finish", "p.####.png", "g.####.exr", "--frames", "1-2", "--finish", "outline",
+                                     "--fps", rate, "-o", "f.####.png"});
+    EXPECT_EQ(wrong.code, 2) << rate;
+    EXPECT_TRUE(Contains(wrong.err, "--fps " + std::string(rate))) << wrong.err;
+  }
 }
 
 // Key frames of a preset and of --set, with a transfer and after one: each frame is the single run with its values.
