@@ -406,5 +406,16 @@ TEST(Checks, SayWhatFailedWithBothValues) {
   EXPECT_NO_THROW(SCUMBLE_CHECK(true));
 }
 
+TEST(JitterStep, IsExactAndIndependentOfTheRange) {
+  EXPECT_EQ(JitterStep(0.0, 1000, 24, 1), 0);
+  EXPECT_EQ(JitterStep(-1.0, 1000, 24, 1), 1000);
+  EXPECT_EQ(JitterStep(12.0, 0, 24, 1), 0);
+  EXPECT_EQ(JitterStep(12.0, 1, 24, 1), 0);
+  EXPECT_EQ(JitterStep(12.0, 2, 24, 1), 1);
+  EXPECT_EQ(JitterStep(12.0, -1, 24, 1), -1) << "floor, before frame 0 too";
+  EXPECT_EQ(JitterStep(12.0, 1000000007, 24000, 1001), 1000000007LL * 12 * 1001 / 24000);
+  EXPECT_EQ(JitterStep(1000.0, 2000000000, 24000000, 1001000), 83416666666) << "more than 64 bits on the way";
+}
+
 }  // namespace
 }  // namespace scumble

@@ -2,7 +2,6 @@
 #include <limits>
 
 #include "core/image/color.h"
-#include "core/image/hash.h"
 #include "tests/support/transfer_fixtures.h"
 
 namespace scumble {
@@ -54,17 +53,6 @@ TEST(Determinism, SeedAndTimeStepChooseThePattern) {
   EXPECT_NE(MustTransfer(style, guides, options).picture.rgba, first.rgba);
   options.seed = 0, options.frame = 1;
   EXPECT_NE(MustTransfer(style, guides, options).picture.rgba, first.rgba);
-}
-
-TEST(Determinism, JitterStepsAreExactAndIndependentOfTheRange) {
-  EXPECT_EQ(JitterStep(0.0, 1000, 24, 1), 0);
-  EXPECT_EQ(JitterStep(-1.0, 1000, 24, 1), 1000);
-  EXPECT_EQ(JitterStep(12.0, 0, 24, 1), 0);
-  EXPECT_EQ(JitterStep(12.0, 1, 24, 1), 0);
-  EXPECT_EQ(JitterStep(12.0, 2, 24, 1), 1);
-  EXPECT_EQ(JitterStep(12.0, -1, 24, 1), -1) << "floor, before frame 0 too";
-  EXPECT_EQ(JitterStep(12.0, 1000000007, 24000, 1001), 1000000007LL * 12 * 1001 / 24000);
-  EXPECT_EQ(JitterStep(1000.0, 2000000000, 24000000, 1001000), 83416666666) << "more than 64 bits on the way";
 }
 
 TEST(Compose, AlphaIsCoverageTimesPaint) {
