@@ -17,6 +17,7 @@
 #include "finish/area/ink.h"
 #include "finish/area/oklab_blocks.h"
 #include "finish/finish.h"
+#include "finish/jitter.h"
 #include "finish/outline/outline.h"
 #include "finish/tone/point_effect.h"
 
@@ -161,15 +162,7 @@ bool PaintPoints(std::span<const PointStep> steps, internal::RowProgress& progre
 
 // What the step's pass leaves to chance, for the frame. Draw 0 has the frame's own seed.
 std::uint64_t SeedOf(const FinishStep& step, const FinishFrame& frame) {
-  const auto fps_of = [](const auto& effect) {
-    if constexpr (requires { effect.jitter_fps; }) {
-      return effect.jitter_fps;
-    } else {
-      return 0.0;
-    }
-  };
-  const std::int64_t draw =
-      JitterStep(std::visit(fps_of, step.pass.effect), frame.frame, frame.fps_numerator, frame.fps_denominator);
+  const std::int64_t draw = JitterStep(JitterFpsOf(step.pass), frame.frame, frame.fps_numerator, frame.fps_denominator);
   return draw == 0 ? frame.seed : Hash(frame.seed, 8, draw);
 }
 

@@ -6,7 +6,6 @@
 #include <memory>
 #include <optional>
 #include <utility>
-#include <variant>
 
 #include "core/image/stopwatch.h"
 #include "core/io/existing_output.h"
@@ -15,6 +14,7 @@
 #include "core/io/picture_file.h"
 #include "core/style/finish_keys.h"
 #include "finish/finish.h"
+#include "finish/jitter.h"
 #include "pipeline/frame/finish_layers.h"
 #include "pipeline/frame/frame_painter.h"
 #include "pipeline/memory/memory_estimate.h"
@@ -46,17 +46,7 @@ GuideReadOptions ReadOptions(const FinishRequest& request, const LayerSet& requi
   return read;
 }
 
-bool Jitters(const FinishPass& pass) {
-  return std::visit(
-      [](const auto& effect) {
-        if constexpr (requires { effect.jitter_fps; }) {
-          return effect.jitter_fps > 0.0;
-        } else {
-          return false;
-        }
-      },
-      pass.effect);
-}
+bool Jitters(const FinishPass& pass) { return JitterFpsOf(pass) > 0.0; }
 
 // The rate that was given, or that of the guides, which need not be there.
 FrameRate RateFor(const FinishRequest& request, const std::string& guides) {
