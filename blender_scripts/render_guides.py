@@ -181,21 +181,26 @@ def render_to(scene, path, samples, most_bounces):
 
 
 def render_light(scene, options):
-    stem = options.output.with_suffix("")
+    """A render that would be another one's again is that one's file: at one bounce there is no more light than ld12e
+    has, and without a bounce, or where nothing is specular, no path has a second specular surface."""
+    stem, most = options.output.with_suffix(""), options.max_bounces
 
-    def render(kind, samples, most_bounces):
+    def path_of(kind, samples):
+        return stem.with_name(f"{stem.name}.{kind}.{samples}.exr")
+
+    def render(kind, samples, bounces, same_as):
+        if same_as:
+            shutil.copyfile(path_of(same_as, samples), path_of(kind, samples))
+            return
         say(f"rendering {kind}, {samples} sample" + ("s" if samples > 1 else ""))
-        render_to(scene, stem.with_name(f"{stem.name}.{kind}.{samples}.exr"), samples, most_bounces)
+        render_to(scene, path_of(kind, samples), samples, bounces)
 
     for samples in options.samples:
-        render("all", samples, options.max_bounces)
-    filtered = guide_materials.blacken_second_surface()
+        render("all", samples, most, None)
+    filtered = guide_materials.blacken_second_surface() and most > 0
     for samples in options.samples:
-        if filtered:
-            render("ldde", samples, options.max_bounces)
-        else:  # nothing is specular, so the render is that of every path
-            shutil.copyfile(f"{stem}.all.{samples}.exr", f"{stem}.ldde.{samples}.exr")
-        render("ld12e", samples, min(options.max_bounces, 1))
+        render("ldde", samples, most, None if filtered else "all")
+        render("ld12e", samples, min(most, 1), None if most > 1 else "ldde")
 
 
 def main():

@@ -7,7 +7,7 @@ source=$2
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-"$program" crosscheck "$source"/scenes/*.glb --size 320x180 --samples 64 -o "$work/report.html" --quiet \
+"$program" crosscheck "$source"/scenes/*.glb --size 240x135 --samples 64 -o "$work/report.html" --quiet \
     > "$work/verdicts" || { cat "$work/verdicts"; exit 1; }
 cat "$work/verdicts"
 test "$(grep -c '^  verdict: agrees$' "$work/verdicts")" = "$(ls "$source"/scenes/*.glb | wc -l)"

@@ -2,7 +2,9 @@
 // `scumble crosscheck` on the scenes of tests/blender/make_matrix.py, by its built-in limits.
 #include <cstdlib>
 #include <map>
-#include <utility>
+#include <string>
+#include <tuple>
+#include <vector>
 
 #include "tests/support/cli_harness.h"
 
@@ -11,18 +13,21 @@ namespace {
 
 class CyclesMatrixTest : public CliTest {
  protected:
-  // The scenes by what makes them one run: size and samples.
-  std::map<std::pair<std::string, int>, std::vector<std::string>> Make(const std::string& only = "") {
+  using Setup = std::tuple<std::string, int, int>;  // size, samples, bounces
+
+  // The scenes by what makes them one run.
+  std::map<Setup, std::vector<std::string>> Make(const std::string& only = "") {
     const std::string log = At("log").string();
     const std::string command = std::string("blender -b -noaudio --factory-startup -P ") + SCUMBLE_SOURCE_DIR +
                                 "/tests/blender/make_matrix.py -- --output " + Work().string() +
                                 (only.empty() ? "" : " --only " + only) + " > " + log + " 2>&1";
     EXPECT_EQ(std::system(command.c_str()), 0) << Bytes("log");
     matrix_ = nlohmann::json::parse(std::ifstream(At("matrix.json")), nullptr, false);
-    std::map<std::pair<std::string, int>, std::vector<std::string>> runs;
+    std::map<Setup, std::vector<std::string>> runs;
     if (!matrix_.is_object()) return runs;
     for (const auto& [name, scene] : matrix_.items()) {
-      runs[{scene["size"].get<std::string>(), scene["samples"].get<int>()}].push_back(name);
+      runs[{scene["size"].get<std::string>(), scene["samples"].get<int>(), scene["bounces"].get<int>()}].push_back(
+          name);
     }
     return runs;
   }
@@ -66,9 +71,10 @@ TEST_F(CyclesMatrixTest, EverySceneAgrees) {
   const auto runs = Make();
   ASSERT_FALSE(runs.empty()) << "make_matrix.py wrote no matrix.json";
   for (const auto& [setup, names] : runs) {
+    const auto& [size, samples, bounces] = setup;
     // Minutes: longer than the harness lets a command run.
-    std::string command = "cd " + Work().string() + " && " SCUMBLE_BINARY " crosscheck --json --quiet --size " +
-                          setup.first + " --samples " + std::to_string(setup.second);
+    std::string command = "cd " + Work().string() + " && " SCUMBLE_BINARY " crosscheck --json --quiet --size " + size +
+                          " --samples " + std::to_string(samples) + " --max-bounces " + std::to_string(bounces);
     for (const std::string& name : names) command += " " + name + ".blend";
     EXPECT_EQ(std::system((command + " > reports.json 2> message").c_str()), 0) << Bytes("message");
     const nlohmann::json reports = nlohmann::json::parse(std::ifstream(At("reports.json")), nullptr, false);

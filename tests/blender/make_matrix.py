@@ -3,8 +3,8 @@ one scene for each other difficulty of a lighting pass.
 
     blender -b -noaudio --factory-startup -P tests/blender/make_matrix.py -- --output FOLDER [--only NAME,NAME]
 
-FOLDER gets NAME.blend for each scene, and matrix.json: for each NAME its layers, the picture's size, and the samples
-that its noise needs; 0: light is not compared.
+FOLDER gets NAME.blend for each scene, and matrix.json: for each NAME its layers, the picture's size, the samples that
+its noise needs, 0: light is not compared, and how often light is reflected after the first surface.
 """
 
 import argparse
@@ -396,29 +396,32 @@ def hair(shape):
 
 
 DIFFUSE_LAYERS = ["full", "LDE", "LDDE", "LD12E"]
-SCENES = {  # builder, layers, size, samples
-    "emissive": (emissive, DIFFUSE_LAYERS, LANDSCAPE, 256),
-    "rough": (rough, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 128),
-    "coarse": (coarse, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 128),
-    "bent": (bent, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 128),
-    "world": (world_only, DIFFUSE_LAYERS, LANDSCAPE, 128),
-    "mixed": (mixed, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 256),
-    "stretched": (stretched, DIFFUSE_LAYERS, LANDSCAPE, 64),
-    "instances": (instances, DIFFUSE_LAYERS, LANDSCAPE, 64),
-    "principled": (principled, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 128),
-    "orthographic": (camera_scene(type="ORTHO", ortho_scale=6.0), DIFFUSE_LAYERS, LANDSCAPE, 64),
-    "shapes": (shapes, [], "240x135", 0),
+SCENES = {  # builder, layers, size, samples, bounces
+    "emissive": (emissive, DIFFUSE_LAYERS, LANDSCAPE, 256, 8),
+    "rough": (rough, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 128, 8),
+    "coarse": (coarse, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 64, 8),
+    "bent": (bent, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 64, 8),
+    "world": (world_only, DIFFUSE_LAYERS, LANDSCAPE, 64, 8),
+    "mixed": (mixed, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 128, 8),
+    "stretched": (stretched, DIFFUSE_LAYERS, LANDSCAPE, 32, 8),
+    "instances": (instances, DIFFUSE_LAYERS, LANDSCAPE, 32, 8),
+    "principled": (principled, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 128, 8),
+    "orthographic": (camera_scene(type="ORTHO", ortho_scale=6.0), DIFFUSE_LAYERS, LANDSCAPE, 32, 8),
+    "shapes": (shapes, [], "240x135", 0, 0),
 }
 # AUTO is HORIZONTAL in a landscape and VERTICAL in a portrait, but for the sensor's side that it reads.
 for fit, way in (("AUTO", LANDSCAPE), ("AUTO", PORTRAIT), ("HORIZONTAL", PORTRAIT), ("VERTICAL", LANDSCAPE)):
     SCENES[f"fit_{fit.lower()}_{way}"] = (
-        camera_scene(sensor_fit=fit, sensor_height=30.0, shift_x=0.12, shift_y=-0.08), [], way, 0)
+        camera_scene(sensor_fit=fit, sensor_height=30.0, shift_x=0.12, shift_y=-0.08), [], way, 0, 0)
+SHARP_LAMPS = ("point", "spot")
 for lamp_name, add_lamp in LAMPS.items():
-    def build(make_set=diffuse_and_glossy_set_for_points if lamp_name in ("point", "spot") else diffuse_and_glossy_set,
+    def build(make_set=diffuse_and_glossy_set_for_points if lamp_name in SHARP_LAMPS else diffuse_and_glossy_set,
               add_lamp=add_lamp):
         room(make_set())
         add_lamp()
-    SCENES[lamp_name] = (build, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 128)
+    # Direct light alone: what one kind of lamp sends to a second surface is of no other kind than what it sends to the
+    # first, and the scenes above compare that.
+    SCENES[lamp_name] = (build, ["full", "LDE", "LD12E", "LSE"], LANDSCAPE, 32 if lamp_name in SHARP_LAMPS else 128, 0)
 
 
 def textured():
@@ -427,12 +430,12 @@ def textured():
     LAMPS["area_square"]()
 
 
-SCENES["textured"] = (textured, ["full", "LDE", "LSE"], LANDSCAPE, 128)
+SCENES["textured"] = (textured, ["full", "LDE", "LSE"], LANDSCAPE, 128, 8)
 
 
 HAIR = {  # made only where they are named: they have limits of their own
-    "hair": (hair("RIBBONS"), ["LDE"], LANDSCAPE, 16),
-    "hair_round": (hair("THICK"), ["LDE"], LANDSCAPE, 16),
+    "hair": (hair("RIBBONS"), ["LDE"], LANDSCAPE, 16, 8),
+    "hair_round": (hair("THICK"), ["LDE"], LANDSCAPE, 16, 8),
 }
 
 
@@ -454,11 +457,11 @@ def main():
     chosen = [name for name in arguments.only.split(",") if name] or list(SCENES)
     listed = {}
     for name in chosen:
-        build, layers, pixels, samples = {**SCENES, **HAIR}[name]
+        build, layers, pixels, samples, bounces = {**SCENES, **HAIR}[name]
         bpy.ops.wm.read_factory_settings(use_empty=True)
         build()
         save(arguments.output.resolve(), name, pixels)
-        listed[name] = {"layers": layers, "size": pixels, "samples": samples}
+        listed[name] = {"layers": layers, "size": pixels, "samples": samples, "bounces": bounces}
     (arguments.output / "matrix.json").write_text(json.dumps(listed, indent=1))
 
 
