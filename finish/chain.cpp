@@ -11,6 +11,7 @@
 
 #include "core/filter/oklab_rows.h"
 #include "core/filter/parallel.h"
+#include "core/filter/wide_loops.h"
 #include "core/image/check.h"
 #include "core/image/hash.h"
 #include "finish/area/area_effects.h"
@@ -114,6 +115,14 @@ bool IsWeighed(const PointStep& one) {
   return step.pass.strength < 1.0 || !step.only.empty() || !step.share.empty() || !one.coverage.empty();
 }
 
+// From one colour to the other, as far as the share says.
+SCUMBLE_WIDE_LOOPS void Mix(const float* shares, const float* from, std::size_t count, float* to) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const float mixed = from[i] + (to[i] - from[i]) * shares[i];
+    to[i] = shares[i] >= 1.0f ? to[i] : mixed;
+  }
+}
+
 // Where the step changes nothing or only part of it, puts back what was before.
 void Weigh(const PointStep& one, std::size_t first, std::size_t count, const OklabBlock& before, OklabBlock& block) {
   const FinishStep& step = *one.step;
@@ -125,15 +134,9 @@ void Weigh(const PointStep& one, std::size_t first, std::size_t count, const Okl
   for (std::size_t i = 0; i < count && !step.only.empty(); ++i) shares[i] = step.only[first + i] ? shares[i] : 0.0f;
   const float* const coverage = one.coverage.empty() ? nullptr : one.coverage.data() + first;
   for (std::size_t i = 0; i < count && coverage; ++i) shares[i] = coverage[i] > 0.0f ? shares[i] : 0.0f;
-  const auto mix = [&](const float* from, float* to) {
-    for (std::size_t i = 0; i < count; ++i) {
-      const float mixed = from[i] + (to[i] - from[i]) * shares[i];
-      to[i] = shares[i] >= 1.0f ? to[i] : mixed;
-    }
-  };
-  mix(before.lightness.data(), block.lightness.data());
-  mix(before.a.data(), block.a.data());
-  mix(before.b.data(), block.b.data());
+  Mix(shares.data(), before.lightness.data(), count, block.lightness.data());
+  Mix(shares.data(), before.a.data(), count, block.a.data());
+  Mix(shares.data(), before.b.data(), count, block.b.data());
 }
 
 // Texels whose colour no step changes keep their bits, those of alpha 0 too.

@@ -51,16 +51,19 @@ glm::vec3 Median(std::vector<glm::vec3> colors) {
   return median;
 }
 
-float Difference(glm::vec3 a, glm::vec3 b) {
-  const glm::vec3 off = OklabFromLinear(a) - OklabFromLinear(b);
+// Of a linear colour and one of Oklab.
+float Difference(glm::vec3 color, glm::vec3 oklab) {
+  const glm::vec3 off = OklabFromLinear(color) - oklab;
   return std::sqrt(off.x * off.x + off.y * off.y + off.z * off.z);
 }
 
 // 0 for paper, 1 for paint that hides it.
-float Opacity(glm::vec3 color, glm::vec3 paper) { return SmoothStep(kGrain, kFullPaint, Difference(color, paper)); }
+float Opacity(glm::vec3 color, const BarePaper& paper) {
+  return SmoothStep(kGrain, kFullPaint, Difference(color, paper.oklab));
+}
 
 // The sum of opacities of paint on that paper.
-double PaintOn(glm::vec3 paper, const std::vector<glm::vec3>& colors) {
+double PaintOn(const BarePaper& paper, const std::vector<glm::vec3>& colors) {
   double paint = 0.0;
   for (const glm::vec3 color : colors) paint += Opacity(color, paper);
   return paint;
@@ -88,17 +91,20 @@ struct Corners {
 
 }  // namespace
 
+BarePaper BarePaper::OfColor(glm::vec3 color) { return {Kind::kPaper, color, OklabFromLinear(color)}; }
+
 bool HasClearCorners(const Picture& picture) { return Corners(picture).AreClear(); }
 
 bool HasUnevenCorners(const Picture& picture) {
-  std::array<glm::vec3, 4> papers;
+  std::array<BarePaper, 4> papers;
   const std::array<std::vector<glm::vec3>, 4> corners = OpaqueCorners(picture);
   for (std::size_t k = 0; k < 4; ++k) {
     if (corners[k].empty()) return false;
-    papers[k] = Median(corners[k]);
+    papers[k] = BarePaper::OfColor(Median(corners[k]));
     if (PaintOn(papers[k], corners[k]) >= kMostPaintInCorners * static_cast<double>(corners[k].size())) return false;
   }
-  return std::ranges::any_of(papers, [&](glm::vec3 paper) { return Difference(paper, papers[0]) > kGrain; });
+  return std::ranges::any_of(papers,
+                             [&](const BarePaper& paper) { return Difference(paper.color, papers[0].oklab) > kGrain; });
 }
 
 BarePaper FindBarePaper(const Picture& picture) {
@@ -111,18 +117,18 @@ BarePaper FindBarePaper(const Picture& picture) {
   for (const std::vector<glm::vec3>& corner : by_corner) colors.insert(colors.end(), corner.begin(), corner.end());
   // A sheet that is half transparent is no paper.
   if (static_cast<double>(colors.size()) < (1.0 - kMostPaintInCorners) * count) return {};
-  const glm::vec3 paper = Median(colors);
+  const BarePaper paper = BarePaper::OfColor(Median(colors));
   for (const std::vector<glm::vec3>& corner : by_corner) {
-    if (!corner.empty() && Difference(Median(corner), paper) > kUneven) return {};
+    if (!corner.empty() && Difference(Median(corner), paper.oklab) > kUneven) return {};
   }
   if (PaintOn(paper, colors) >= kMostPaintInCorners * static_cast<double>(colors.size())) return {};
-  return {BarePaper::Kind::kPaper, paper};
+  return paper;
 }
 
 void LiftPaint(const BarePaper& paper, std::uint16_t* texel) {
   if (paper.kind != BarePaper::Kind::kPaper) return;
   const glm::vec3 color = Linear(texel);
-  const float by_distance = Opacity(color, paper.color);
+  const float by_distance = Opacity(color, paper);
   if (!(by_distance > 0.0f)) {
     texel[3] = 0;
     return;
@@ -139,11 +145,6 @@ void LiftPaint(const BarePaper& paper, std::uint16_t* texel) {
     texel[c] = Srgb16FromLinear(paper.color[c] + (color[c] - paper.color[c]) / opacity);
   }
   texel[3] = static_cast<std::uint16_t>(static_cast<float>(texel[3]) * opacity + 0.5f);
-}
-
-Picture LiftPaint(const BarePaper& paper, Picture picture) {
-  for (std::size_t i = 0; i < picture.rgba.size(); i += 4) LiftPaint(paper, picture.rgba.data() + i);
-  return picture;
 }
 
 }  // namespace scumble

@@ -16,6 +16,9 @@ struct BarePaper {
   };
   Kind kind = Kind::kCovered;
   glm::vec3 color{0.0f};  // linear; for kPaper
+  glm::vec3 oklab{0.0f};  // the same colour
+
+  static BarePaper OfColor(glm::vec3 color);
 };
 
 // The corners are what lies beyond 1.15 radii of the circle that fills a square, or of the ellipse that fills another
@@ -34,6 +37,5 @@ bool HasClearCorners(const Picture& picture);
 // what the picture shows, as far as colours reach. Paper as it is between strokes becomes transparent, its grain
 // included. Without a paper colour alpha is opacity already and the texel stays.
 void LiftPaint(const BarePaper& paper, std::uint16_t* texel);
-Picture LiftPaint(const BarePaper& paper, Picture picture);
 
 }  // namespace scumble

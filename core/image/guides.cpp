@@ -85,13 +85,13 @@ Status GuideSet::ValidateValues(const std::string& name) const {
     return InputError(name + " holds " + layers_.ToString() + ": guides need at least A and normal");
   }
   const auto coverage = Plane(Layer::kCoverage);
+  const auto x = Plane(Layer::kNormal, 0), y = Plane(Layer::kNormal, 1), z = Plane(Layer::kNormal, 2);
   const auto depth = Has(Layer::kDepth) ? Plane(Layer::kDepth) : std::span<const float>{};
   Offenders bad_coverage(width_), bad_normal(width_), bad_depth(width_);
-  for (std::size_t i = 0; i < pixel_count(); ++i) {
+  for (std::size_t i = 0; i < coverage.size(); ++i) {
     if (!(coverage[i] >= 0.0f && coverage[i] <= 1.0f)) bad_coverage.Add(i);
     if (!(coverage[i] > 0.0f)) continue;
-    const glm::vec3 n = Vec3(Layer::kNormal, i);
-    const float squared_length = n.x * n.x + n.y * n.y + n.z * n.z;
+    const float squared_length = x[i] * x[i] + y[i] * y[i] + z[i] * z[i];
     if (!(squared_length > 0.25f && squared_length < 4.0f)) bad_normal.Add(i);
     if (!depth.empty() && !(depth[i] >= 0.0f)) bad_depth.Add(i);
   }

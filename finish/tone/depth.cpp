@@ -3,6 +3,7 @@
 #include <memory>
 #include <span>
 
+#include "core/filter/wide_loops.h"
 #include "core/image/exact_math.h"
 #include "finish/tone/depth_scale.h"
 #include "finish/tone/point_effect.h"
@@ -29,6 +30,21 @@ class Air {
   Curve share_;
 };
 
+// What distance takes of the paint's own chroma, and what it gives of the colour's.
+struct Haze {
+  float desaturate, tint;
+  LabColor color;
+};
+
+SCUMBLE_WIDE_LOOPS void Fade(const Haze& haze, const float* shares, std::size_t count, float* a, float* b) {
+  const auto [desaturate, tint, color] = haze;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float kept = 1.0f - desaturate * shares[i], taken = tint * shares[i];
+    const float own_a = kept * a[i], own_b = kept * b[i];
+    a[i] = own_a + (color.a - own_a) * taken, b[i] = own_b + (color.b - own_b) * taken;
+  }
+}
+
 }  // namespace
 
 PointEffect MakeDepth(const DepthPass& pass, const FinishFrame& frame) {
@@ -38,15 +54,11 @@ PointEffect MakeDepth(const DepthPass& pass, const FinishFrame& frame) {
   const std::span<const float> depth = frame.guides->Plane(Layer::kDepth);
   const LabColor color = ToOklab(pass.color);
   const bool has_air = pass.air > 0.0;
-  const auto desaturate = static_cast<float>(pass.desaturate), tint = static_cast<float>(pass.tint);
+  const Haze haze{static_cast<float>(pass.desaturate), static_cast<float>(pass.tint), color};
   return [=](std::size_t first, std::size_t count, OklabBlock& block) {
     std::array<float, kOklabBlock> shares;
     scale->Shares(depth.data() + first, count, shares.data());
-    for (std::size_t i = 0; i < count; ++i) {
-      const float kept = 1.0f - desaturate * shares[i], taken = tint * shares[i];
-      const float a = kept * block.a[i], b = kept * block.b[i];
-      block.a[i] = a + (color.a - a) * taken, block.b[i] = b + (color.b - b) * taken;
-    }
+    Fade(haze, shares.data(), count, block.a.data(), block.b.data());
     for (std::size_t i = 0; i < count && has_air; ++i) {
       const auto share = static_cast<float>(air->Share(scale->Distance(depth[first + i])));
       block.lightness[i] += (color.lightness - block.lightness[i]) * share;

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/filter/wide_loops.h"
 #include "core/image/exact_math.h"
 #include "finish/finish.h"
 
@@ -35,6 +36,20 @@ class Curve {
   std::vector<double> values_;
 };
 
+// |-1 / x - from|, or |x - from|, times `per`, 1 at most and where it is no number.
+SCUMBLE_WIDE_LOOPS inline void InverseDistances(const float* x, float from, float per, std::size_t count, float* out) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const float u = std::fabs(-1.0f / x[i] - from) * per;
+    out[i] = u < 1.0f ? u : 1.0f;
+  }
+}
+SCUMBLE_WIDE_LOOPS inline void Distances(const float* x, float from, float per, std::size_t count, float* out) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const float u = std::fabs(x[i] - from) * per;
+    out[i] = u < 1.0f ? u : 1.0f;
+  }
+}
+
 // The u of DepthPass.
 class DepthScale {
  public:
@@ -57,12 +72,7 @@ class DepthScale {
   // 0 … 1, of many.
   void Shares(const float* depth, std::size_t count, float* out) const {
     const auto focus = static_cast<float>(focus_), per_span = static_cast<float>(std::fabs(per_span_));
-    const auto clamped = [](float u) { return u < 1.0f ? u : 1.0f; };  // NaN is 1
-    if (inverse_) {
-      for (std::size_t i = 0; i < count; ++i) out[i] = clamped(std::fabs(-1.0f / depth[i] - focus) * per_span);
-    } else {
-      for (std::size_t i = 0; i < count; ++i) out[i] = clamped(std::fabs(depth[i] - focus) * per_span);
-    }
+    (inverse_ ? InverseDistances : Distances)(depth, focus, per_span, count, out);
     for (std::size_t i = 0; i < count && gamma_ != 1.0; ++i) out[i] = static_cast<float>(power_.At(double(out[i])));
     const auto layers = static_cast<float>(layers_);
     for (std::size_t i = 0; i < count && layers_ > 1; ++i)

@@ -3,15 +3,28 @@
 #include <cmath>
 #include <span>
 
+#include "core/filter/wide_loops.h"
 #include "finish/tone/point_effect.h"
 
 namespace scumble::internal {
 namespace {
 
-float SmoothStep(float from, float to, float x) {
-  if (!(to > from)) return x < from ? 0.0f : 1.0f;
-  const float t = std::clamp((x - from) / (to - from), 0.0f, 1.0f);
+inline float Clamped(float x) { return x < 0.0f ? 0.0f : 1.0f < x ? 1.0f : x; }
+
+inline float SmoothStep(float from, float to, float x) {
+  const float t = to > from ? Clamped((x - from) / (to - from)) : x < from ? 0.0f : 1.0f;
   return t * t * (3.0f - 2.0f * t);
+}
+
+SCUMBLE_WIDE_LOOPS void TakeCast(const float* shadow, std::size_t count, float* out) {
+  for (std::size_t i = 0; i < count; ++i) out[i] = Clamped(shadow[i]);
+}
+
+SCUMBLE_WIDE_LOOPS void AddForm(const float* light, float full, float none, std::size_t count, float* out) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const float form = 1.0f - SmoothStep(full, none, light[i]);
+    out[i] = out[i] < form ? form : out[i];
+  }
 }
 
 // How much of pixels is in shade, 0 … 1: the larger of cast and form shadow.
@@ -24,10 +37,9 @@ class Shade {
     if (pass.source != ShadowsPass::Source::kCast) light_ = frame.guides->Plane(Layer::kLuminance);
   }
   void Of(std::size_t first, std::size_t count, float* out) const {
-    std::fill_n(out, count, 0.0f);
-    for (std::size_t i = 0; i < count && !cast_.empty(); ++i) out[i] = std::clamp(cast_[first + i], 0.0f, 1.0f);
-    for (std::size_t i = 0; i < count && !light_.empty(); ++i)
-      out[i] = std::max(out[i], 1.0f - SmoothStep(full_, none_, light_[first + i]));
+    if (cast_.empty()) std::fill_n(out, count, 0.0f);
+    if (!cast_.empty()) TakeCast(cast_.data() + first, count, out);
+    if (!light_.empty()) AddForm(light_.data() + first, full_, none_, count, out);
   }
 
  private:
@@ -71,7 +83,7 @@ Look LookOf(const LabColor& paint, const LabColor& color) {
 
 // `shares`: of shade.
 template <ShadowsPass::Mode kMode>
-void PaintShade(const float* shares, const LabColor& color, std::size_t count, OklabBlock& block) {
+SCUMBLE_WIDE_LOOPS void PaintShade(const float* shares, const LabColor& color, std::size_t count, OklabBlock& block) {
   constexpr bool kChangesLight = kMode == ShadowsPass::Mode::kChiaroscuro || kMode == ShadowsPass::Mode::kImpression;
   for (std::size_t i = 0; i < count; ++i) {
     const LabColor paint{block.lightness[i], block.a[i], block.b[i]};

@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/filter/wide_loops.h"
 #include "core/image/exact_math.h"
 #include "finish/tone/point_effect.h"
 
@@ -24,23 +25,29 @@ double SoftStep(double f, int levels, double sharpness) {
   return border + 0.5 * width * Tanh(2.0 * sharpness * (f - border) / width) / Tanh(sharpness);
 }
 
+constexpr int kCells = 1 << 14;
+
+// By straight lines between the cells of a table of kCells + 2 values.
+SCUMBLE_WIDE_LOOPS void TakeFrom(const float* table, std::size_t count, float* lightness) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const float given = lightness[i] < 0.0f ? 0.0f : 1.0f < lightness[i] ? 1.0f : lightness[i];
+    const float at = given * kCells;
+    const int cell = static_cast<int>(at);
+    const float from = table[cell], to = table[cell + 1];
+    lightness[i] = from + (to - from) * (at - static_cast<float>(cell));
+  }
+}
+
 }  // namespace
 
 PointEffect MakeTones(const TonesPass& pass) {
-  constexpr int kCells = 1 << 14;
   const auto curve = std::make_shared<std::vector<float>>();
   for (int i = 0; i <= kCells; ++i) {
     curve->push_back(static_cast<float>(SoftStep(double(i) / kCells, pass.bins, pass.sharpness)));
   }
   curve->push_back(curve->back());
   return [curve](std::size_t, std::size_t count, OklabBlock& block) {
-    const float* const table = curve->data();
-    for (std::size_t i = 0; i < count; ++i) {
-      const float at = std::clamp(block.lightness[i], 0.0f, 1.0f) * kCells;
-      const int cell = static_cast<int>(at);
-      const float from = table[cell], to = table[cell + 1];
-      block.lightness[i] = from + (to - from) * (at - static_cast<float>(cell));
-    }
+    TakeFrom(curve->data(), count, block.lightness.data());
   };
 }
 

@@ -1,9 +1,12 @@
 #include "transfer/shadow/shadow_paint.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "core/image/bare_paper.h"
 #include "core/image/color.h"
@@ -84,7 +87,7 @@ ShadowPaint::ShadowPaint(std::shared_ptr<const PreparedExemplar> exemplar, std::
   // What lies under a cut-out is unknown, and white paper inside it is as opaque as paint.
   const bool any_cut_out = std::any_of(papers.begin(), papers.end(), cut_out);
   for (BarePaper& paper : papers) {
-    if (cut_out(paper)) paper = {BarePaper::Kind::kPaper, glm::vec3(1.0f)};
+    if (cut_out(paper)) paper = BarePaper::OfColor(glm::vec3(1.0f));
   }
   Lift(papers);
   if (any_cut_out && !ShowsBareGround())
@@ -94,8 +97,13 @@ ShadowPaint::ShadowPaint(std::shared_ptr<const PreparedExemplar> exemplar, std::
 }
 
 void ShadowPaint::Lift(std::span<const BarePaper> papers) {
-  for (int e = 0; e < exemplar_->count(); ++e)
-    pictures_.push_back(LiftPaint(papers[std::size_t(e)], exemplar_->picture(e)));
+  for (int e = 0; e < exemplar_->count(); ++e) {
+    Picture picture = exemplar_->picture(e);
+    tbb::parallel_for(0, picture.height, [&](int y) {
+      for (int x = 0; x < picture.width; ++x) LiftPaint(papers[std::size_t(e)], picture.At(x, y));
+    });
+    pictures_.push_back(std::move(picture));
+  }
 }
 
 // Whether enough of the lifted paint is transparent to make a scale of tones.

@@ -96,7 +96,7 @@ TEST(Silhouettes, PointsAndDirectionsAreThoseOfACircle) {
 
 // Lifted paint over its paper is the picture again, and paper is nothing.
 TEST(BarePaper, LiftedPaintOverItsPaperIsThePicture) {
-  const BarePaper paper{BarePaper::Kind::kPaper, {0.7f, 0.6f, 0.45f}};
+  const BarePaper paper = BarePaper::OfColor({0.7f, 0.6f, 0.45f});
   int compared = 0;
   for (int n = 0; n < 2000; ++n) {
     std::uint16_t texel[4] = {std::uint16_t(Hash(n, 0)), std::uint16_t(Hash(n, 1)), std::uint16_t(Hash(n, 2)), 65535};
