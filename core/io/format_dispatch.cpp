@@ -15,9 +15,12 @@
 #include <vector>
 
 #include "core/io/channel_file.h"
+#include "core/io/file/atomic_file.h"
 #include "core/io/file/readable_file.h"
 #include "core/io/guides/own_guides.h"
 #include "core/io/library.h"
+#include "core/io/png/png_integrity.h"
+#include "core/io/png/png_reader.h"
 
 namespace scumble {
 namespace {
@@ -136,6 +139,12 @@ bool IsLibraryLoaded() { return is_loaded; }
 int internal::IoThreads() { return io_threads; }
 
 Expected<ChannelImage> ReadChannels(const std::filesystem::path& path) {
+  if (internal::IsPngFile(path)) {
+    SCUMBLE_ASSIGN(const auto bytes, ReadWholeFile(path));
+    if (internal::CheckPngIntegrity(bytes, path.string())) {
+      if (auto plain = internal::ReadPlainPngChannels(bytes, path.string())) return *std::move(plain);
+    }
+  }
   SCUMBLE_ASSIGN(const Formats* const formats, LoadFormatsToRead(path));
   return formats->read_channels(path);
 }

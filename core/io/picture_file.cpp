@@ -82,6 +82,14 @@ Expected<PictureHeader> InspectPicture(const std::filesystem::path& path) {
     SCUMBLE_ASSIGN(const MergedHeader merged, InspectMergedLayers(path));
     return PictureHeader{merged.width, merged.height, merged.bits, 0};
   }
+  if (internal::IsPngFile(path)) {
+    constexpr std::size_t kMostBeforePixels = 1 << 18;  // bytes; where more comes before them, the library reads it
+    std::vector<std::byte> start(kMostBeforePixels);
+    std::ifstream file(path, std::ios::binary);
+    file.read(reinterpret_cast<char*>(start.data()), std::streamsize(start.size()));
+    const auto taken = std::span<const std::byte>(start).first(static_cast<std::size_t>(file.gcount()));
+    if (const auto header = internal::PlainPngHeader(taken)) return *header;
+  }
   SCUMBLE_ASSIGN(const Formats* const formats, LoadFormatsToRead(path));
   return formats->inspect_picture(path);
 }

@@ -13,6 +13,11 @@ std::string Upper(std::string text) {
   for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
   return text;
 }
+
+double TrueDpi(double dpi) {
+  constexpr double kLeast = 97, kMost = 20000;
+  return dpi >= kLeast && dpi <= kMost ? dpi : 0.0;
+}
 }  // namespace internal
 
 int PictureBits(const std::filesystem::path& path, const PictureWriteOptions& options) {

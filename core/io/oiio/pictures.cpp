@@ -213,8 +213,7 @@ PictureHeader HeaderOf(const OIIO::ImageSpec& spec) {
   if (unit == "in" || unit == "inch") header.dpi = per_unit;
   if (unit == "cm") header.dpi = per_unit * 2.54;
   if (unit == "m") header.dpi = per_unit * 0.0254;
-  constexpr double kLeast = 97, kMost = 20000;
-  if (!(header.dpi >= kLeast && header.dpi <= kMost)) header.dpi = 0;
+  header.dpi = internal::TrueDpi(header.dpi);
   return header;
 }
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/image/guides.h"
+#include "core/io/picture_rules.h"
 
 namespace scumble::internal {
 namespace {
@@ -101,6 +102,15 @@ bool ReadRows(const Reading& reading, png_bytepp rows) {
   return true;
 }
 
+// All of them, row by row.
+bool ReadSamples(const Reading& reading, const Picture& size, std::vector<png_byte>& samples) {
+  const std::size_t row_bytes = std::size_t(size.width) * std::size_t(reading.channels * reading.bits / 8);
+  samples.resize(row_bytes * std::size_t(size.height));
+  std::vector<png_bytep> rows(std::size_t(size.height));
+  for (std::size_t y = 0; y < rows.size(); ++y) rows[y] = samples.data() + row_bytes * y;
+  return ReadRows(reading, rows.data());
+}
+
 // The places of a pixel's four values among those of the file; -1: opaque.
 struct Order {
   int r, g, b, a;
@@ -142,18 +152,48 @@ std::optional<Picture> ReadPlainPng(std::span<const std::byte> bytes) {
   Source source{bytes};
   Reading reading;
   Picture picture;
-  if (!Begin(source, reading, picture)) return std::nullopt;
-  const std::size_t row_bytes = std::size_t(picture.width) * std::size_t(reading.channels * reading.bits / 8);
-  std::vector<png_byte> samples(row_bytes * std::size_t(picture.height));
-  std::vector<png_bytep> rows(std::size_t(picture.height));
-  for (std::size_t y = 0; y < rows.size(); ++y) rows[y] = samples.data() + row_bytes * y;
-  if (!ReadRows(reading, rows.data())) return std::nullopt;
+  std::vector<png_byte> samples;
+  if (!Begin(source, reading, picture) || !ReadSamples(reading, picture, samples)) return std::nullopt;
   picture.rgba.resize(std::size_t(4) * std::size_t(picture.width) * std::size_t(picture.height));
   if (reading.bits == 8)
     Spread(samples, reading.channels, From8, picture);
   else
     Spread(samples, reading.channels, From16, picture);
   return picture;
+}
+
+std::optional<ChannelImage> ReadPlainPngChannels(std::span<const std::byte> bytes, const std::string& name) {
+  Source source{bytes};
+  Reading reading;
+  Picture size;
+  std::vector<png_byte> samples;
+  if (!Begin(source, reading, size) || !ReadSamples(reading, size, samples)) return std::nullopt;
+  ChannelImage image;
+  image.name = name, image.width = size.width, image.height = size.height;
+  const std::size_t channels = static_cast<std::size_t>(reading.channels);
+  for (std::size_t c = 0; c < channels; ++c) {
+    image.names.emplace_back(1, (channels < 3 ? "YA" : "RGBA")[c]);
+    auto& plane = image.planes.emplace_back(image.pixel_count());
+    for (std::size_t i = 0; i < plane.size(); ++i) {
+      const std::size_t at = i * channels + c;
+      plane[i] = reading.bits == 8 ? static_cast<float>(samples[at]) * (1.0f / 255.0f)
+                                   : static_cast<float>(From16(samples, at)) * (1.0f / 65535.0f);
+    }
+  }
+  return image;
+}
+
+std::optional<PictureHeader> PlainPngHeader(std::span<const std::byte> bytes) {
+  Source source{bytes};
+  Reading reading;
+  Picture size;
+  if (!Begin(source, reading, size)) return std::nullopt;
+  PictureHeader header{size.width, size.height, reading.bits, 0};
+  png_uint_32 across = 0, down = 0;
+  int unit = PNG_RESOLUTION_UNKNOWN;
+  if (png_get_pHYs(reading.png, reading.info, &across, &down, &unit) != 0 && unit == PNG_RESOLUTION_METER)
+    header.dpi = TrueDpi(static_cast<float>(across) * 0.0254f);
+  return header;
 }
 
 std::optional<StoredPicture> InspectPlainPng(std::span<const std::byte> bytes) {

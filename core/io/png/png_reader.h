@@ -4,8 +4,11 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <string>
 
+#include "core/image/channel_image.h"
 #include "core/io/format_dispatch.h"
+#include "core/io/picture_file.h"
 #include "scumble/picture.h"
 
 namespace scumble::internal {
@@ -15,7 +18,11 @@ namespace scumble::internal {
 // colour spaces. That library then reads it, or reports the error. Thread-safe.
 std::optional<Picture> ReadPlainPng(std::span<const std::byte> bytes);
 
-// That file's header, as `InspectStored` gives it: for the same files, complete or not.
+// Its channels, as ReadChannels gives them. `name` is the image's.
+std::optional<ChannelImage> ReadPlainPngChannels(std::span<const std::byte> bytes, const std::string& name);
+
+// That file's header, as `InspectStored` and as `InspectPicture` give it: for the same files, complete or not.
 std::optional<StoredPicture> InspectPlainPng(std::span<const std::byte> bytes);
+std::optional<PictureHeader> PlainPngHeader(std::span<const std::byte> bytes);
 
 }  // namespace scumble::internal

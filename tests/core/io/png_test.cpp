@@ -59,6 +59,28 @@ Expected<Picture> ReadByLibrary(const fs::path& path) {
   return formats->read_picture(path);
 }
 
+// Channels and header without the library are those that it reads.
+void ExpectAsLibrary(const std::vector<std::byte>& bytes, const fs::path& file) {
+  const auto plain = internal::ReadPlainPngChannels(bytes, file.string());
+  const auto header = internal::PlainPngHeader(bytes);
+  ASSERT_TRUE(plain && header);
+  const auto formats = LoadFormats("a test");
+  ASSERT_TRUE(formats);
+  const auto channels = (*formats)->read_channels(file);
+  ASSERT_TRUE(channels) << channels.error().message;
+  EXPECT_EQ(plain->names, channels->names);
+  EXPECT_EQ(plain->name, channels->name);
+  EXPECT_EQ(plain->width, channels->width);
+  EXPECT_EQ(plain->height, channels->height);
+  EXPECT_TRUE(plain->planes == channels->planes);
+  const auto told = (*formats)->inspect_picture(file);
+  ASSERT_TRUE(told) << told.error().message;
+  EXPECT_EQ(header->width, told->width);
+  EXPECT_EQ(header->height, told->height);
+  EXPECT_EQ(header->bits, told->bits);
+  EXPECT_EQ(header->dpi, told->dpi);
+}
+
 void ExpectHolds(const std::vector<std::byte>& bytes, const Picture& picture) {
   EXPECT_TRUE(internal::CheckPngIntegrity(bytes, "p.png"));
   const auto plain = internal::ReadPlainPng(bytes);
@@ -71,6 +93,7 @@ void ExpectHolds(const std::vector<std::byte>& bytes, const Picture& picture) {
   const auto library = ReadByLibrary(folder / "p.png");
   ASSERT_TRUE(library) << library.error().message;
   EXPECT_TRUE(library->rgba == picture.rgba);
+  ExpectAsLibrary(bytes, folder / "p.png");
 }
 
 struct Shape {
@@ -172,6 +195,8 @@ TEST(PngWriter, SaysWhatThePictureLibraryWouldSay) {
       ASSERT_TRUE(
           WriteFileAtomically(folder / "ours.png", internal::WritePng(picture, {8, false, 6, dpi, settings, 1})));
       EXPECT_EQ(Said(folder / "ours.png"), Said(by_library)) << dpi << " dpi, settings '" << settings << "'";
+      for (const fs::path& file : {folder / "ours.png", fs::path(by_library)})
+        ExpectAsLibrary(*ReadWholeFile(file), file);
     }
   }
 }
@@ -285,6 +310,7 @@ TEST(PngReader, ReadsEveryKindAsThePictureLibraryDoes) {
       ASSERT_TRUE(library) << library.error().message;
       EXPECT_EQ(plain->width, library->width);
       EXPECT_TRUE(plain->rgba == library->rgba);
+      ExpectAsLibrary(*ReadWholeFile(folder / "p.png"), folder / "p.png");
       const auto head = internal::InspectPlainPng(*ReadWholeFile(folder / "p.png"));
       const auto stored = (*LoadFormats("a test"))->inspect_stored(folder / "p.png");
       ASSERT_TRUE(head && stored);
@@ -311,6 +337,18 @@ TEST(PngReader, LeavesToThePictureLibraryWhatSaysMore) {
     if (both) {
       EXPECT_TRUE(both->rgba == library->rgba) << kind.key;
     }
+  }
+}
+
+TEST(PngReader, EveryCodeIsTheNumberThatTheLibraryMakesOfIt) {
+  TemporaryFolder folder;
+  Picture picture(256, 256);
+  for (const int bits : {8, 16}) {
+    for (std::size_t i = 0; i < picture.rgba.size(); ++i)
+      picture.rgba[i] = static_cast<std::uint16_t>(bits == 8 ? i / 4 % 256 * 257 : i / 4);
+    const auto bytes = internal::WritePng(picture, {bits, false, 1, 0, "", 1});
+    ASSERT_TRUE(WriteFileAtomically(folder / "p.png", bytes));
+    ExpectAsLibrary(bytes, folder / "p.png");
   }
 }
 
