@@ -1,11 +1,16 @@
 // scumble styles.
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <string>
 #include <system_error>
+#include <vector>
 
 #include "apps/cli/app/command.h"
 #include "apps/cli/app/json_text.h"
@@ -26,30 +31,51 @@ struct StyleKeyLine {
   const char *key, *default_value, *help, *kind;
 };
 
+// What the list says of a style, whose pictures are not kept.
+struct ListedStyle {
+  std::filesystem::path folder;
+  int size = 0;  // pixels of the first painting's longer side
+  std::string licence;
+  std::optional<Error> error;
+};
+
+std::vector<ListedStyle> ReadStyles(const Globals& globals) {
+  std::vector<ListedStyle> listed;
+  for (const auto& root : StyleFolders(globals)) {
+    for (const auto& folder : FindStyles(root)) listed.push_back({folder, 0, {}, {}});
+  }
+  tbb::task_arena arena(globals.threads > 0 ? globals.threads : tbb::task_arena::automatic);
+  arena.execute([&] {
+    tbb::parallel_for(std::size_t{0}, listed.size(), [&](std::size_t i) {
+      const Expected<Style> style = LoadStyle(listed[i].folder);
+      if (!style) {
+        listed[i].error = style.error();
+        return;
+      }
+      const Picture& picture = style->exemplars.front().picture;
+      listed[i].size = std::max(picture.width, picture.height), listed[i].licence = style->licence;
+    });
+  });
+  return listed;
+}
+
 Expected<ExitCode> ListStyles(const Globals& globals) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   std::string text;
   ExitCode code = ExitCode::kOk;
-  for (const auto& root : StyleFolders(globals)) {
-    for (const auto& folder : FindStyles(root)) {
-      const Expected<Style> style = LoadStyle(folder);
-      if (!style) {  // one broken style does not hide the others
-        globals.Warn("style " + folder.filename().string() + " is left out: " + style.error().message);
-        code = ExitCodeFor(style.error().kind);
-        continue;
-      }
-      const int size = std::max(style->exemplars.front().picture.width, style->exemplars.front().picture.height);
-      json.push_back({{"name", folder.filename().string()},
-                      {"folder", folder.string()},
-                      {"size", size},
-                      {"licence", style->licence}});
-      std::error_code failed;
-      if (const auto thumbnail = folder / "thumbnail.png"; std::filesystem::exists(thumbnail, failed)) {
-        json.back()["thumbnail"] = thumbnail.string();
-      }
-      text +=
-          fmt::format("{:<16} {:>5}²  {:<10} {}\n", folder.filename().string(), size, style->licence, folder.string());
+  for (const auto& [folder, size, licence, error] : ReadStyles(globals)) {
+    const std::string name = folder.filename().string();
+    if (error) {  // one broken style does not hide the others
+      globals.Warn("style " + name + " is left out: " + error->message);
+      code = ExitCodeFor(error->kind);
+      continue;
     }
+    json.push_back({{"name", name}, {"folder", folder.string()}, {"size", size}, {"licence", licence}});
+    std::error_code failed;
+    if (const auto thumbnail = folder / "thumbnail.png"; std::filesystem::exists(thumbnail, failed)) {
+      json.back()["thumbnail"] = thumbnail.string();
+    }
+    text += fmt::format("{:<16} {:>5}²  {:<10} {}\n", name, size, licence, folder.string());
   }
   Print(globals.json ? JsonText(json) : text.empty() ? "no bundled styles found\n" : text);
   return code;
