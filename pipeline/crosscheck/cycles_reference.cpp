@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -25,9 +26,9 @@ bool StartsWith(const std::string& text, const std::string& start) { return text
 double CostOf(int samples) { return samples + 2.0; }
 
 // "scumble: rendering all, 64 samples" begins a render; Cycles' own "Sample 12/64" tells how far it is.
-double ShareDone(const std::vector<std::string>& log, const std::vector<int>& counts) {
+double ShareDone(const std::vector<std::string>& log, const std::vector<int>& counts, int renders) {
   double total = CostOf(1), done = 0.0, current = 0.0, within = 0.0;
-  for (const int count : counts) total += 3.0 * CostOf(count);
+  for (const int count : counts) total += renders * CostOf(count);
   for (const std::string& line : log) {
     int samples = 0, sample = 0;
     if (StartsWith(line, kRenderingMark)) {
@@ -46,13 +47,15 @@ double ShareDone(const std::vector<std::string>& log, const std::vector<int>& co
 
 // Runs the program and reports from its log how far it is.
 Expected<ProgramEnd> RunWatched(const std::vector<std::string>& arguments, const fs::path& log,
-                                const std::vector<int>& counts, const RunContext& context, const Progress& progress) {
+                                const ReferenceOptions& options, const RunContext& context, const Progress& progress) {
+  const int renders = std::clamp(options.max_bounces + 1, 1, 3);  // at each count: all, ldde, ld12e
   SCUMBLE_ASSIGN(const auto program, RunningProgram::Start(arguments, log, context));
   constexpr int kPollsForReport = 20;
   for (int polls = 1;; ++polls) {
     SCUMBLE_ASSIGN(const std::optional<ProgramEnd> end, program->Poll());
     if (end) return *end;
-    if (progress && polls % kPollsForReport == 0 && !progress(ShareDone(LinesOf(log), counts))) return CancelledError();
+    if (progress && polls % kPollsForReport == 0 && !progress(ShareDone(LinesOf(log), options.samples, renders)))
+      return CancelledError();
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
 }
@@ -98,8 +101,7 @@ Expected<Reference> RenderReference(const ReferenceOptions& options, const RunCo
   const fs::path picture = scratch.path() / "cycles.exr", log = scratch.path() / "log";
   context.Note(options.scene + ": " + options.blender + " renders the reference");
   const std::vector<std::string> arguments = Arguments(options, context, script, picture);
-  SCUMBLE_RETURN_IF_ERROR(
-      CheckProgramEnd(RunWatched(arguments, log, options.samples, context, progress), task, log, picture));
+  SCUMBLE_RETURN_IF_ERROR(CheckProgramEnd(RunWatched(arguments, log, options, context, progress), task, log, picture));
   Reference reference;
   ReadLog(LinesOf(log), reference);
   GuideReadOptions read;
