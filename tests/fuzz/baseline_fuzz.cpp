@@ -5,7 +5,7 @@
 namespace scumble::fuzz {
 namespace {
 
-void Run(Bytes input) {
+void FuzzBaseline(Bytes input) {
   const auto baseline = ParseBaseline(AsText(input), "b.json");
   CheckRefusal(baseline, 1000 + 4 * input.size());  // names stand in it as they are
   if (!baseline) return;
@@ -19,5 +19,5 @@ void Run(Bytes input) {
 }
 
 }  // namespace
-SCUMBLE_FUZZ_TARGET(baseline, Run)
+SCUMBLE_FUZZ_TARGET(baseline, FuzzBaseline)
 }  // namespace scumble::fuzz

@@ -22,7 +22,7 @@ void CheckSame(const GuideSet& a, const GuideSet& b) {
   SCUMBLE_CHECK(a.attributes == b.attributes && a.object_names == b.object_names);
 }
 
-void Run(Bytes input) {
+void FuzzExr(Bytes input) {
   const auto path = InFile("any.exr", input);
   const auto formats = LoadFormats("a test");
   SCUMBLE_CHECK(formats.ok());
@@ -40,5 +40,5 @@ void Run(Bytes input) {
 }
 
 }  // namespace
-SCUMBLE_FUZZ_TARGET(exr, Run)
+SCUMBLE_FUZZ_TARGET(exr, FuzzExr)
 }  // namespace scumble::fuzz

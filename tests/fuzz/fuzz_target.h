@@ -83,5 +83,5 @@ constexpr std::int64_t kMostPixels = 1 << 20;
   }
 #else
 #define SCUMBLE_FUZZ_TARGET(name, body) \
-  static const bool kIsListed = (scumble::fuzz::Targets().push_back({#name, &body}), true);
+  static const bool kIsListed_##name = (scumble::fuzz::Targets().push_back({#name, &body}), true);
 #endif

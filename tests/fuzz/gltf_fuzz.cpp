@@ -7,7 +7,7 @@
 namespace scumble::fuzz {
 namespace {
 
-void Run(Bytes input) {
+void FuzzGltf(Bytes input) {
   LoadFrom("scene.glb", input);
   const Expected<AnimatedScene> animated = AnimatedScene::Load(Folder() / "scene.glb", {"*"});
   CheckRefusal(animated);
@@ -24,5 +24,5 @@ void Run(Bytes input) {
 }
 
 }  // namespace
-SCUMBLE_FUZZ_TARGET(gltf, Run)
+SCUMBLE_FUZZ_TARGET(gltf, FuzzGltf)
 }  // namespace scumble::fuzz

@@ -5,7 +5,7 @@
 namespace scumble::fuzz {
 namespace {
 
-void Run(Bytes input) {
+void FuzzGuides(Bytes input) {
   const auto path = InFile("guides.exr", input);
   const auto info = internal::InspectPlainGuides(path);
   if (info) CheckRefusal(*info);
@@ -17,5 +17,5 @@ void Run(Bytes input) {
 }
 
 }  // namespace
-SCUMBLE_FUZZ_TARGET(guides, Run)
+SCUMBLE_FUZZ_TARGET(guides, FuzzGuides)
 }  // namespace scumble::fuzz

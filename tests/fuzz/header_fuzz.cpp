@@ -11,7 +11,7 @@
 namespace scumble::fuzz {
 namespace {
 
-void Run(Bytes input) {
+void FuzzHeader(Bytes input) {
   const std::string text(AsText(input));
   const auto manifest = ReadManifest(text, "any.exr");
   CheckRefusal(manifest);
@@ -37,5 +37,5 @@ void Run(Bytes input) {
 }
 
 }  // namespace
-SCUMBLE_FUZZ_TARGET(header, Run)
+SCUMBLE_FUZZ_TARGET(header, FuzzHeader)
 }  // namespace scumble::fuzz

@@ -63,7 +63,7 @@ std::vector<std::string> ReadAll(Bytes input, std::size_t piece) {
   return requests;
 }
 
-void Run(Bytes input) {
+void FuzzHttp(Bytes input) {
   const std::vector<std::string> whole = ReadAll(input, std::max<std::size_t>(input.size(), 1));
   SCUMBLE_CHECK(whole == ReadAll(input, 1));
   // A field of an answer stays one field, whatever is in it.
@@ -77,5 +77,5 @@ void Run(Bytes input) {
 }
 
 }  // namespace
-SCUMBLE_FUZZ_TARGET(http, Run)
+SCUMBLE_FUZZ_TARGET(http, FuzzHttp)
 }  // namespace scumble::fuzz

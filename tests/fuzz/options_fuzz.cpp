@@ -58,7 +58,7 @@ void ReadValue(const std::string& text) {
   static_cast<void>(FitsPattern(text.substr(0, text.size() / 2), text.substr(text.size() / 2)));
 }
 
-void Run(Bytes input) {
+void FuzzOptions(Bytes input) {
   if (input.size() > 4096) return;
   static Program program;  // to make one takes a thousand times as long as to parse a line
   std::vector<std::string> arguments;
@@ -80,5 +80,5 @@ void Run(Bytes input) {
 }
 
 }  // namespace
-SCUMBLE_FUZZ_TARGET(options, Run)
+SCUMBLE_FUZZ_TARGET(options, FuzzOptions)
 }  // namespace scumble::fuzz

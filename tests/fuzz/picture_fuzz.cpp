@@ -15,7 +15,7 @@ void CheckPicture(const Expected<Picture>& picture, std::uint64_t counted) {
   SCUMBLE_CHECK_EQ(std::uint64_t(picture->width) * std::uint64_t(picture->height), counted);
 }
 
-void Run(Bytes input) {
+void FuzzPicture(Bytes input) {
   const auto bytes = std::as_bytes(input);
   const std::string name = "any.tga";  // the one format that is known by its name
   const auto reader = internal::ReaderFor(bytes.first(std::min(bytes.size(), internal::kStartBytes)), name);
@@ -32,5 +32,5 @@ void Run(Bytes input) {
 }
 
 }  // namespace
-SCUMBLE_FUZZ_TARGET(picture, Run)
+SCUMBLE_FUZZ_TARGET(picture, FuzzPicture)
 }  // namespace scumble::fuzz

@@ -44,12 +44,12 @@ void Read(Bytes input) {
   SCUMBLE_CHECK_EQ(picture->rgba.size(), std::size_t(4) * std::size_t(stored->width) * std::size_t(stored->height));
 }
 
-void Run(Bytes input) {
+void FuzzPng(Bytes input) {
   if (!internal::IsPng(std::as_bytes(input))) return;
   Read(input);
   Read(WithRightSums(input));
 }
 
 }  // namespace
-SCUMBLE_FUZZ_TARGET(png, Run)
+SCUMBLE_FUZZ_TARGET(png, FuzzPng)
 }  // namespace scumble::fuzz

@@ -7,7 +7,7 @@
 namespace scumble::fuzz {
 namespace {
 
-void Run(Bytes input) {
+void FuzzRaster(Bytes input) {
   const auto path = InFile("layers.ora", input);
   const auto zip = ZipReader::Open(path);
   CheckRefusal(zip);
@@ -24,5 +24,5 @@ void Run(Bytes input) {
 }
 
 }  // namespace
-SCUMBLE_FUZZ_TARGET(raster, Run)
+SCUMBLE_FUZZ_TARGET(raster, FuzzRaster)
 }  // namespace scumble::fuzz

@@ -71,7 +71,7 @@ nlohmann::json SettingsOf(const StudioState& state) {
   return settings;
 }
 
-void Run(Bytes input) {
+void FuzzState(Bytes input) {
   HttpRequest request;
   request.body = AsText(input);
   const Expected<nlohmann::json> body = BodyOf(request);
@@ -91,5 +91,5 @@ void Run(Bytes input) {
 }
 
 }  // namespace
-SCUMBLE_FUZZ_TARGET(state, Run)
+SCUMBLE_FUZZ_TARGET(state, FuzzState)
 }  // namespace scumble::fuzz

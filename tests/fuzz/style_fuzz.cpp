@@ -35,7 +35,7 @@ bool WriteFiles() {
          WriteGuides(Folder() / "sphere.exr", sphere);
 }
 
-void Run(Bytes input) {
+void FuzzStyle(Bytes input) {
   static const bool has_files = WriteFiles();
   SCUMBLE_CHECK(has_files);
   const std::string_view text = AsText(input);
@@ -49,5 +49,5 @@ void Run(Bytes input) {
 }
 
 }  // namespace
-SCUMBLE_FUZZ_TARGET(style, Run)
+SCUMBLE_FUZZ_TARGET(style, FuzzStyle)
 }  // namespace scumble::fuzz
