@@ -414,14 +414,15 @@ for fit, way in (("AUTO", LANDSCAPE), ("AUTO", PORTRAIT), ("HORIZONTAL", PORTRAI
     SCENES[f"fit_{fit.lower()}_{way}"] = (
         camera_scene(sensor_fit=fit, sensor_height=30.0, shift_x=0.12, shift_y=-0.08), [], way, 0, 0)
 SHARP_LAMPS = ("point", "spot")
+BOUNCED_LAMPS = ("spot_soft", "sun")  # of the others' kinds there are scenes above that compare bounced light
 for lamp_name, add_lamp in LAMPS.items():
     def build(make_set=diffuse_and_glossy_set_for_points if lamp_name in SHARP_LAMPS else diffuse_and_glossy_set,
               add_lamp=add_lamp):
         room(make_set())
         add_lamp()
-    # Direct light alone: what one kind of lamp sends to a second surface is of no other kind than what it sends to the
-    # first, and the scenes above compare that.
-    SCENES[lamp_name] = (build, ["full", "LDE", "LD12E", "LSE"], LANDSCAPE, 32 if lamp_name in SHARP_LAMPS else 128, 0)
+    bounced = lamp_name in BOUNCED_LAMPS
+    SCENES[lamp_name] = (build, ["full", "LDE", "LD12E", "LSE"] + ["LDDE"] * bounced, LANDSCAPE,
+                         32 if lamp_name in SHARP_LAMPS else 128, 8 if bounced else 0)
 
 
 def textured():
