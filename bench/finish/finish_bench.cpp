@@ -27,16 +27,23 @@ struct Spread {
   double median = 0, least = 0, most = 0;
 };
 
-template <class Work>
-Spread Timed(int runs, const Work& work) {
+// `before` each run, which is not timed.
+template <class Work, class Before>
+Spread Timed(int runs, const Work& work, const Before& before) {
   std::vector<double> ms;
   for (int i = 0; i < runs; ++i) {
+    before();
     Stopwatch watch;
     work();
     ms.push_back(watch.Lap());
   }
   std::sort(ms.begin(), ms.end());
   return {ms[ms.size() / 2], ms.front(), ms.back()};
+}
+
+template <class Work>
+Spread Timed(int runs, const Work& work) {
+  return Timed(runs, work, [] {});
 }
 
 int Run(int runs, const std::string& part) {
@@ -64,13 +71,13 @@ int Run(int runs, const std::string& part) {
     std::vector<FinishStep> steps;
     for (const FinishPass& pass : passes) steps.push_back({pass, {}});
     Picture picture = *painted;
-    const Spread spread = Timed(runs, [&] {
-      picture.rgba = painted->rgba;
+    const auto apply = [&] {
       for (const auto stage : {FinishPass::Stage::kPaint, FinishPass::Stage::kSheet}) {
         if (const Status done = ApplyFinish(steps, stage, frame, 0, {}, picture); !done)
           std::fprintf(stderr, "%s: %s\n", name.c_str(), done.error().message.c_str()), std::exit(3);
       }
-    });
+    };
+    const Spread spread = Timed(runs, apply, [&] { picture.rgba = painted->rgba; });
     print(name, spread);
     return spread.median;
   };

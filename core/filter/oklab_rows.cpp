@@ -13,13 +13,14 @@ HWY_BEFORE_NAMESPACE();
 namespace scumble::internal {
 namespace HWY_NAMESPACE {
 
-void DecodeHere(const std::uint16_t* texels, std::size_t count, OklabBlock& block) {
+// Whole vectors: `count` is a multiple of kWidest.
+void DecodeHere(const std::uint16_t* texels, std::size_t count, float* lightness, float* a, float* b) {
   for (std::size_t i = 0; i < count; i += hn::Lanes(Floats())) {
     const LaneColor cones = ConesFromLinear(Each(LinearFromCode, LoadTexels(texels + 4 * i)));
     const LaneColor lab = OklabFromRoots(Each(CubeRoot, cones));
-    hn::Store(lab.r.v, Floats(), block.lightness.data() + i);
-    hn::Store(lab.g.v, Floats(), block.a.data() + i);
-    hn::Store(lab.b.v, Floats(), block.b.data() + i);
+    hn::Store(lab.r.v, Floats(), lightness + i);
+    hn::Store(lab.g.v, Floats(), a + i);
+    hn::Store(lab.b.v, Floats(), b + i);
   }
 }
 
@@ -53,10 +54,11 @@ HWY_INLINE Choice InGamut(LaneColor c) {
   return Both(Less(Max(Max(c.r, c.g), c.b), 1.0f + kSlack), Less(-kSlack, Min(Min(c.r, c.g), c.b)));
 }
 
-void EncodeHere(const OklabBlock& block, std::size_t count, std::uint16_t* texels) {
+void EncodeHere(const float* of_lightness, const float* of_a, const float* of_b, std::size_t count,
+                std::uint16_t* texels) {
   for (std::size_t i = 0; i < count; i += hn::Lanes(Floats())) {
-    const Lane lightness = Min(Max(Lane(hn::Load(Floats(), block.lightness.data() + i)), 0.0f), 1.0f);
-    const Lane a = hn::Load(Floats(), block.a.data() + i), b = hn::Load(Floats(), block.b.data() + i);
+    const Lane lightness = Min(Max(Lane(hn::Load(Floats(), of_lightness + i)), 0.0f), 1.0f);
+    const Lane a = hn::Load(Floats(), of_a + i), b = hn::Load(Floats(), of_b + i);
     LaneColor linear = LinearOf(lightness, a, b, 1.0f);
     const Choice fits = InGamut(linear);
     if (!All(fits)) {
@@ -85,12 +87,21 @@ HWY_EXPORT(FromLinearHere);
 HWY_EXPORT(FromGreysHere);
 HWY_EXPORT(EncodeHere);
 
-// Vectors may reach beyond the last texel, so the texels go through a whole block.
+namespace {
+
+constexpr std::size_t kWidest = 16;  // floats of the widest vector
+
+}  // namespace
+
+// What is left of a block after whole vectors goes through a vector of its own.
 void OklabFromTexels(const std::uint16_t* texels, std::size_t count, OklabBlock& block) {
-  alignas(64) std::uint16_t whole[4 * kOklabBlock];
-  std::copy_n(texels, 4 * count, whole);
-  std::fill(whole + 4 * count, whole + std::min(4 * kOklabBlock, 4 * count + 64), std::uint16_t{0});
-  HWY_DYNAMIC_DISPATCH(DecodeHere)(whole, count, block);
+  const std::size_t whole = count / kWidest * kWidest, left = count - whole;
+  const auto decode = HWY_DYNAMIC_DISPATCH(DecodeHere);
+  decode(texels, whole, block.lightness.data(), block.a.data(), block.b.data());
+  if (left == 0) return;
+  alignas(64) std::uint16_t last[4 * kWidest] = {};
+  std::copy_n(texels + 4 * whole, 4 * left, last);
+  decode(last, kWidest, block.lightness.data() + whole, block.a.data() + whole, block.b.data() + whole);
 }
 
 void OklabFromPlanes(const std::array<const float*, 3>& planes, std::size_t count, OklabBlock& block) {
@@ -110,13 +121,18 @@ void LightnessFromGreys(const float* greys, std::size_t count, float* lightness)
 }
 
 void TexelsFromOklab(const OklabBlock& block, std::size_t count, std::uint16_t* texels) {
-  alignas(64) std::uint16_t whole[4 * kOklabBlock];
-  std::copy_n(texels, 4 * count, whole);
-  OklabBlock padded = block;
-  for (auto* plane : {&padded.lightness, &padded.a, &padded.b})
-    std::fill(plane->begin() + std::ptrdiff_t(count), plane->end(), 0.0f);
-  HWY_DYNAMIC_DISPATCH(EncodeHere)(padded, count, whole);
-  std::copy_n(whole, 4 * count, texels);
+  const std::size_t whole = count / kWidest * kWidest, left = count - whole;
+  const auto encode = HWY_DYNAMIC_DISPATCH(EncodeHere);
+  encode(block.lightness.data(), block.a.data(), block.b.data(), whole, texels);
+  if (left == 0) return;
+  alignas(64) std::array<float, kWidest> lightness{}, a{}, b{};
+  std::copy_n(block.lightness.data() + whole, left, lightness.data());
+  std::copy_n(block.a.data() + whole, left, a.data());
+  std::copy_n(block.b.data() + whole, left, b.data());
+  alignas(64) std::uint16_t last[4 * kWidest] = {};
+  std::copy_n(texels + 4 * whole, 4 * left, last);
+  encode(lightness.data(), a.data(), b.data(), kWidest, last);
+  std::copy_n(last, 4 * left, texels + 4 * whole);
 }
 
 }  // namespace scumble::internal

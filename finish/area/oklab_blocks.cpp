@@ -2,8 +2,25 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
+
+#include "core/filter/wide_loops.h"
 
 namespace scumble::internal {
+
+namespace {
+
+// 0 where a colour stays or its texel has no alpha, else 1.
+SCUMBLE_WIDE_LOOPS void FindChanges(const OklabBlock& before, const OklabBlock& after, const std::uint16_t* texels,
+                                    std::size_t count, std::uint32_t* changes) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool same =
+        (after.lightness[i] == before.lightness[i]) & (after.a[i] == before.a[i]) & (after.b[i] == before.b[i]);
+    changes[i] = !same & (texels[4 * i + 3] != 0) ? 1u : 0u;
+  }
+}
+
+}  // namespace
 
 void PutBlock(const OklabBlock& before, float share, const std::uint8_t* only, std::size_t count, OklabBlock& after,
               std::uint16_t* texels) {
@@ -11,21 +28,15 @@ void PutBlock(const OklabBlock& before, float share, const std::uint8_t* only, s
     for (std::size_t i = 0; i < count && share < 1.0f; ++i) to[i] = from[i] + (to[i] - from[i]) * share;
   };
   mix(before.lightness, after.lightness), mix(before.a, after.a), mix(before.b, after.b);
+  std::array<std::uint32_t, kOklabBlock> puts;
+  FindChanges(before, after, texels, count, puts.data());
+  for (std::size_t i = 0; i < count && only; ++i) puts[i] = only[i] ? puts[i] : 0u;
+  const auto put = static_cast<std::size_t>(std::accumulate(puts.begin(), puts.begin() + std::ptrdiff_t(count), 0u));
+  if (put == count) return TexelsFromOklab(after, count, texels);
+  if (put == 0) return;
   std::uint16_t made[4 * kOklabBlock];
   std::copy_n(texels, 4 * count, made);
-  std::array<std::uint32_t, kOklabBlock> puts;
-  std::uint32_t leaves = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const bool same =
-        (after.lightness[i] == before.lightness[i]) & (after.a[i] == before.a[i]) & (after.b[i] == before.b[i]);
-    puts[i] = !same & (texels[4 * i + 3] != 0) & (!only || only[i]) ? 1u : 0u;
-    leaves |= puts[i] ^ 1u;
-  }
   TexelsFromOklab(after, count, made);
-  if (leaves == 0) {
-    std::copy_n(made, 4 * count, texels);
-    return;
-  }
   for (std::size_t i = 0; i < count; ++i) {
     if (puts[i]) std::copy_n(made + 4 * i, 3, texels + 4 * i);
   }

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "core/filter/edge_test.h"
+#include "core/filter/wide_loops.h"
 #include "core/image/oklab.h"
 #include "finish/outline/valleys.h"
 
@@ -24,6 +25,33 @@ std::vector<glm::vec3> OklabOf(const GuideSet& guides) {
       colors[i] = OklabFromLinear(guides.Vec3(Layer::kAlbedo, i));
   });
   return colors;
+}
+
+// What most pairs of neighbours are told by.
+struct PairPlanes {
+  const float *coverage, *depth, *object, *material, *shadow, *normal_x, *normal_y, *normal_z;
+  float give_share, give_fixed, crease;
+};
+
+// For `count` pairs of pixels from (first, first + step) on: 0 where neither is covered, and where depth, normal,
+// object, material and shadow go on; 1 where somebody has to look closer.
+SCUMBLE_WIDE_LOOPS void FindDoubts(const PairPlanes& of, std::size_t first, std::size_t step, std::size_t count,
+                                   std::uint32_t* doubts) {
+  const float give_share = of.give_share, give_fixed = of.give_fixed, crease = of.crease;
+  const float *const coverage = of.coverage + first, *const depth = of.depth + first, *const object = of.object + first,
+                     *const material = of.material + first, *const shadow = of.shadow + first;
+  const float *const x = of.normal_x + first, *const y = of.normal_y + first, *const z = of.normal_z + first;
+  for (std::size_t p = 0; p < count; ++p) {
+    const std::size_t q = p + step;
+    const bool covers_p = coverage[p] > 0.0f, covers_q = coverage[q] > 0.0f;
+    const float nearer = depth[q] < depth[p] ? depth[q] : depth[p];
+    const bool goes_on = std::fabs(depth[q] - depth[p]) <= give_fixed + give_share * nearer;
+    const bool is_flat = x[p] * x[q] + y[p] * y[q] + z[p] * z[q] > crease;
+    const bool is_same = (object[p] == object[q]) & (material[p] == material[q]);
+    const bool is_lit_alike = (shadow[p] >= 0.5f) == (shadow[q] >= 0.5f);
+    const bool is_calm = covers_p & covers_q & goes_on & is_flat & is_same & is_lit_alike;
+    doubts[p] = (covers_p | covers_q) & !is_calm ? 1u : 0u;
+  }
 }
 
 class Classifier {
@@ -43,6 +71,17 @@ class Classifier {
     if (IsOn(LineClass::kShadow)) shadow_ = guides.Plane(Layer::kShadow);
     if (IsOn(LineClass::kTexture)) colors_ = OklabOf(guides);
     if (IsOn(LineClass::kSuggestive)) valleys_.emplace(pass, guides, scale);
+  }
+
+  // Of `count` pairs from (first, first + step) on: 0 where Between gives 0 for sure.
+  void Doubts(std::size_t first, std::size_t step, std::size_t count, std::uint32_t* doubts) const {
+    if (!colors_.empty() || valleys_) return static_cast<void>(std::fill_n(doubts, count, 1u));
+    const auto normal = [&](int c) { return guides_.Plane(Layer::kNormal, c).data(); };
+    // Where a layer is not looked at, the object's values stand in, which are compared anyway.
+    const auto or_object = [&](std::span<const float> plane) { return (plane.empty() ? object_ : plane).data(); };
+    FindDoubts({coverage_.data(), depth_.data(), object_.data(), or_object(material_), or_object(shadow_), normal(0),
+                normal(1), normal(2), give_.share, give_.fixed, crease_},
+               first, step, count, doubts);
   }
 
   // Of the border between pixels p and q, the next one of a row or a column. `before` and `after`: the pixels beyond
@@ -114,19 +153,23 @@ BorderMap FindBorders(const OutlinePass& pass, const GuideSet& guides, double sc
   const Classifier classifier(pass, guides, scale, only);
   BorderMap map{guides.width(), guides.height(), {}, {}};
   map.right.assign(guides.pixel_count(), 0), map.below.assign(guides.pixel_count(), 0);
-  tbb::parallel_for(tbb::blocked_range<int>(0, map.height, 16), [&](const auto& rows) {
-    for (int y = rows.begin(); y != rows.end(); ++y) {
-      for (int x = 0; x < map.width; ++x) {
-        const std::size_t p = guides.Index(x, y), row = std::size_t(map.width);
-        const auto at = [&](bool is_inside, std::size_t pixel) {
-          return is_inside ? std::optional(pixel) : std::nullopt;
-        };
-        if (x + 1 < map.width) {
-          map.right[p] = classifier.Between(at(x > 0, p - 1), p, p + 1, at(x + 2 < map.width, p + 2));
-        }
-        if (y + 1 < map.height) {
-          map.below[p] = classifier.Between(at(y > 0, p - row), p, p + row, at(y + 2 < map.height, p + 2 * row));
-        }
+  const auto width = static_cast<std::size_t>(map.width), height = static_cast<std::size_t>(map.height);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, height, 16), [&](const auto& rows) {
+    std::vector<std::uint32_t> doubts(width);
+    const auto at = [&](bool is_inside, std::size_t pixel) { return is_inside ? std::optional(pixel) : std::nullopt; };
+    for (std::size_t y = rows.begin(); y != rows.end(); ++y) {
+      const std::size_t row = y * width;
+      classifier.Doubts(row, 1, width - 1, doubts.data());
+      for (std::size_t x = 0; x + 1 < width; ++x) {
+        const std::size_t p = row + x;
+        if (doubts[x]) map.right[p] = classifier.Between(at(x > 0, p - 1), p, p + 1, at(x + 2 < width, p + 2));
+      }
+      if (y + 1 == height) continue;
+      classifier.Doubts(row, width, width, doubts.data());
+      for (std::size_t x = 0; x < width; ++x) {
+        const std::size_t p = row + x;
+        if (!doubts[x]) continue;
+        map.below[p] = classifier.Between(at(y > 0, p - width), p, p + width, at(y + 2 < height, p + 2 * width));
       }
     }
   });

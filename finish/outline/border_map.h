@@ -7,6 +7,7 @@
 
 #include "core/image/finish_pass.h"
 #include "core/image/guides.h"
+#include "core/image/plane_allocator.h"
 
 namespace scumble::internal {
 
@@ -14,7 +15,7 @@ namespace scumble::internal {
 struct BorderMap {
   int width = 0, height = 0;
   // By pixel: the border with the pixel to the right, and with the one below. There are none at the picture's edge.
-  std::vector<std::uint8_t> right, below;
+  std::vector<std::uint8_t, PlaneAllocator<std::uint8_t>> right, below;
 };
 
 // The pixel that a border between p and q belongs to: the nearer one.

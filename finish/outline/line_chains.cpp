@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 
 namespace scumble::internal {
 namespace {
@@ -60,10 +62,21 @@ class Tracer {
     for (int y = 0; y < map_.height; ++y) {
       const std::size_t row = std::size_t(y) * map_.width;
       for (int x = 0; x < map_.width; ++x) {
+        while (x + kAtOnce <= map_.width && HasNone(row + x)) x += kAtOnce;
+        if (x == map_.width) break;
         if (map_.right[row + x]) visit(Border{x, y, true});
         if (map_.below[row + x]) visit(Border{x, y, false});
       }
     }
+  }
+
+  // Whether kAtOnce pixels have no border.
+  static constexpr int kAtOnce = 8;
+  bool HasNone(std::size_t first) const {
+    std::uint64_t right, below;
+    std::memcpy(&right, map_.right.data() + first, kAtOnce);
+    std::memcpy(&below, map_.below.data() + first, kAtOnce);
+    return (right | below) == 0;
   }
 
   static std::array<Corner, 2> Corners(const Border& border) {

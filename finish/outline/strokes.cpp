@@ -9,6 +9,7 @@
 #include "core/image/exact_math.h"
 #include "core/image/hash.h"
 #include "finish/area/noise.h"
+#include "finish/outline/piece_rows.h"
 
 namespace scumble::internal {
 namespace {
@@ -159,21 +160,27 @@ void Draw(const StrokePiece& piece, int y0, int y1, int width, StrokeCover& cove
   y1 = std::min(y1, low(std::max(piece.from.y, piece.to.y) + most) + 1);
   const glm::vec2 along = piece.to - piece.from;
   const float squared = Dot(along, along), per_squared = squared > 0.0f ? 1.0f / squared : 0.0f;
+  // On a row all that is covered lies within the piece's stretch of rows `most` above and below, widened by `most`.
+  const float per_down = std::fabs(along.y) > 1e-3f ? 1.0f / along.y : 0.0f;
   for (int y = y0; y < y1; ++y) {
-    const float dy = static_cast<float>(y) + 0.5f - piece.from.y;
-    float* const row = cover.share.data() + std::size_t(y) * std::size_t(width);
-    for (int x = left; x <= right; ++x) {
-      if (row[x] >= 1.0f) continue;
-      const float dx = static_cast<float>(x) + 0.5f - piece.from.x;
-      const float t = std::min(std::max((dx * along.x + dy * along.y) * per_squared, 0.0f), 1.0f);
-      const float off_x = dx - along.x * t, off_y = dy - along.y * t;
-      const float thick = piece.from_width + (piece.to_width - piece.from_width) * t;
-      const float edge = std::max(thick, 1.0f) * 0.5f + 0.5f - std::sqrt(off_x * off_x + off_y * off_y);
-      const float share = std::min(std::max(edge, 0.0f), 1.0f) * std::min(thick, 1.0f);
-      if (!(share > row[x])) continue;
-      row[x] = share;
-      if (!cover.owner.empty()) cover.owner[std::size_t(y) * std::size_t(width) + std::size_t(x)] = piece.owner;
+    const float down = static_cast<float>(y) + 0.5f - piece.from.y;
+    float begin = 0.0f, end = 1.0f;
+    if (per_down != 0.0f) {
+      const float a = (down - most) * per_down, b = (down + most) * per_down;
+      begin = std::clamp(std::min(a, b), 0.0f, 1.0f), end = std::clamp(std::max(a, b), 0.0f, 1.0f);
     }
+    const float x0 = piece.from.x + along.x * begin, x1 = piece.from.x + along.x * end;
+    int from = std::max(left, low(std::min(x0, x1) - most)), to = std::min(right, low(std::max(x0, x1) + most));
+    if (to < from) continue;
+    // Whole blocks are quickest, and pixels beside the piece are not covered.
+    constexpr int kBlock = kCoverBlock;
+    to = std::min(width - 1, from + (to - from) / kBlock * kBlock + kBlock - 1);
+    const PieceAtRow at{along,      per_squared,      static_cast<float>(from) + 0.5f - piece.from.x,
+                        down,       piece.from_width, piece.to_width - piece.from_width,
+                        piece.owner};
+    const std::size_t first = std::size_t(y) * std::size_t(width) + std::size_t(from);
+    CoverRow(at, std::size_t(to - from) + 1, cover.share.data() + first,
+             cover.owner.empty() ? nullptr : cover.owner.data() + first);
   }
 }
 

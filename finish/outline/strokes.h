@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "finish/area/float_plane.h"
 #include "finish/area/noise.h"
 #include "finish/finish.h"
 #include "finish/outline/line_chains.h"
@@ -47,8 +48,8 @@ std::vector<StrokePiece> StrokeOf(const OutlinePass& pass, const FinishFrame& fr
 
 // How much of each pixel the strokes cover, 0 … 1, and the owner of the piece that covers most of it.
 struct StrokeCover {
-  std::vector<float> share;
-  std::vector<std::uint32_t> owner;
+  FloatPlane share;
+  std::vector<std::uint32_t, PlaneAllocator<std::uint32_t>> owner;
 };
 
 // Antialiased; a stroke thinner than a pixel is as faint as it is thin. Where strokes meet, the largest share counts.

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "core/filter/wide_loops.h"
 #include "finish/tone/point_effect.h"
 
 namespace scumble::internal {
@@ -11,16 +12,23 @@ LabColor ToOklab(const Rgb16& color) {
   return {block.lightness[0], block.a[0], block.b[0]};
 }
 
+namespace {
+
+SCUMBLE_WIDE_LOOPS void Grade(float saturation, float contrast, float lift, std::size_t count, OklabBlock& block) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const float graded = 0.5f + (block.lightness[i] - 0.5f) * contrast + lift;
+    block.lightness[i] = graded < 0.0f ? 0.0f : 1.0f < graded ? 1.0f : graded;
+    block.a[i] *= saturation;
+    block.b[i] *= saturation;
+  }
+}
+
+}  // namespace
+
 PointEffect MakeGrade(const GradePass& pass) {
   const auto saturation = static_cast<float>(pass.saturation), contrast = static_cast<float>(pass.contrast),
              lift = static_cast<float>(pass.lift);
-  return [=](std::size_t, std::size_t count, OklabBlock& block) {
-    for (std::size_t i = 0; i < count; ++i) {
-      block.lightness[i] = std::clamp(0.5f + (block.lightness[i] - 0.5f) * contrast + lift, 0.0f, 1.0f);
-      block.a[i] *= saturation;
-      block.b[i] *= saturation;
-    }
-  };
+  return [=](std::size_t, std::size_t count, OklabBlock& block) { Grade(saturation, contrast, lift, count, block); };
 }
 
 PointEffect MakeFill(const FillPass& pass) {
