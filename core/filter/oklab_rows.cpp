@@ -13,29 +13,57 @@ HWY_BEFORE_NAMESPACE();
 namespace scumble::internal {
 namespace HWY_NAMESPACE {
 
-// Whole vectors: `count` is a multiple of kWidest.
-void DecodeHere(const std::uint16_t* texels, std::size_t count, float* lightness, float* a, float* b) {
-  for (std::size_t i = 0; i < count; i += hn::Lanes(Floats())) {
-    const LaneColor cones = ConesFromLinear(Each(LinearFromCode, LoadTexels(texels + 4 * i)));
-    const LaneColor lab = OklabFromRoots(Each(CubeRoot, cones));
-    hn::Store(lab.r.v, Floats(), lightness + i);
-    hn::Store(lab.g.v, Floats(), a + i);
-    hn::Store(lab.b.v, Floats(), b + i);
+// The colours of a block, a plane each. Functions take whole vectors: `count` is a multiple of kWidest.
+//
+// They go over a block several times, with a short step each: a colour's way from code to Oklab is one long chain of
+// dependent operations, and a processor looks ahead far enough to work on many short chains at once, but not on two
+// long ones.
+struct Planes {
+  float *x, *y, *z;
+};
+
+HWY_INLINE LaneColor Load(const Planes& planes, std::size_t i) {
+  const Floats d;
+  return {hn::Load(d, planes.x + i), hn::Load(d, planes.y + i), hn::Load(d, planes.z + i)};
+}
+
+HWY_INLINE void Store(LaneColor color, const Planes& planes, std::size_t i) {
+  const Floats d;
+  hn::Store(color.r.v, d, planes.x + i);
+  hn::Store(color.g.v, d, planes.y + i);
+  hn::Store(color.b.v, d, planes.z + i);
+}
+
+template <class Change>
+HWY_INLINE void ForEachColor(const Planes& planes, std::size_t count, const Change& change) {
+  for (std::size_t i = 0; i < count; i += hn::Lanes(Floats())) Store(change(Load(planes, i)), planes, i);
+}
+
+template <class Change>
+HWY_INLINE void ForEachValue(const Planes& planes, std::size_t count, const Change& change) {
+  for (float* const plane : {planes.x, planes.y, planes.z}) {
+    for (std::size_t i = 0; i < count; i += hn::Lanes(Floats()))
+      hn::Store(change(Lane(hn::Load(Floats(), plane + i))).v, Floats(), plane + i);
   }
 }
 
-void FromLinearHere(const OklabBlock& linear, std::size_t count, OklabBlock& block) {
-  const auto load = [](const std::array<float, kOklabBlock>& plane, std::size_t i) HWY_ATTR {
-    const Lane value = hn::Load(Floats(), plane.data() + i);
-    return Select(Less(0.0f, value), Min(value, 1.0f), 0.0f);
-  };
-  for (std::size_t i = 0; i < count; i += hn::Lanes(Floats())) {
-    const LaneColor cones = ConesFromLinear({load(linear.lightness, i), load(linear.a, i), load(linear.b, i)});
-    const LaneColor lab = OklabFromRoots(Each(CubeRoot, cones));
-    hn::Store(lab.r.v, Floats(), block.lightness.data() + i);
-    hn::Store(lab.g.v, Floats(), block.a.data() + i);
-    hn::Store(lab.b.v, Floats(), block.b.data() + i);
-  }
+HWY_INLINE void OklabFromLinear(const Planes& planes, std::size_t count) {
+  ForEachColor(planes, count, [](LaneColor c) HWY_ATTR { return ConesFromLinear(c); });
+  ForEachValue(planes, count, [](Lane x) HWY_ATTR { return CubeRoot(x); });
+  ForEachColor(planes, count, [](LaneColor c) HWY_ATTR { return OklabFromRoots(c); });
+}
+
+void DecodeHere(const std::uint16_t* texels, std::size_t count, float* lightness, float* a, float* b) {
+  const Planes planes{lightness, a, b};
+  for (std::size_t i = 0; i < count; i += hn::Lanes(Floats())) Store(LoadTexels(texels + 4 * i), planes, i);
+  ForEachValue(planes, count, [](Lane code) HWY_ATTR { return LinearFromCode(code); });
+  OklabFromLinear(planes, count);
+}
+
+void FromLinearHere(std::size_t count, OklabBlock& block) {
+  const Planes planes{block.lightness.data(), block.a.data(), block.b.data()};
+  ForEachValue(planes, count, [](Lane value) HWY_ATTR { return Select(Less(0.0f, value), Min(value, 1.0f), 0.0f); });
+  OklabFromLinear(planes, count);
 }
 
 void FromGreysHere(float* greys, std::size_t count) {
@@ -56,6 +84,8 @@ HWY_INLINE Choice InGamut(LaneColor c) {
 
 void EncodeHere(const float* of_lightness, const float* of_a, const float* of_b, std::size_t count,
                 std::uint16_t* texels) {
+  OklabBlock block;
+  const Planes codes{block.lightness.data(), block.a.data(), block.b.data()};
   for (std::size_t i = 0; i < count; i += hn::Lanes(Floats())) {
     const Lane lightness = Min(Max(Lane(hn::Load(Floats(), of_lightness + i)), 0.0f), 1.0f);
     const Lane a = hn::Load(Floats(), of_a + i), b = hn::Load(Floats(), of_b + i);
@@ -71,8 +101,10 @@ void EncodeHere(const float* of_lightness, const float* of_a, const float* of_b,
       }
       linear = LinearOf(lightness, a, b, Select(fits, 1.0f, inside));
     }
-    StoreTexels(Each(ClampedCode, linear), texels + 4 * i);
+    Store(linear, codes, i);
   }
+  ForEachValue(codes, count, [](Lane linear) HWY_ATTR { return ClampedCode(linear); });
+  for (std::size_t i = 0; i < count; i += hn::Lanes(Floats())) StoreTexels(Load(codes, i), texels + 4 * i);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -105,11 +137,13 @@ void OklabFromTexels(const std::uint16_t* texels, std::size_t count, OklabBlock&
 }
 
 void OklabFromPlanes(const std::array<const float*, 3>& planes, std::size_t count, OklabBlock& block) {
-  OklabBlock linear{};
-  std::copy_n(planes[0], count, linear.lightness.begin());
-  std::copy_n(planes[1], count, linear.a.begin());
-  std::copy_n(planes[2], count, linear.b.begin());
-  HWY_DYNAMIC_DISPATCH(FromLinearHere)(linear, count, block);
+  const std::size_t whole = (count + kWidest - 1) / kWidest * kWidest;
+  for (int c = 0; c < 3; ++c) {
+    auto& plane = c == 0 ? block.lightness : c == 1 ? block.a : block.b;
+    std::copy_n(planes[std::size_t(c)], count, plane.begin());
+    std::fill(plane.begin() + std::ptrdiff_t(count), plane.begin() + std::ptrdiff_t(whole), 0.0f);
+  }
+  HWY_DYNAMIC_DISPATCH(FromLinearHere)(whole, block);
 }
 
 void LightnessFromGreys(const float* greys, std::size_t count, float* lightness) {

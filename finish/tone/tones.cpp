@@ -1,7 +1,6 @@
-#include <algorithm>
+#include <bit>
 #include <cmath>
-#include <memory>
-#include <vector>
+#include <cstdint>
 
 #include "core/filter/wide_loops.h"
 #include "core/image/exact_math.h"
@@ -10,44 +9,46 @@
 namespace scumble::internal {
 namespace {
 
-double Tanh(double x) {
-  const double e = Exp2(2.0 * x * 1.4426950408889634);  // of |x| up to 128
-  return (e - 1.0) / (e + 1.0);
+// 2^-x within 3e-7, relative; beyond 100 as at 100. x is 0 or more.
+inline float PowerOfHalf(float x) {
+  const float y = x < 100.0f ? -x : -100.0f;
+  const int whole = static_cast<int>(y - 0.5f);
+  const float f = y - static_cast<float>(whole);  // within a half of 0: the series of 2^f
+  float p = 1.5403530e-4f * f + 1.3333558e-3f;
+  p = p * f + 9.6181291e-3f;
+  p = p * f + 5.5504109e-2f;
+  p = p * f + 2.4022651e-1f;
+  p = p * f + 6.9314718e-1f;
+  p = p * f + 1.0f;
+  return p * std::bit_cast<float>(static_cast<std::uint32_t>(whole + 127) << 23);
+}
+
+inline float Tanh(float x) {
+  const float e = PowerOfHalf(std::fabs(x) * float(2.0 * kLog2OfE)), t = (1.0f - e) / (1.0f + e);
+  return x < 0.0f ? -t : t;
 }
 
 // The soft steps of Winnemöller, Olsen and Gooch ("Real-Time Video Abstraction", 2006, section 3.2), with two changes:
 // the first level is black and the last is white, and the curve of each step is stretched so that it meets the next
-// one. It is continuous and rises; levels and the middles between them keep their lightness. f is 0 … 1.
-double SoftStep(double f, int levels, double sharpness) {
-  if (!(sharpness > 0.0)) return f;
-  const double width = 1.0 / (levels - 1);
-  const double border = (std::clamp(std::floor(f / width), 0.0, levels - 2.0) + 0.5) * width;
-  return border + 0.5 * width * Tanh(2.0 * sharpness * (f - border) / width) / Tanh(sharpness);
-}
-
-constexpr int kCells = 1 << 12;  // 16 KiB stay in the nearest cache
-
-// By straight lines between the cells of a table of kCells + 2 values.
-SCUMBLE_WIDE_LOOPS void TakeFrom(const float* table, std::size_t count, float* lightness) {
+// one. It is continuous and rises; levels and the middles between them keep their lightness.
+SCUMBLE_WIDE_LOOPS void TakeSoftSteps(int levels, float sharpness, std::size_t count, float* lightness) {
+  const float steps = static_cast<float>(levels - 1), width = 1.0f / steps, half_per_tanh = 0.5f / Tanh(sharpness);
+  const int last = levels - 2;
   for (std::size_t i = 0; i < count; ++i) {
     const float given = lightness[i] < 0.0f ? 0.0f : 1.0f < lightness[i] ? 1.0f : lightness[i];
-    const float at = given * kCells;
-    const int cell = static_cast<int>(at);
-    const float from = table[cell], to = table[cell + 1];
-    lightness[i] = from + (to - from) * (at - static_cast<float>(cell));
+    const float at = given * steps;
+    const int under = static_cast<int>(at), step = under < last ? under : last;
+    const float middle = static_cast<float>(step) + 0.5f;
+    lightness[i] = (middle + half_per_tanh * Tanh(2.0f * sharpness * (at - middle))) * width;
   }
 }
 
 }  // namespace
 
 PointEffect MakeTones(const TonesPass& pass) {
-  const auto curve = std::make_shared<std::vector<float>>();
-  for (int i = 0; i <= kCells; ++i) {
-    curve->push_back(static_cast<float>(SoftStep(double(i) / kCells, pass.bins, pass.sharpness)));
-  }
-  curve->push_back(curve->back());
-  return [curve](std::size_t, std::size_t count, OklabBlock& block) {
-    TakeFrom(curve->data(), count, block.lightness.data());
+  return [levels = pass.bins, sharpness = static_cast<float>(pass.sharpness)](std::size_t, std::size_t count,
+                                                                              OklabBlock& block) {
+    if (sharpness > 0.0f) TakeSoftSteps(levels, sharpness, count, block.lightness.data());
   };
 }
 
