@@ -81,7 +81,7 @@ struct SmoothKeyHash {
   std::size_t operator()(const SmoothKey& k) const { return Hash(k.place, k.group); }
 };
 
-struct Triangle {
+struct ObjTriangle {
   Corner corners[3];
   std::size_t face = 0;  // counted through the whole file
   unsigned smoothing_group = 0;
@@ -284,7 +284,7 @@ class ObjLoader {
     std::vector<glm::uvec3> cuts;
     TriangulatePolygon(polygon, cuts);
     for (const glm::uvec3& cut : cuts) {
-      Triangle triangle;
+      ObjTriangle triangle;
       bool lacks = false;
       for (int i = 0; i < 3; ++i) {
         const tinyobj::index_t& index = mesh.indices[first + cut[i]];
@@ -333,7 +333,7 @@ class ObjLoader {
     const std::vector<std::uint32_t> weld = WeldFrames();
     std::vector<glm::uvec3> triangles, places;
     std::vector<std::uint32_t> faces;
-    for (const Triangle& triangle : triangles_) {
+    for (const ObjTriangle& triangle : triangles_) {
       const Corner* const c = triangle.corners;
       triangles.emplace_back(c[0].position, c[1].position, c[2].position);
       places.emplace_back(weld[triangles.back().x], weld[triangles.back().y], weld[triangles.back().z]);
@@ -370,7 +370,7 @@ class ObjLoader {
     }
     std::map<std::pair<std::size_t, std::uint32_t>, Corner> corners;  // by face and place
     std::map<std::int64_t, std::int64_t> turned;
-    for (Triangle& triangle : triangles_) {
+    for (ObjTriangle& triangle : triangles_) {
       const DoubledFace& face = doubled[triangle.face];
       for (Corner& corner : triangle.corners) {
         const std::uint32_t place = weld[std::size_t(corner.position)];
@@ -394,7 +394,7 @@ class ObjLoader {
     std::vector<glm::uvec3> triangles;
     const auto first = static_cast<std::uint32_t>(normals.normals.size());
     for (std::size_t k = 0; k < kept.size(); ++k) {
-      const Triangle& triangle = triangles_[kept[k]];
+      const ObjTriangle& triangle = triangles_[kept[k]];
       const unsigned group = triangle.smoothing_group;
       if (group == 0) continue;
       glm::uvec3 indices(0);
@@ -566,7 +566,7 @@ class ObjLoader {
   std::vector<glm::vec3> positions_;  // of all vertices, each relative to its frame's origin
   std::shared_ptr<MtlLibrary> mtl_;   // once it is loaded
   std::vector<std::shared_ptr<std::vector<std::size_t>>> users_;  // of each texture: materials
-  std::vector<Triangle> triangles_;
+  std::vector<ObjTriangle> triangles_;
   MissingNormals missing_;
   std::size_t without_normals_ = 0;  // triangles with a corner without a normal
   std::vector<glm::vec3> made_normals_;

@@ -9,7 +9,7 @@
 namespace scumble {
 namespace {
 
-constexpr int kCells = 48;  // along the longer side
+constexpr int kToneCells = 48;  // along the longer side
 
 struct Cell {
   glm::vec3 normal{0.0f};
@@ -18,7 +18,7 @@ struct Cell {
 };
 
 std::vector<Cell> CellsOf(const PaintSheet& sheet) {
-  const int side = std::max(1, (std::max(sheet.width(), sheet.height()) + kCells - 1) / kCells);
+  const int side = std::max(1, (std::max(sheet.width(), sheet.height()) + kToneCells - 1) / kToneCells);
   const int columns = (sheet.width() + side - 1) / side;
   std::vector<Cell> cells(std::size_t(columns) * ((sheet.height() + side - 1) / side));
   for (int y = 0; y < sheet.height(); ++y) {

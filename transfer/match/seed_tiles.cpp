@@ -12,7 +12,7 @@
 namespace scumble::internal {
 namespace {
 
-constexpr int kNoRow = std::numeric_limits<int>::min();
+constexpr int kNoSeedRow = std::numeric_limits<int>::min();
 
 // Writes `value` to the 2^level places from `out` on, level 1 or more.
 void Spread(std::uint16_t* out, int level, std::uint16_t value) {
@@ -42,8 +42,8 @@ void TileSeeds::Reset(const MatchInput& input, int level, int x0) {
   part_ = std::max(0, 6 - level);
   SCUMBLE_DCHECK(columns_ >> part_ < 64);
   for (Made* made : {&filled_, &placed_}) {
-    std::fill(std::begin(made->row), std::end(made->row), kNoRow);
-    made->last_row = kNoRow;
+    std::fill(std::begin(made->row), std::end(made->row), kNoSeedRow);
+    made->last_row = kNoSeedRow;
   }
   column_hashes_.resize(std::size_t(columns_));
   const std::uint64_t level_hash = SeedLevel(input.seeds, level);

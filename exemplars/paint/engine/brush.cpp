@@ -8,8 +8,8 @@
 namespace scumble::paint {
 namespace {
 
-constexpr float kSpeed = 900.0f;  // units a second: a fast hand; some presets depend on it
-constexpr float kStep = 3.0f;     // pixels between the positions that the brush receives
+constexpr float kSpeed = 900.0f;    // units a second: a fast hand; some presets depend on it
+constexpr float kBrushStep = 3.0f;  // pixels between the positions that the brush receives
 
 glm::vec3 HsvFromRgb(glm::vec3 color) {
   const float high = std::max({color.r, color.g, color.b});
@@ -89,7 +89,7 @@ void Brush::Paint(Canvas& canvas, const Stroke& stroke) {
     const StrokePoint& from = stroke[i - 1];
     const StrokePoint& to = stroke[i];
     const float length = glm::distance(from.at, to.at);
-    const int steps = std::max(1, static_cast<int>(std::ceil(length * scale / kStep)));
+    const int steps = std::max(1, static_cast<int>(std::ceil(length * scale / kBrushStep)));
     for (int k = 1; k <= steps; ++k) {
       const float t = static_cast<float>(k) / static_cast<float>(steps);
       move_to(glm::mix(from.at, to.at, t), glm::mix(from.pressure, to.pressure, t),

@@ -7,8 +7,8 @@
 namespace scumble::paint {
 namespace {
 
-constexpr float kStep = 4.0f;   // units between the points of a line
-constexpr float kCell = 20.0f;  // of the grid that finds neighbours
+constexpr float kLineStep = 4.0f;  // units between the points of a line
+constexpr float kCell = 20.0f;     // of the grid that finds neighbours
 constexpr float kWidestSpacing = 60.0f;
 constexpr std::size_t kMostSteps = 500;  // a line each way: a flow may go round in circles
 
@@ -61,7 +61,7 @@ class Planner {
     line.push_back({seed, 1.0f});
     const Stroke onward = Walk(seed, 1.0f);
     line.insert(line.end(), onward.begin(), onward.end());
-    if (static_cast<float>(line.size()) * kStep < options_.shortest) return;
+    if (static_cast<float>(line.size()) * kLineStep < options_.shortest) return;
     for (const StrokePoint& point : line) taken_.Add(point.at);
     lines_.push_back(std::move(line));
   }
@@ -72,7 +72,7 @@ class Planner {
       // By index: lines_ grows meanwhile.
       for (std::size_t i = 1; i < lines_[filled_].size(); i += 3) {
         const glm::vec2 at = lines_[filled_][i].at;
-        const glm::vec2 way = (at - lines_[filled_][i - 1].at) / kStep;
+        const glm::vec2 way = (at - lines_[filled_][i - 1].at) / kLineStep;
         const glm::vec2 aside = glm::vec2(-way.y, way.x) * Spacing(at);
         TryLine(at + aside);
         TryLine(at - aside);
@@ -96,7 +96,7 @@ class Planner {
       // A flow may turn round at its pole; the hand does not.
       if (glm::dot(next, heading) < 0.0f) next = -next;
       heading = next;
-      at += next * (kStep / std::max(glm::length(next), 1e-5f));
+      at += next * (kLineStep / std::max(glm::length(next), 1e-5f));
       const float room = Spacing(at);
       if (room <= 0.0f || taken_.AnyWithin(at, options_.closest * room)) break;
       part.push_back({at, 1.0f});

@@ -9,7 +9,7 @@
 namespace scumble::paint {
 namespace {
 
-constexpr float kStep = 4.0f;                 // units between the points of a stroke
+constexpr float kStrokeStep = 4.0f;           // units between the points of a stroke
 constexpr float kLeastForeshortening = 0.3f;  // strokes never shrink below this share at the rim
 constexpr std::size_t kShortest = 6;          // points: scraps between two lifts would read as blots
 constexpr float kLift = 0.02f;                // pressures below it lift the tool
@@ -50,7 +50,7 @@ Flow TowardsAxis(glm::vec3 axis) {
 
 Stroke TraceStroke(const Flow& flow, glm::vec2 middle, float length, float offset) {
   const glm::vec2 start = middle + Sideways(flow(middle)) * offset;
-  const int half = std::max(2, static_cast<int>(std::lround(length / (2.0f * kStep))));
+  const int half = std::max(2, static_cast<int>(std::lround(length / (2.0f * kStrokeStep))));
   const auto walk = [&](float sign) {
     Stroke part;
     glm::vec2 at = start;
@@ -60,7 +60,7 @@ Stroke TraceStroke(const Flow& flow, glm::vec2 middle, float length, float offse
       // A flow may turn round at its pole; the hand does not.
       if (glm::dot(next, heading) < 0.0f) next = -next;
       heading = next;
-      at += heading * kStep;
+      at += heading * kStrokeStep;
       part.push_back({at, 1.0f});
     }
     return part;
@@ -154,7 +154,7 @@ std::vector<Stroke> PlanRim(Chance& chance, const Touch& touch, const RimOptions
     const float length = chance.Uniform(options.length_min, options.length_max);
     const float inset = options.inset + chance.Bell(options.deviation);
     const float drift = chance.Bell(options.deviation);
-    const int steps = std::max(4, static_cast<int>(length * kRadius / kStep));
+    const int steps = std::max(4, static_cast<int>(length * kRadius / kStrokeStep));
     Stroke stroke;
     for (int i = 0; i <= steps; ++i) {
       const float u = static_cast<float>(i) / static_cast<float>(steps);

@@ -203,7 +203,7 @@ TEST(PngWriter, SaysWhatThePictureLibraryWouldSay) {
 
 // ---- reading -----------------------------------------------------------------------------------------------------
 
-struct Kind {
+struct PngKind {
   int type, bits;
   bool interlaced = false, transparent = false;
   double gamma = 0;
@@ -217,7 +217,7 @@ const std::string kEmptyExif = "MM\0*\0\0\0\x08\0\0\0\0\0\0"s, kEmptyExifBackwar
 const std::string kTurned = "MM\0*\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0\x06\0\0\0\0\0\0"s;
 
 // A file of that kind with noise in it, by libpng.
-void Write(const fs::path& path, const Kind& kind, int width, int height) {
+void Write(const fs::path& path, const PngKind& kind, int width, int height) {
   std::FILE* const file = std::fopen(path.c_str(), "wb");
   ASSERT_TRUE(file);
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
@@ -266,39 +266,39 @@ constexpr int kG = PNG_COLOR_TYPE_GRAY, kGa = PNG_COLOR_TYPE_GRAY_ALPHA, kRgb = 
               kRgba = PNG_COLOR_TYPE_RGB_ALPHA, kPalette = PNG_COLOR_TYPE_PALETTE;
 
 TEST(PngReader, ReadsEveryKindAsThePictureLibraryDoes) {
-  const std::vector<Kind> kinds = {{kG, 1},
-                                   {kG, 2},
-                                   {kG, 4},
-                                   {kG, 8},
-                                   {kG, 16},
-                                   {kGa, 8},
-                                   {kGa, 16},
-                                   {kRgb, 8},
-                                   {kRgb, 16},
-                                   {kRgba, 8},
-                                   {kRgba, 16},
-                                   {kPalette, 1},
-                                   {kPalette, 2},
-                                   {kPalette, 4},
-                                   {kPalette, 8},
-                                   {kPalette, 8, false, true},
-                                   {kPalette, 4, true, true},
-                                   {kRgb, 8, false, true},
-                                   {kG, 8, false, true},
-                                   {kRgb, 16, false, true},
-                                   {kG, 2, false, true},
-                                   {kRgba, 8, true},
-                                   {kRgba, 16, true},
-                                   {kG, 1, true},
-                                   {kRgba, 8, false, false, 1 / 2.2},
-                                   {kRgb, 8, false, false, 1 / 1.8},
-                                   {kRgb, 8, false, false, 0, "Comment", "a word"},
-                                   {kRgba, 16, false, false, 0, "scumble:settings", "seed 1"},
-                                   {kRgb, 8, false, false, 0, "oiio:ColorSpace", "sRGB"},
-                                   {kRgb, 8, false, false, 0, "", "", 0, kEmptyExif},
-                                   {kG, 16, false, false, 0, "", "", 0, kEmptyExifBackwards}};
+  const std::vector<PngKind> kinds = {{kG, 1},
+                                      {kG, 2},
+                                      {kG, 4},
+                                      {kG, 8},
+                                      {kG, 16},
+                                      {kGa, 8},
+                                      {kGa, 16},
+                                      {kRgb, 8},
+                                      {kRgb, 16},
+                                      {kRgba, 8},
+                                      {kRgba, 16},
+                                      {kPalette, 1},
+                                      {kPalette, 2},
+                                      {kPalette, 4},
+                                      {kPalette, 8},
+                                      {kPalette, 8, false, true},
+                                      {kPalette, 4, true, true},
+                                      {kRgb, 8, false, true},
+                                      {kG, 8, false, true},
+                                      {kRgb, 16, false, true},
+                                      {kG, 2, false, true},
+                                      {kRgba, 8, true},
+                                      {kRgba, 16, true},
+                                      {kG, 1, true},
+                                      {kRgba, 8, false, false, 1 / 2.2},
+                                      {kRgb, 8, false, false, 1 / 1.8},
+                                      {kRgb, 8, false, false, 0, "Comment", "a word"},
+                                      {kRgba, 16, false, false, 0, "scumble:settings", "seed 1"},
+                                      {kRgb, 8, false, false, 0, "oiio:ColorSpace", "sRGB"},
+                                      {kRgb, 8, false, false, 0, "", "", 0, kEmptyExif},
+                                      {kG, 16, false, false, 0, "", "", 0, kEmptyExifBackwards}};
   TemporaryFolder folder;
-  for (const Kind& kind : kinds) {
+  for (const PngKind& kind : kinds) {
     for (const auto& [width, height] : {Shape{1, 1}, Shape{19, 13}, Shape{7, 40}}) {
       SCOPED_TRACE("type " + std::to_string(kind.type) + ", " + std::to_string(kind.bits) + " bits, " +
                    std::to_string(width) + "×" + std::to_string(height) + (kind.interlaced ? ", interlaced" : "") +
@@ -322,12 +322,12 @@ TEST(PngReader, ReadsEveryKindAsThePictureLibraryDoes) {
 
 TEST(PngReader, LeavesToThePictureLibraryWhatSaysMore) {
   TemporaryFolder folder;
-  for (const Kind& kind :
-       {Kind{kRgb, 8, false, false, 1.0}, Kind{kRgb, 8, false, false, 0, "oiio:ColorSpace", "Linear"},
-        Kind{kRgb, 8, false, false, 0, "XML:com.adobe.xmp", "<x/>"},
-        Kind{kRgb, 8, false, false, 0, "Raw profile type exif", "\nexif\n 1\n00\n"},
-        Kind{kRgb, 8, false, false, 0, "Orientation", "6"}, Kind{kRgb, 8, false, false, 0, "", "", 3},
-        Kind{kRgb, 8, false, false, 0, "", "", 0, kTurned}}) {
+  for (const PngKind& kind :
+       {PngKind{kRgb, 8, false, false, 1.0}, PngKind{kRgb, 8, false, false, 0, "oiio:ColorSpace", "Linear"},
+        PngKind{kRgb, 8, false, false, 0, "XML:com.adobe.xmp", "<x/>"},
+        PngKind{kRgb, 8, false, false, 0, "Raw profile type exif", "\nexif\n 1\n00\n"},
+        PngKind{kRgb, 8, false, false, 0, "Orientation", "6"}, PngKind{kRgb, 8, false, false, 0, "", "", 3},
+        PngKind{kRgb, 8, false, false, 0, "", "", 0, kTurned}}) {
     Write(folder / "p.png", kind, 5, 4);
     const auto bytes = *ReadWholeFile(folder / "p.png");
     EXPECT_FALSE(internal::ReadPlainPng(bytes)) << kind.gamma << kind.key;

@@ -17,7 +17,7 @@ using namespace testing;
 
 // Two lights, the sums and differences of which are exact.
 constexpr double kBright = 0.75, kDark = 0.25;
-constexpr float kMiddle = 0.5f, kThreshold = 0.125f;
+constexpr float kMiddleLight = 0.5f, kThreshold = 0.125f;
 // Luminances at the middle, a step of float below it and one above.
 constexpr float kBelow = 0x1.fffffep-2f, kAbove = 0x1.000002p-1f;
 
@@ -46,7 +46,7 @@ std::size_t NotTheBest(const SourceField& field, const GuideSet& guides) {
   for (std::size_t i = 0; i < field.level.size(); ++i) {
     if (field.level[i] == SourceField::kNoSource) continue;
     const float light = guides.Plane(Layer::kLuminance)[i];
-    count += light != kMiddle && (field.exemplar[i] == 0) != (light > kMiddle);
+    count += light != kMiddleLight && (field.exemplar[i] == 0) != (light > kMiddleLight);
   }
   return count;
 }
@@ -56,8 +56,8 @@ std::size_t NotTheBest(const SourceField& field, const GuideSet& guides) {
 // makes it 2^-3, the threshold: nothing is left of it, so nothing is accepted from an exemplar that is not the best, at
 // this weight and any above. Half of it leaves a half of the threshold, which the distance 0 is below.
 TEST(ExtremeLight, TheLimitIsReachedWhereTheLeastExcessUsesUpTheThreshold) {
-  const GuideSet guides = LitSphere(128, {kBelow, kMiddle, kAbove, 0.1f, 0.9f});
-  ASSERT_EQ(2.0f * (kMiddle - kBelow), 0x1.0p-24f);
+  const GuideSet guides = LitSphere(128, {kBelow, kMiddleLight, kAbove, 0.1f, 0.9f});
+  ASSERT_EQ(2.0f * (kMiddleLight - kBelow), 0x1.0p-24f);
   ASSERT_EQ(0x1.0p21f * 0x1.0p-24f, kThreshold);
   const SourceField limit = MustTransfer(TwoLights(128, kInfinity), guides).field;
   EXPECT_EQ(NotTheBest(limit, guides), 0u) << "it cuts exactly where the best exemplar changes";
@@ -72,7 +72,7 @@ TEST(ExtremeLight, TheLimitIsReachedWhereTheLeastExcessUsesUpTheThreshold) {
 std::size_t TakenInOtherLight(const SourceField& field, const GuideSet& guides) {
   std::size_t count = 0;
   for (std::size_t i = 0; i < field.level.size(); ++i) {
-    count += field.level[i] > 0 && (field.exemplar[i] == 0) != (guides.Plane(Layer::kLuminance)[i] > kMiddle);
+    count += field.level[i] > 0 && (field.exemplar[i] == 0) != (guides.Plane(Layer::kLuminance)[i] > kMiddleLight);
   }
   return count;
 }
@@ -152,7 +152,7 @@ TEST(ExtremeLight, ThePublishedErrorAtItsLimit) {
 
 // An infinite threshold takes any distance, an infinite weight none that light adds to: infinity is not below infinity.
 TEST(ExtremeLight, BothInfiniteLightDecides) {
-  const GuideSet guides = LitSphere(96, {kBelow, kMiddle, kAbove, 0.0f, 7.0f});
+  const GuideSet guides = LitSphere(96, {kBelow, kMiddleLight, kAbove, 0.0f, 7.0f});
   Style style = TwoLights(96, kInfinity);
   style.transfer.threshold = kInfinity;
   EXPECT_EQ(NotTheBest(MustTransfer(style, guides).field, guides), 0u);

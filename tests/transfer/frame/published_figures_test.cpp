@@ -17,7 +17,7 @@ namespace {
 
 using namespace testing;
 
-constexpr int kWidth = 320, kHeight = 180;
+constexpr int kFigureWidth = 320, kFigureHeight = 180;
 constexpr std::uint64_t kSeed = 7;
 
 // The still life with the shadows that its things throw on one another, exposed for a style.
@@ -25,10 +25,10 @@ const GuideSet& StillLife() {
   static const GuideSet kGuides = [] {
     Expected<Scene> scene = LoadScene(std::string(SCUMBLE_SOURCE_DIR) + "/scenes/stilllife.glb");
     EXPECT_TRUE(scene);
-    Expected<PreparedView> view = PrepareView(*scene, "", std::nullopt, double(kWidth) / kHeight, false);
+    Expected<PreparedView> view = PrepareView(*scene, "", std::nullopt, double(kFigureWidth) / kFigureHeight, false);
     EXPECT_TRUE(view);
     GuidegenOptions options;
-    options.width = kWidth, options.height = kHeight;
+    options.width = kFigureWidth, options.height = kFigureHeight;
     options.layers.Add(Layer::kLuminance);
     return std::move(RenderGuides(*scene, view->camera, options)->guides);
   }();
@@ -88,8 +88,8 @@ TEST(Figure23, WithoutWeightLightChoosesAtTheSeedAndCutsNothing) {
     EXPECT_TRUE(SameField(field, alone)) << name << ": chunks are those of one exemplar";
     const auto luminance = StillLife().Plane(Layer::kLuminance);
     std::size_t against_own_light = 0;
-    for (int y = 0; y < kHeight; ++y) {
-      for (int x = 0; x < kWidth; ++x) {
+    for (int y = 0; y < kFigureHeight; ++y) {
+      for (int x = 0; x < kFigureWidth; ++x) {
         const std::size_t i = StillLife().Index(x, y);
         if (field.level[i] == SourceField::kNoSource) continue;
         const PixelPosition seed =

@@ -10,7 +10,7 @@ namespace {
 
 using namespace testing;
 
-constexpr int kWidth = 160, kHeight = 120;
+constexpr int kWallWidth = 160, kWallHeight = 120;
 constexpr float kShade = 0.05f;
 
 // A wall that faces the viewer, one unit behind a light at `lamp` (in pixels): the luminance of a point light on white
@@ -34,7 +34,7 @@ GuideSet Wall(int width, int height, glm::vec2 lamp, float unit, int shadow, flo
   return guides;
 }
 
-GuideSet Scene() { return Wall(kWidth, kHeight, {40, 60}, 60, 100, 30.0f); }
+GuideSet LitWallGuides() { return Wall(kWallWidth, kWallHeight, {40, 60}, 60, 100, 30.0f); }
 
 // The exemplar is another wall, lit from its middle and half of it in the shade of another screen.
 Style WallStyle(Layer layer, float weight) {
@@ -64,7 +64,7 @@ Lit Compare(const Style& style, const SourceField& field, const GuideSet& guides
 }
 
 TEST(LitWall, TakesPaintThatIsLitAsItIs) {
-  const GuideSet guides = Scene();
+  const GuideSet guides = LitWallGuides();
   for (const Layer layer : {Layer::kLuminance, Layer::kLpeLDE}) {
     for (const Method method : {Method::kLitSphere, Method::kStyleBlit}) {
       Style style = WallStyle(layer, 1.0f);
@@ -99,7 +99,7 @@ TEST(LitWall, TakesPaintThatIsLitAsItIs) {
 // The number of pairs across the shadow's edge that show one chunk.
 int UncutPairs(const SourceField& field) {
   int uncut = 0;
-  for (int y = 0; y < kHeight; ++y) {
+  for (int y = 0; y < kWallHeight; ++y) {
     const std::size_t i = field.Index(99, y), j = field.Index(100, y);
     uncut += field.x[j] == field.x[i] + 1 && field.y[j] == field.y[i];
   }
@@ -107,7 +107,7 @@ int UncutPairs(const SourceField& field) {
 }
 
 TEST(LitWall, ShadowsCutChunks) {
-  const GuideSet guides = Scene();
+  const GuideSet guides = LitWallGuides();
   Style style = WallStyle(Layer::kLuminance, 1.0f);
   const auto prepared = Prepare(style, guides.height());
   ASSERT_TRUE(prepared.ok());
@@ -119,7 +119,7 @@ TEST(LitWall, ShadowsCutChunks) {
   EXPECT_EQ(UncutPairs(MustTransfer(style, guides, options).field), 0);
   style.transfer.guide_weights = {};
   style.transfer.variety = 0.0;
-  EXPECT_GT(UncutPairs(MustTransfer(style, guides, options).field), kHeight / 2);
+  EXPECT_GT(UncutPairs(MustTransfer(style, guides, options).field), kWallHeight / 2);
 }
 
 TEST(LitWall, ASphereUnderOneLampShowsEachDirectionInOneLight) {

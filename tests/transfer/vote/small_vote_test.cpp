@@ -28,34 +28,35 @@ struct SmallCase {
   std::optional<PreparedExemplar> exemplar;
 };
 
-enum class Paint { kOpaque, kExtreme, kMixed, kTransparent };
-enum class Cover { kAll, kNone, kOne, kHoles, kStripes };
+enum class PaintKind { kOpaque, kExtreme, kMixed, kTransparent };
+enum class CoverKind { kAll, kNone, kOne, kHoles, kStripes };
 
-std::uint16_t AlphaOf(Paint paint, std::uint64_t hash) {
-  const bool any = paint == Paint::kTransparent || (paint == Paint::kMixed && hash % 8 == 0);
+std::uint16_t AlphaOf(PaintKind paint, std::uint64_t hash) {
+  const bool any = paint == PaintKind::kTransparent || (paint == PaintKind::kMixed && hash % 8 == 0);
   if (!any) return 65535;
   return hash / 8 % 3 == 0 ? 0 : static_cast<std::uint16_t>(hash);
 }
 
-Picture PaintOf(int size, Paint paint, std::uint64_t seed) {
+Picture PaintOf(int size, PaintKind paint, std::uint64_t seed) {
   Picture picture(size, size);
   for (std::size_t i = 0; i < picture.rgba.size(); ++i) {
     const std::uint64_t hash = Hash(seed, i);
     constexpr std::uint16_t kEnds[] = {0, 1, 32767, 32768, 65534, 65535};
-    picture.rgba[i] = paint == Paint::kExtreme ? kEnds[hash % 6] : static_cast<std::uint16_t>(hash);
+    picture.rgba[i] = paint == PaintKind::kExtreme ? kEnds[hash % 6] : static_cast<std::uint16_t>(hash);
     if (i % 4 == 3) picture.rgba[i] = AlphaOf(paint, hash);
   }
   return picture;
 }
 
-bool CoveredAt(Cover cover, int x, int y, int width, int height, std::uint64_t seed) {
-  if (cover == Cover::kOne) return x == width / 2 && y == height / 2;
-  if (cover == Cover::kHoles) return Hash(seed, x / 5, y / 3) % 7 != 0;
-  if (cover == Cover::kStripes) return (x + 2 * y) / 40 % 2 == 0;
-  return cover == Cover::kAll;
+bool CoveredAt(CoverKind cover, int x, int y, int width, int height, std::uint64_t seed) {
+  if (cover == CoverKind::kOne) return x == width / 2 && y == height / 2;
+  if (cover == CoverKind::kHoles) return Hash(seed, x / 5, y / 3) % 7 != 0;
+  if (cover == CoverKind::kStripes) return (x + 2 * y) / 40 % 2 == 0;
+  return cover == CoverKind::kAll;
 }
 
-SmallCase MakeCase(int width, int height, int size, Paint paint, Cover cover, int exemplars, std::uint64_t seed) {
+SmallCase MakeCase(int width, int height, int size, PaintKind paint, CoverKind cover, int exemplars,
+                   std::uint64_t seed) {
   SmallCase made;
   made.width = width, made.height = height;
   made.guides = MakeGuides(width, height, [&](int x, int y) {
@@ -149,8 +150,10 @@ TEST(SmallVote, EqualsThePlainVoteAtEveryRadiusAndTarget) {
   std::uint64_t seed = 1;
   for (const auto& [width, height] :
        {std::pair{1, 1}, {1, 70}, {70, 1}, {3, 5}, {64, 33}, {65, 40}, {127, 64}, {191, 37}}) {
-    for (const Cover cover : {Cover::kAll, Cover::kHoles, Cover::kStripes, Cover::kOne, Cover::kNone}) {
-      for (const Paint paint : {Paint::kOpaque, Paint::kExtreme, Paint::kMixed, Paint::kTransparent}) {
+    for (const CoverKind cover :
+         {CoverKind::kAll, CoverKind::kHoles, CoverKind::kStripes, CoverKind::kOne, CoverKind::kNone}) {
+      for (const PaintKind paint :
+           {PaintKind::kOpaque, PaintKind::kExtreme, PaintKind::kMixed, PaintKind::kTransparent}) {
         const SmallCase given =
             MakeCase(width, height, 20 + 31 * int(seed % 4), paint, cover, 1 + int(seed / 2 % 3), seed);
         ++seed;
@@ -178,7 +181,7 @@ TEST(SmallVote, EqualsThePlainVoteAtEveryRadiusAndTarget) {
 
 TEST(SmallVote, RegionsAndThreadsMakeNoDifference) {
   // Wider than a tile, so that tiles meet inside.
-  const SmallCase given = MakeCase(2200, 75, 90, Paint::kMixed, Cover::kHoles, 2, 7);
+  const SmallCase given = MakeCase(2200, 75, 90, PaintKind::kMixed, CoverKind::kHoles, 2, 7);
   for (const Region& region :
        {Region{0, 0, 2200, 75}, Region{13, 21, 57, 44}, Region{64, 32, 128, 64}, Region{63, 31, 2111, 65},
         Region{2047, 0, 2050, 75}, Region{2199, 74, 2200, 75}, Region{}}) {
@@ -194,14 +197,14 @@ TEST(SmallVote, RegionsAndThreadsMakeNoDifference) {
 
 // Opaque paint in every sum that nine votes of the ends of the range can have.
 TEST(SmallVote, MeansAreRoundedAsWeighedOnesAre) {
-  const SmallCase given = MakeCase(300, 200, 120, Paint::kExtreme, Cover::kAll, 1, 11);
+  const SmallCase given = MakeCase(300, 200, 120, PaintKind::kExtreme, CoverKind::kAll, 1, 11);
   OnEveryTarget([&](const std::string& target) {
     ExpectPlain(given, {1, false, false, 60.0, 0.002, {0, 0, 300, 200}, 1}, target);
   });
 }
 
 TEST(SmallVote, StopsWhenAsked) {
-  const SmallCase given = MakeCase(100, 100, 50, Paint::kOpaque, Cover::kAll, 1, 5);
+  const SmallCase given = MakeCase(100, 100, 50, PaintKind::kOpaque, CoverKind::kAll, 1, 5);
   Picture out(100, 100);
   const Progress stop = [](double) { return false; };
   internal::RowProgress progress(stop, 0.0, 1.0, 100);
