@@ -13,7 +13,7 @@ HWY_BEFORE_NAMESPACE();
 namespace scumble::internal {
 namespace HWY_NAMESPACE {
 
-// The colours of a block, a plane each. Functions take whole vectors: `count` is a multiple of kWidest.
+// The colours of a block, a plane each. Functions of Planes take whole vectors: `count` is a multiple of kWidest.
 //
 // They go over a block several times, with a short step each: a colour's way from code to Oklab is one long chain of
 // dependent operations, and a processor looks ahead far enough to work on many short chains at once, but not on two

@@ -16,23 +16,38 @@ namespace {
 constexpr double kWidthOfSigma = 2.055;  // of the dark side of a step's response, at half its depth
 constexpr double kTensorSigma = 3.0;     // of the directions of flow, pixels at the reference height
 
-// What ink is a function of, by pixel.
-FloatPlane ResponseOf(const EdgesPass& pass, const FinishFrame& frame, const FloatPlane& tone, int width, int height) {
+// Calls visit(first, count, responses) for runs of up to kOklabBlock pixels, from several threads: ink is a function of
+// the response.
+template <class Visit>
+void ForEachResponse(const EdgesPass& pass, const FinishFrame& frame, const FloatPlane& tone, int width, int height,
+                     const Visit& visit) {
   const double sigma = pass.width * frame.scale / kWidthOfSigma;
   const auto sharpness = static_cast<float>(pass.sharpness), fill = static_cast<float>(pass.fill);
   const auto keys = pass.borders ? frame.guides->Plane(Layer::kObject) : std::span<const float>();
-  if (pass.flow > 0.0) {
-    return FlowResponse(tone, keys, width, height, {sigma, pass.flow * frame.scale, kTensorSigma * frame.scale},
-                        {fill + sharpness, -sharpness, 1.0f - fill, static_cast<float>(pass.threshold)});
+  if (keys.empty() && !(pass.flow > 0.0)) {
+    const auto columns = static_cast<std::size_t>(width);
+    ForEachGaussianPair(tone, width, height, sigma, fill + sharpness, -sharpness, 1.0f - fill,
+                        [&](int y, const float* responses) {
+                          for (std::size_t x = 0; x < columns; x += kOklabBlock)
+                            visit(std::size_t(y) * columns + x, std::min(kOklabBlock, columns - x), responses + x);
+                        });
+    return;
   }
-  if (keys.empty()) return GaussianPair(tone, width, height, sigma, fill + sharpness, -sharpness, 1.0f - fill);
+  if (pass.flow > 0.0) {
+    const FloatPlane response =
+        FlowResponse(tone, keys, width, height, {sigma, pass.flow * frame.scale, kTensorSigma * frame.scale},
+                     {fill + sharpness, -sharpness, 1.0f - fill, static_cast<float>(pass.threshold)});
+    ForEachOklabBlock(response.size(),
+                      [&](std::size_t first, std::size_t count) { visit(first, count, response.data() + first); });
+    return;
+  }
   FloatPlane narrow = BlurredWithin(tone, keys, width, height, sigma);
   const FloatPlane wide = BlurredWithin(tone, keys, width, height, 1.6 * sigma);
   ForEachOklabBlock(tone.size(), [&](std::size_t first, std::size_t count) {
     for (std::size_t i = first; i < first + count; ++i)
       narrow[i] = 1.0f - fill + ((fill + sharpness) * narrow[i] - sharpness * wide[i]);
+    visit(first, count, narrow.data() + first);
   });
-  return narrow;
 }
 
 float Tanh(float x) {
@@ -59,14 +74,12 @@ float ShareOf(const EdgesPass& pass, float response) {
 void DrawEdges(const EdgesPass& pass, double strength, std::span<const std::uint8_t> only, const FinishFrame& frame,
                Picture& picture) {
   const FloatPlane tone = ToneOf(pass.tone, frame, picture);
-  const FloatPlane response = ResponseOf(pass, frame, tone, picture.width, picture.height);
   const bool on_paper = pass.draw == EdgesPass::Draw::kPaint;
   const LabColor fixed = ToOklab(on_paper ? pass.paper : pass.ink);
   const bool of_paint = !on_paper && pass.color != OutlinePass::Color::kInk;
   // As outlines have it: a third as light and half as colourful.
   const float chroma = pass.color == OutlinePass::Color::kComplement ? -0.5f : 0.5f;
-  ForEachOklabBlock(tone.size(), [&](std::size_t first, std::size_t count) {
-    const float* const responses = response.data() + first;
+  const auto draw = [&](std::size_t first, std::size_t count, const float* responses) {
     if (!on_paper && !AnyBelow(responses, count, static_cast<float>(pass.threshold))) return;
     // Few pixels have ink: these alone are mixed, side by side.
     std::uint16_t* const texels = picture.rgba.data() + 4 * first;
@@ -91,7 +104,8 @@ void DrawEdges(const EdgesPass& pass, double strength, std::span<const std::uint
     }
     TexelsFromOklab(block, found, made.data());
     for (std::size_t i = 0; i < found; ++i) std::copy_n(made.data() + 4 * i, 3, texels + 4 * std::size_t(where[i]));
-  });
+  };
+  ForEachResponse(pass, frame, tone, picture.width, picture.height, draw);
 }
 
 }  // namespace scumble::internal

@@ -140,16 +140,15 @@ FloatPlane Blurred(const FloatPlane& plane, int width, int height, double sigma)
   return out;
 }
 
-FloatPlane GaussianPair(const FloatPlane& plane, int width, int height, double sigma, float narrow, float wide,
-                        float level) {
+void ForEachGaussianPair(const FloatPlane& plane, int width, int height, double sigma, float narrow, float wide,
+                         float level, const std::function<void(int y, const float* values)>& row) {
   const std::array<std::vector<float>, 2> weights = {GaussianWeights(sigma), GaussianWeights(1.6 * sigma)};
-  FloatPlane out(plane.size());
-  ForEachBand(plane, width, height, weights, [&](int y, const auto& blurred) {
-    float* const to = out.data() + std::size_t(y) * std::size_t(width);
-    for (int x = 0; x < width; ++x)
-      to[x] = level + (narrow * blurred[0][std::size_t(x)] + wide * blurred[1][std::size_t(x)]);
+  ForEachBand(plane, width, height, weights, [&](int y, auto& blurred) {
+    float* const values = blurred[0].data();
+    for (std::size_t x = 0; x < std::size_t(width); ++x)
+      values[x] = level + (narrow * values[x] + wide * blurred[1][x]);
+    row(y, values);
   });
-  return out;
 }
 
 }  // namespace scumble::internal

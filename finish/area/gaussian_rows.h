@@ -1,6 +1,7 @@
 // Gaussians of planes for filters: by several threads, in floats, with the same bytes on any instruction set.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -23,8 +24,9 @@ FloatPlane Blurred(const FloatPlane& plane, int width, int height, double sigma)
 // to no key: such a place keeps its value. O(pixels · sigma), however many keys there are.
 FloatPlane BlurredWithin(const FloatPlane& plane, std::span<const float> keys, int width, int height, double sigma);
 
-// level + narrow · G(sigma) + wide · G(1.6 sigma) of a plane.
-FloatPlane GaussianPair(const FloatPlane& plane, int width, int height, double sigma, float narrow, float wide,
-                        float level);
+// Calls row(y, values) for each row, from several threads, with its `width` values of level + narrow · G(sigma) +
+// wide · G(1.6 sigma), which hold until it returns.
+void ForEachGaussianPair(const FloatPlane& plane, int width, int height, double sigma, float narrow, float wide,
+                         float level, const std::function<void(int y, const float* values)>& row);
 
 }  // namespace scumble::internal

@@ -27,14 +27,14 @@ std::vector<glm::vec3> OklabOf(const GuideSet& guides) {
   return colors;
 }
 
-// What most pairs of neighbours are told by.
+// What decides most pairs of neighbours.
 struct PairPlanes {
   const float *coverage, *depth, *object, *material, *shadow, *normal_x, *normal_y, *normal_z;
   float give_share, give_fixed, crease;
 };
 
-// For `count` pairs of pixels from (first, first + step) on: 0 where neither is covered, and where depth, normal,
-// object, material and shadow go on; 1 where somebody has to look closer.
+// For `count` pairs of pixels from (first, first + step) on: 0 where neither is covered, and where both are and
+// depth, normal, object, material and shadow go on; 1 where Classifier::Between has to decide.
 SCUMBLE_WIDE_LOOPS void FindDoubts(const PairPlanes& of, std::size_t first, std::size_t step, std::size_t count,
                                    std::uint32_t* doubts) {
   const float give_share = of.give_share, give_fixed = of.give_fixed, crease = of.crease;

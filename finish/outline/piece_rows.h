@@ -11,12 +11,12 @@ namespace scumble::internal {
 struct PieceAtRow {
   glm::vec2 along;          // from its beginning to its end
   float per_squared;        // 1 / its length squared; 0 if it has none
-  float right, down;        // from its beginning to the row's first pixel
+  float right, down;        // from its beginning to the centre of the row's first pixel
   float from_width, wider;  // its width at the beginning, and how much more it has at the end
   std::uint32_t owner;
 };
 
-// Whole vectors of pixels are covered at once, on any machine.
+// A multiple of the floats in any machine's vector: counts that are multiples of it are quickest.
 inline constexpr std::size_t kCoverBlock = 16;
 
 // Raises the shares of `count` pixels, 0 … 1, to what the piece covers of them: antialiased, round at both ends, and

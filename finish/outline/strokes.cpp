@@ -160,7 +160,8 @@ void Draw(const StrokePiece& piece, int y0, int y1, int width, StrokeCover& cove
   y1 = std::min(y1, low(std::max(piece.from.y, piece.to.y) + most) + 1);
   const glm::vec2 along = piece.to - piece.from;
   const float squared = Dot(along, along), per_squared = squared > 0.0f ? 1.0f / squared : 0.0f;
-  // On a row all that is covered lies within the piece's stretch of rows `most` above and below, widened by `most`.
+  // A row is covered only by the part of the piece that lies at most `most` above or below it, and only up to `most`
+  // beside that part.
   const float per_down = std::fabs(along.y) > 1e-3f ? 1.0f / along.y : 0.0f;
   for (int y = y0; y < y1; ++y) {
     const float down = static_cast<float>(y) + 0.5f - piece.from.y;

@@ -23,23 +23,26 @@ inline float PowerOfHalf(float x) {
   return p * std::bit_cast<float>(static_cast<std::uint32_t>(whole + 127) << 23);
 }
 
-inline float Tanh(float x) {
+inline float FastTanh(float x) {
   const float e = PowerOfHalf(std::fabs(x) * float(2.0 * kLog2OfE)), t = (1.0f - e) / (1.0f + e);
   return x < 0.0f ? -t : t;
 }
+
+// Steps of so little sharpness are straight lines, to half a code of 16 bits.
+constexpr float kStraight = 0.01f;
 
 // The soft steps of Winnemöller, Olsen and Gooch ("Real-Time Video Abstraction", 2006, section 3.2), with two changes:
 // the first level is black and the last is white, and the curve of each step is stretched so that it meets the next
 // one. It is continuous and rises; levels and the middles between them keep their lightness.
 SCUMBLE_WIDE_LOOPS void TakeSoftSteps(int levels, float sharpness, std::size_t count, float* lightness) {
-  const float steps = static_cast<float>(levels - 1), width = 1.0f / steps, half_per_tanh = 0.5f / Tanh(sharpness);
+  const float steps = static_cast<float>(levels - 1), width = 1.0f / steps, half_per_tanh = 0.5f / FastTanh(sharpness);
   const int last = levels - 2;
   for (std::size_t i = 0; i < count; ++i) {
-    const float given = lightness[i] < 0.0f ? 0.0f : 1.0f < lightness[i] ? 1.0f : lightness[i];
+    const float given = lightness[i] > 0.0f ? lightness[i] < 1.0f ? lightness[i] : 1.0f : 0.0f;
     const float at = given * steps;
     const int under = static_cast<int>(at), step = under < last ? under : last;
     const float middle = static_cast<float>(step) + 0.5f;
-    lightness[i] = (middle + half_per_tanh * Tanh(2.0f * sharpness * (at - middle))) * width;
+    lightness[i] = (middle + half_per_tanh * FastTanh(2.0f * sharpness * (at - middle))) * width;
   }
 }
 
@@ -48,7 +51,7 @@ SCUMBLE_WIDE_LOOPS void TakeSoftSteps(int levels, float sharpness, std::size_t c
 PointEffect MakeTones(const TonesPass& pass) {
   return [levels = pass.bins, sharpness = static_cast<float>(pass.sharpness)](std::size_t, std::size_t count,
                                                                               OklabBlock& block) {
-    if (sharpness > 0.0f) TakeSoftSteps(levels, sharpness, count, block.lightness.data());
+    if (sharpness > kStraight) TakeSoftSteps(levels, sharpness, count, block.lightness.data());
   };
 }
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Painting an exemplar twice with one random seed gives equal bytes, and another seed another picture: every style is
 # painted twice, alternately with one seed and with two. At a small size. Four that take longest are left out, because
-# they lay paint on with the brushes of others: impasto as oil does, and the flat brush.
+# they lay paint on with the brushes of others: impasto as tinted-oil does, and the flat brush.
 # Usage: painting_repeats.sh PAINT_EXEMPLARS EXEMPLARS
 set -eu
 paint=$1
@@ -12,7 +12,7 @@ trap 'rm -rf "$folder"' EXIT
 styles=()
 for style in "$exemplars"/*/style.toml; do
   name=$(basename "$(dirname "$style")")
-  case $name in gouache | plein-air | scene-oil | tinted-oil) ;; *) styles+=("$name") ;; esac
+  case $name in gouache | oil | plein-air | scene-oil) ;; *) styles+=("$name") ;; esac
 done
 for name in "${styles[@]}"; do
   "$paint" --style "$name" --size 64 --seed 1 -o "$folder/first" > /dev/null
