@@ -3,12 +3,24 @@
 #include <memory>
 #include <utility>
 
+#include "core/filter/wide_loops.h"
 #include "finish/tone/point_effect.h"
 #include "finish/tone/toon_bands.h"
 #include "finish/tone/toon_ramp.h"
 
 namespace scumble::internal {
 namespace {
+
+// Scaling all of Oklab scales linear colours by the cube: the hue and the saturation stay.
+SCUMBLE_WIDE_LOOPS void Darken(const float* light, float darkest, float tint, const LabColor& color, std::size_t count,
+                               OklabBlock& block) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const float factor = darkest + (1.0f - darkest) * light[i], share = tint * (1.0f - light[i]);
+    const float a = block.a[i] * factor, b = block.b[i] * factor;
+    block.lightness[i] *= factor;
+    block.a[i] = a + (color.a - a) * share, block.b[i] = b + (color.b - b) * share;
+  }
+}
 
 // One darker tone of the base colour.
 class PlainShading {
@@ -17,13 +29,7 @@ class PlainShading {
       : color_(ToOklab(pass.color)), darkest_(static_cast<float>(pass.shade)), tint_(static_cast<float>(pass.tint)) {}
 
   void Apply(const float* light, std::size_t, std::size_t count, OklabBlock& block) const {
-    for (std::size_t i = 0; i < count; ++i) {
-      // Scaling all of Oklab scales linear colours by the cube: the hue and the saturation stay.
-      const float factor = darkest_ + (1.0f - darkest_) * light[i], share = tint_ * (1.0f - light[i]);
-      const float a = block.a[i] * factor, b = block.b[i] * factor;
-      block.lightness[i] *= factor;
-      block.a[i] = a + (color_.a - a) * share, block.b[i] = b + (color_.b - b) * share;
-    }
+    Darken(light, darkest_, tint_, color_, count, block);
   }
 
  private:

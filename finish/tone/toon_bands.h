@@ -4,13 +4,62 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <utility>
 
 #include "core/filter/oklab_rows.h"
+#include "core/filter/wide_loops.h"
 #include "finish/finish.h"
 
 namespace scumble::internal {
+
+// What is no number is dark.
+inline float NumberOf(float value) { return value == value ? value : 0.0f; }
+
+// A block of pixels of one row with what is around it: beside the picture's edges, the pixels themselves.
+struct ToonBlock {
+  const float *light, *above, *below;  // `count` values
+  const float *object, *object_above, *object_below;
+  const float *across,
+      *objects;  // light and object from the pixel on the left to the one on the right, count + 2 values
+};
+
+// Of each pixel its place among the bands, the nearest border, and the squared slope of its light: of the larger
+// differences to neighbours of the same object, along each axis.
+SCUMBLE_WIDE_LOOPS inline void FindBands(const ToonBlock& block, float per_light, float bands, std::size_t count,
+                                         float* places, float* borders, float* slopes) {
+  const float *const light = block.light, *const above = block.above, *const below = block.below,
+                     *const across = block.across;
+  const float *const object = block.object, *const object_above = block.object_above,
+                     *const object_below = block.object_below, *const objects = block.objects;
+  const auto step = [](float here, float there, float object_here, float object_there) {
+    const float difference = std::fabs(there - here);
+    return object_here == object_there ? difference : 0.0f;
+  };
+  const auto larger = [](float a, float b) { return a < b ? b : a; };
+  for (std::size_t i = 0; i < count; ++i) {
+    const float at = NumberOf(light[i] * per_light), up = at + 0.5f;
+    places[i] = at;
+    borders[i] = static_cast<float>(static_cast<int>(up < 1.0f ? 1.0f : bands - 1.0f < up ? bands - 1.0f : up));
+    const float along_x = larger(step(light[i], across[i], object[i], objects[i]),
+                                 step(light[i], across[i + 2], object[i], objects[i + 2]));
+    const float along_y = larger(step(light[i], above[i], object[i], object_above[i]),
+                                 step(light[i], below[i], object[i], object_below[i]));
+    slopes[i] = along_x * along_x + along_y * along_y;
+  }
+}
+
+// Bands with hard borders, and where a border may be soft: where the light comes so near to it, with its slope, that
+// `soft` times the slope reaches it.
+SCUMBLE_WIDE_LOOPS inline void TakeHardBands(const float* places, const float* borders, const float* slopes, float soft,
+                                             std::size_t count, float* bands, std::uint32_t* may_be_soft) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const float off = places[i] - borders[i], square = soft * soft * slopes[i];
+    bands[i] = borders[i] - (places[i] >= borders[i] ? 0.0f : 1.0f);
+    may_be_soft[i] = off * off > 1.01f * square ? 0u : 1u;
+  }
+}
 
 // Direct light, 1 at the brightness that was measured.
 class DirectLight {
@@ -29,6 +78,25 @@ class DirectLight {
   double bright_;
 };
 
+// NaN is dark, and no shadow.
+inline float WrappedLightOf(float cosine, float shadow, float cast, bool squares) {
+  const float turned = cosine > -1.0f ? cosine < 1.0f ? cosine : 1.0f : -1.0f;
+  const float blocked = shadow > 0.0f ? shadow < 1.0f ? shadow : 1.0f : 0.0f;
+  const float lit = turned > 0.0f ? turned * (1.0f - cast * blocked) : turned;
+  const float half = 0.5f + 0.5f * lit;
+  return squares ? half * half : half;
+}
+
+// `shadows`: null where there are none.
+SCUMBLE_WIDE_LOOPS inline void WrapLights(const float* cosines, const float* shadows, float cast, bool squares,
+                                          std::size_t count, float* out) {
+  if (!shadows) {
+    for (std::size_t i = 0; i < count; ++i) out[i] = WrappedLightOf(cosines[i], 0.0f, cast, squares);
+    return;
+  }
+  for (std::size_t i = 0; i < count; ++i) out[i] = WrappedLightOf(cosines[i], shadows[i], cast, squares);
+}
+
 // Light that wraps around the form: ((1 + c) / 2)^power with c the cosine to the key light (Half-Lambert: Mitchell,
 // Francke, Eng, "Illustrative rendering in Team Fortress 2", 2007). Where c is above 0, cast shadow takes of it first.
 class WrappedLight {
@@ -41,28 +109,17 @@ class WrappedLight {
   }
 
   // 0 … 1, of any floats.
-  float At(std::size_t pixel) const { return Wrapped(cosine_[pixel], shadow_.empty() ? 0.0f : shadow_[pixel]); }
+  float At(std::size_t pixel) const {
+    return WrappedLightOf(cosine_[pixel], shadow_.empty() ? 0.0f : shadow_[pixel], cast_, squares_);
+  }
   const float* Of(std::size_t first, std::size_t count, float* buffer) const {
-    for (std::size_t i = 0; i < count; ++i) buffer[i] = cosine_[first + i];
-    if (shadow_.empty()) {
-      for (std::size_t i = 0; i < count; ++i) buffer[i] = Wrapped(buffer[i], 0.0f);
-    } else {
-      for (std::size_t i = 0; i < count; ++i) buffer[i] = Wrapped(buffer[i], shadow_[first + i]);
-    }
+    WrapLights(cosine_.data() + first, shadow_.empty() ? nullptr : shadow_.data() + first, cast_, squares_, count,
+               buffer);
     return buffer;
   }
   float PerLight(int bands) const { return static_cast<float>(bands); }
 
  private:
-  // NaN is dark, and no shadow.
-  float Wrapped(float cosine, float shadow) const {
-    const float turned = cosine > -1.0f ? std::min(cosine, 1.0f) : -1.0f;
-    const float blocked = shadow > 0.0f ? std::min(shadow, 1.0f) : 0.0f;
-    const float lit = turned > 0.0f ? turned * (1.0f - cast_ * blocked) : turned;
-    const float half = 0.5f + 0.5f * lit;
-    return squares_ ? half * half : half;
-  }
-
   std::span<const float> cosine_, shadow_;
   float cast_;
   bool squares_;
@@ -82,18 +139,16 @@ class BandOf {
 
   // Of pixels of one row, kOklabBlock at most.
   void At(std::size_t first, std::size_t count, float* bands) const {
-    Near near;
-    Look(first, count, near);
+    float places[kOklabBlock], borders[kOklabBlock], slopes[kOklabBlock];
+    std::uint32_t may_be_soft[kOklabBlock];
+    Look(first, count, places, borders, slopes);
+    TakeHardBands(places, borders, slopes, softness_ * per_light_, count, bands, may_be_soft);
     for (std::size_t i = 0; i < count; ++i) {
-      const float at = near.at[i], border = near.border[i], off = at - border;
-      float share = at >= border ? 1.0f : 0.0f;
-      // Far from the border no root is taken.
-      const float square = softness_ * per_light_ * (softness_ * per_light_) * near.slope[i];
-      if (!(off * off > 1.01f * square)) {
-        // Half the border's width, in bands: the tone's slope makes it so many pixels wide.
-        const float half = softness_ * std::sqrt(near.slope[i]) * per_light_;
-        if (std::fabs(off) < half && Crosses(first + i, border)) share = 0.5f + 0.5f * off / half;
-      }
+      if (!may_be_soft[i]) continue;
+      // Half the border's width, in bands: the tone's slope makes it so many pixels wide.
+      const float border = borders[i], off = places[i] - border, half = softness_ * std::sqrt(slopes[i]) * per_light_;
+      if (!(std::fabs(off) < half && Crosses(first + i, border))) continue;
+      const float share = 0.5f + 0.5f * off / half;
       bands[i] = border - 1.0f + share * share * (3.0f - 2.0f * share);
     }
   }
@@ -101,17 +156,11 @@ class BandOf {
   // The tones themselves, as shares of all bands, 0 … 1.
   void Tones(std::size_t first, std::size_t count, float* tones) const {
     const float* const light = light_.Of(first, count, tones);
-    for (std::size_t i = 0; i < count; ++i) tones[i] = std::clamp(Number(light[i] * per_light_) / bands_, 0.0f, 1.0f);
+    for (std::size_t i = 0; i < count; ++i) tones[i] = std::clamp(NumberOf(light[i] * per_light_) / bands_, 0.0f, 1.0f);
   }
 
  private:
-  // Of each pixel of a block its place among the bands, the nearest border, and the squared slope of its light: of the
-  // larger differences to neighbours of the same object, along each axis.
-  struct Near {
-    float at[kOklabBlock], border[kOklabBlock], slope[kOklabBlock];
-  };
-
-  void Look(std::size_t first, std::size_t count, Near& near) const {
+  void Look(std::size_t first, std::size_t count, float* places, float* borders, float* slopes) const {
     const std::size_t x = first % width_, has_left = x > 0, has_right = x + count < width_;
     float buffers[3][kOklabBlock + 2], objects[kOklabBlock + 2];
     const float* const light = light_.Of(first - has_left, count + has_left + has_right, buffers[0]) + has_left;
@@ -121,29 +170,15 @@ class BandOf {
     const float* const object = object_.data() + first;
     const float* const object_above = has_above ? object - width_ : object;
     const float* const object_below = has_below ? object + width_ : object;
-    const auto step = [](float here, float there, float object_here, float object_there) {
-      return object_here == object_there ? std::fabs(there - here) : 0.0f;
-    };
     // Beside the picture's edges there is no difference.
     float across[kOklabBlock + 2];
     for (std::size_t i = 0; i < count; ++i) across[i + 1] = light[i], objects[i + 1] = object[i];
     across[0] = has_left ? light[-1] : light[0], objects[0] = has_left ? object[-1] : object[0];
     across[count + 1] = has_right ? light[count] : light[count - 1];
     objects[count + 1] = has_right ? object[count] : object[count - 1];
-    for (std::size_t i = 0; i < count; ++i) {
-      const float at = Number(light[i] * per_light_);
-      near.at[i] = at;
-      near.border[i] = static_cast<float>(static_cast<int>(std::clamp(at + 0.5f, 1.0f, bands_ - 1.0f)));
-      const float along_x = std::max(step(light[i], across[i], object[i], objects[i]),
-                                     step(light[i], across[i + 2], object[i], objects[i + 2]));
-      const float along_y = std::max(step(light[i], above[i], object[i], object_above[i]),
-                                     step(light[i], below[i], object[i], object_below[i]));
-      near.slope[i] = along_x * along_x + along_y * along_y;
-    }
+    FindBands({light, above, below, object, object_above, object_below, across, objects}, per_light_, bands_, count,
+              places, borders, slopes);
   }
-
-  // What is no number is dark.
-  static float Number(float value) { return value == value ? value : 0.0f; }
 
   // Whether the border lies between the pixel and one of its object within the softness, along a row or a column. Where
   // the light only bends nearby, nothing softens.

@@ -17,7 +17,7 @@ constexpr float kMostTurn = 0.5f;          // radians
 // As a share of the rim's own turn over half a cell: from there on a seed's direction is the outline's.
 constexpr float kTurnOfNoFreedom = 0.75f;
 
-int Level(int level, int level_offset) { return std::clamp(level - level_offset, 0, 14); }
+int OffsetLevel(int level, int level_offset) { return std::clamp(level - level_offset, 0, 14); }
 
 // Rotates by 2 atan(half_tangent), with operations that are exact on every machine.
 glm::vec2 Turned(glm::vec2 v, float half_tangent) {
@@ -78,7 +78,7 @@ class OutlineSeeds {
     RimSegment segment = {};
   };
 
-  int LevelAt(std::size_t k) const { return Level(level_, input_.seeds[styles_[k]].level_offset); }
+  int LevelAt(std::size_t k) const { return OffsetLevel(level_, input_.seeds[styles_[k]].level_offset); }
 
   std::int64_t DistanceToCellSeed(std::size_t k, int h) const {
     const OutlinePixel& at = input_.silhouettes.outline()[k];
@@ -131,7 +131,7 @@ class OutlineSeeds {
 
 }  // namespace
 
-int RimSegmentMargin(int level_offset, int band) { return (3 << Level(kCoarsest, level_offset)) + 2 * band + 8; }
+int RimSegmentMargin(int level_offset, int band) { return (3 << OffsetLevel(kCoarsest, level_offset)) + 2 * band + 8; }
 
 std::vector<RimSegments> ChooseRimSegments(const RimSegmentInput& input) {
   const Silhouettes& silhouettes = input.silhouettes;
