@@ -49,8 +49,8 @@ void MeasureSphere(const PaintSheet& sheet, PaintTraits& traits) {
   traits.ground_known = paint.known();
   traits.disc = FindPaintedDisc(paint);
   traits.fringe_percent = 100.0 * FringeOfRim(paint);
-  constexpr double kClearLight = 0.5;
-  if (traits.light.correlation >= kClearLight) {
+  constexpr double kClearlyLit = 0.5;
+  if (traits.light.correlation >= kClearlyLit) {
     traits.bare_shade = BareShade(paint, glm::vec3(DirectionFromAngles(traits.light.azimuth, traits.light.elevation)));
   }
   std::size_t covered = 0;
