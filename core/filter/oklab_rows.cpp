@@ -138,11 +138,8 @@ void OklabFromTexels(const std::uint16_t* texels, std::size_t count, OklabBlock&
 
 void OklabFromPlanes(const std::array<const float*, 3>& planes, std::size_t count, OklabBlock& block) {
   const std::size_t whole = (count + kWidest - 1) / kWidest * kWidest;
-  for (int c = 0; c < 3; ++c) {
-    auto& plane = c == 0 ? block.lightness : c == 1 ? block.a : block.b;
-    std::copy_n(planes[std::size_t(c)], count, plane.begin());
-    std::fill(plane.begin() + std::ptrdiff_t(count), plane.begin() + std::ptrdiff_t(whole), 0.0f);
-  }
+  const std::array<float*, 3> to{block.lightness.data(), block.a.data(), block.b.data()};
+  for (std::size_t c = 0; c < 3; ++c) std::fill(std::copy_n(planes[c], count, to[c]), to[c] + whole, 0.0f);
   HWY_DYNAMIC_DISPATCH(FromLinearHere)(whole, block);
 }
 

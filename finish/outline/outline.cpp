@@ -4,8 +4,6 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
-#include <cstring>
 #include <optional>
 #include <vector>
 
@@ -51,14 +49,6 @@ StrokeCover CoverByStrokes(const OutlinePass& pass, const FinishFrame& frame, in
   std::vector<StrokePiece> pieces;
   for (const auto& stroke : strokes) pieces.insert(pieces.end(), stroke.begin(), stroke.end());
   return CoverOf(pieces, frame.guides->width() * factor, frame.guides->height() * factor, with_owner);
-}
-
-// Whether kAtOnce shares are 0: most of a picture has no line.
-constexpr std::size_t kAtOnce = 8;
-bool HasNone(const float* shares) {
-  std::array<std::uint64_t, kAtOnce / 2> bits;
-  std::memcpy(bits.data(), shares, sizeof bits);
-  return (bits[0] | bits[1] | bits[2] | bits[3]) == 0;
 }
 
 // The pixel in the middle of a block of factor × factor, which a pixel of a smaller picture stands for.
@@ -114,8 +104,6 @@ void DrawOutline(const OutlinePass& pass, double strength, std::span<const std::
     bool has_last = false;
     std::uint16_t last_ink[4] = {};
     for (std::size_t i = part.begin(); i != part.end(); ++i) {
-      while (i + kAtOnce <= part.end() && HasNone(cover.share.data() + i)) i += kAtOnce;
-      if (i == part.end()) break;
       if (!(cover.share[i] > 0.0f)) continue;
       std::uint16_t texel[4] = {pass.ink[0], pass.ink[1], pass.ink[2], 65535};
       if (of_paint) {

@@ -23,20 +23,18 @@ void CoverBlocksHere(const PieceAtRow& at, std::size_t count, float* shares, std
   const auto within = [](Lane x) HWY_ATTR { return Min(Max(x, 0.0f), 1.0f); };
   for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
     const Lane had = hn::LoadU(d, shares + i);
-    if (!hn::AllFalse(d, hn::Lt(had.v, hn::Set(d, 1.0f)))) {
-      const Lane right = Lane(hn::Iota(d, static_cast<float>(i))) + at.right;
-      const Lane place = within((right * along_x + down * along_y) * at.per_squared);
-      const Lane off_x = right - along_x * place, off_y = down - along_y * place;
-      const Lane thick = at.from_width + at.wider * place;
-      const Lane edge = Max(thick, 1.0f) * 0.5f + 0.5f - Sqrt(off_x * off_x + off_y * off_y);
-      const Lane share = within(edge) * Min(thick, 1.0f);
-      const Choice more = Less(had, share);
-      hn::StoreU(Select(more, share, had).v, d, shares + i);
-      if (owners) {
-        const auto owner = hn::IfThenElse(hn::RebindMask(du, more), hn::Set(du, at.owner), hn::LoadU(du, owners + i));
-        hn::StoreU(owner, du, owners + i);
-      }
-    }
+    if (hn::AllFalse(d, Less(had, 1.0f))) continue;
+    const Lane right = Lane(hn::Iota(d, static_cast<float>(i))) + at.right;
+    const Lane place = within((right * along_x + down * along_y) * at.per_squared);
+    const Lane off_x = right - along_x * place, off_y = down - along_y * place;
+    const Lane thick = at.from_width + at.wider * place;
+    const Lane edge = Max(thick, 1.0f) * 0.5f + 0.5f - Sqrt(off_x * off_x + off_y * off_y);
+    const Lane share = within(edge) * Min(thick, 1.0f);
+    const Choice more = Less(had, share);
+    hn::StoreU(Select(more, share, had).v, d, shares + i);
+    if (!owners) continue;
+    const auto owner = hn::IfThenElse(hn::RebindMask(du, more), hn::Set(du, at.owner), hn::LoadU(du, owners + i));
+    hn::StoreU(owner, du, owners + i);
   }
 }
 

@@ -8,7 +8,8 @@ from selenium.webdriver.chrome.service import Service
 def chromium(size):
     """A browser whose window has this size, "WIDTH,HEIGHT"."""
     options = webdriver.ChromeOptions()
-    for word in ("--headless=new", "--disable-gpu", "--disable-dev-shm-usage", "--hide-scrollbars", f"--window-size={size}"):
+    for word in ("--headless=new", "--disable-gpu", "--disable-dev-shm-usage", "--hide-scrollbars",
+                 f"--window-size={size}"):
         options.add_argument(word)
     if os.geteuid() == 0:
         options.add_argument("--no-sandbox")  # Chromium's sandbox does not run as root

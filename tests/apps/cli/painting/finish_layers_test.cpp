@@ -62,8 +62,8 @@ class CliFinishLayers : public CliTest {
     if (!zip) return {};
     EXPECT_TRUE(zip->Has("mergedimage.png") && zip->Has("Thumbnails/thumbnail.png"));
     const std::string stack = TextOf(*zip->Read("stack.xml", 1 << 20));
-    const std::regex layer(
-        R"re(<layer name="([^"]*)" src="([^"]*)" x="0" y="0" opacity="1.00" visibility="(\w*)" composite-op="([^"]*)"/>)re");
+    const std::regex layer(R"re(<layer name="([^"]*)" src="([^"]*)" x="0" y="0" opacity="1.00" )re"
+                           R"re(visibility="(\w*)" composite-op="([^"]*)"/>)re");
     std::vector<ReadLayer> layers;
     for (std::sregex_iterator one(stack.begin(), stack.end(), layer), end; one != end; ++one) {
       const auto png = zip->Read((*one)[2], 1 << 24);
