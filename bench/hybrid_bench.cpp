@@ -1,8 +1,9 @@
-// The effect of `hybrid` on a picture of large chunks: seams, and the difference of its tone from the Lit Sphere's,
-// which is the surface's own. Prints the table of docs/hybrid.md.
+// What `hybrid` does to pictures of large chunks: their seams, their distance from the painting, and how far their tone
+// is off. Prints the tables of docs/hybrid.md.
+#include <array>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,37 +14,28 @@
 #include "guidegen/guidegen.h"
 #include "guidegen/load/load_scene.h"
 #include "guidegen/scene/framing.h"
-#include "measure/mosaic/repetition.h"
+#include "pipeline/variant/variant_error.h"
 #include "transfer/transfer.h"
 
 namespace scumble {
 namespace {
 
-struct Painted {
-  Picture picture;
-  SourceField field;
-  double guide_error = 0.0;  // degrees, mean
-};
+using SharedGuides = std::shared_ptr<const GuideSet>;
 
-Painted Paint(Style style, const GuideSet& guides) {
-  style.paper = {};
-  const PreparedStyle prepared = OrStop(Prepare(style, guides.height()));
-  TransferScratch scratch;
-  Painted painted;
-  TransferOptions options;
-  options.keep_field = true;
-  OrStop(Transfer(prepared, guides, options, scratch, painted.picture));
-  painted.field = std::move(scratch.field);
-  double sum = 0.0, count = 0.0;
-  for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
-    if (painted.field.level[i] == SourceField::kNoSource) continue;
-    const glm::dvec3 a = guides.Vec3(Layer::kNormal, i);
-    const glm::dvec3 b = prepared.exemplar->Normal(painted.field.x[i], painted.field.y[i]);
-    sum += std::acos(std::min(1.0, glm::dot(a, b))) * 180.0 / 3.14159265358979, count += 1.0;
-  }
-  painted.guide_error = sum / count;
-  return painted;
-}
+const std::vector<std::string> kStyles = {"oil", "watercolour", "pastel", "gouache", "charcoal", "graphite"};
+
+struct Way {
+  const char* name;
+  Method method;
+  float threshold;
+  double hybrid;
+};
+constexpr std::array kWays = {
+    Way{"Lit Sphere", Method::kLitSphere, 0.08f, 0.0},     Way{"threshold 0.08", Method::kStyleBlit, 0.08f, 0.0},
+    Way{"threshold 0.16", Method::kStyleBlit, 0.16f, 0.0}, Way{"0.16, hybrid 16", Method::kStyleBlit, 0.16f, 16.0},
+    Way{"threshold 0.4", Method::kStyleBlit, 0.4f, 0.0},   Way{"0.4, hybrid 8", Method::kStyleBlit, 0.4f, 8.0},
+    Way{"0.4, hybrid 16", Method::kStyleBlit, 0.4f, 16.0}, Way{"0.4, hybrid 32", Method::kStyleBlit, 0.4f, 32.0},
+};
 
 // Root mean square of the differences of two blurred pictures, in steps of 8-bit sRGB.
 double ToneDifference(const Picture& a, const Picture& b, const std::vector<std::uint8_t>& covered) {
@@ -60,49 +52,44 @@ double ToneDifference(const Picture& a, const Picture& b, const std::vector<std:
   return std::sqrt(sum / count);
 }
 
-// The amount of texture: root mean square of the difference between a picture and its own blur.
-double Texture(const Picture& picture, const std::vector<std::uint8_t>& covered) {
-  const Picture smooth = internal::MaskedBlur(picture, covered, 4.0);
-  double sum = 0.0, count = 0.0;
-  for (std::size_t i = 0; i < covered.size(); ++i) {
-    if (!covered[i]) continue;
-    for (int c = 0; c < 3; ++c) {
-      const double d = (double(picture.rgba[4 * i + c]) - smooth.rgba[4 * i + c]) / 257.0;
-      sum += d * d, count += 1.0;
-    }
+// A style's cells of the table, by way.
+std::vector<std::string> CellsOf(const std::string& name, const SharedGuides& guides) {
+  Style style = OrStop(LoadStyle(std::string(SCUMBLE_SOURCE_DIR) + "/exemplars/" + name, {}));
+  style.paper = {};
+  PreparedStyle own = OrStop(Prepare(style, guides->height()));
+  const double exposure = MeasureExposure({&own, 1}, *guides).value_or(0.0);
+  const TradeReference reference(guides, std::move(own), exposure, 0);
+  const GuidedTexture paint = OrStop(reference.Texture());
+  std::vector<std::uint8_t> covered(guides->pixel_count());
+  for (std::size_t i = 0; i < covered.size(); ++i) covered[i] = guides->Plane(Layer::kCoverage)[i] >= 1.0f;
+  std::vector<std::string> cells;
+  Picture sphere;
+  for (const Way& way : kWays) {
+    style.transfer.method = way.method, style.transfer.threshold = way.threshold, style.transfer.hybrid = way.hybrid;
+    TransferOptions options;
+    options.keep_field = true, options.exposure = exposure;
+    TransferScratch scratch;
+    Picture picture;
+    OrStop(Transfer(OrStop(Prepare(style, guides->height())), *guides, options, scratch, picture));
+    if (way.method == Method::kLitSphere) sphere = picture;
+    TradeMeasure measure;
+    OrStop(reference.MeasureTexture(paint, picture, measure));
+    OrStop(reference.MeasureMosaic(picture, scratch.field, measure));
+    char cell[64];
+    std::snprintf(cell, sizeof cell, "%+.0f%%, %.3f, %.1f", 100.0 * measure.seam_excess.value(),
+                  measure.texture.value(), ToneDifference(picture, sphere, covered));
+    cells.emplace_back(cell);
   }
-  return std::sqrt(sum / count);
+  return cells;
 }
 
-void Measure(const GuideSet& guides, const std::string& name) {
-  Style style = OrStop(LoadStyle(std::string(SCUMBLE_SOURCE_DIR) + "/exemplars/" + name, {}));
-  std::vector<std::uint8_t> covered(guides.pixel_count());
-  for (std::size_t i = 0; i < covered.size(); ++i) covered[i] = guides.Plane(Layer::kCoverage)[i] >= 1.0f;
-  const double own = std::exchange(style.transfer.hybrid, 0.0);
-  style.transfer.method = Method::kLitSphere;
-  const Painted sphere = Paint(style, guides);
-  style.transfer.method = Method::kStyleBlit;
-  const auto row = [&](const std::string& what, const Painted& made) {
-    const SourceField& field = made.field;
-    const SourcePlanes planes{field.width, field.height, field.x, field.y, covered, field.exemplar};
-    std::printf("| %s | %s | %+.0f%% | %.1f | %.1f | %.1f° |\n", name.c_str(), what.c_str(),
-                100.0 * MeasureSeams(made.picture, planes).excess,
-                ToneDifference(made.picture, sphere.picture, covered), Texture(made.picture, covered),
-                made.guide_error);
-    std::fflush(stdout);
-  };
-  row("Lit Sphere", sphere);
-  style.transfer.hybrid = own;
-  row("as it is", Paint(style, guides));
-  style.transfer.hybrid = 0.0;
-  style.transfer.threshold = 0.4f;
-  row("threshold 0.4", Paint(style, guides));
-  for (const double sigma : {8.0, 16.0, 32.0}) {
-    style.transfer.hybrid = sigma;
-    char text[60];
-    std::snprintf(text, sizeof text, "threshold 0.4, hybrid %g", sigma);
-    row(text, Paint(style, guides));
-  }
+SharedGuides GuidesOfSuzanne() {
+  Scene scene = OrStop(LoadScene(std::string(SCUMBLE_SOURCE_DIR) + "/scenes/suzanne.glb"));
+  const PreparedView view = OrStop(PrepareView(scene, "", std::nullopt, 16.0 / 9.0, false));
+  GuidegenOptions options;
+  options.width = 1280, options.height = 720;
+  options.layers.Add(Layer::kLuminance), options.samples = 16;  // for styles with several exemplars
+  return std::make_shared<const GuideSet>(std::move(OrStop(RenderGuides(scene, view.camera, options)).guides));
 }
 
 }  // namespace
@@ -110,13 +97,17 @@ void Measure(const GuideSet& guides, const std::string& name) {
 
 int main() {
   using namespace scumble;
-  Scene scene = OrStop(LoadScene(std::string(SCUMBLE_SOURCE_DIR) + "/scenes/suzanne.glb"));
-  const PreparedView view = OrStop(PrepareView(scene, "", std::nullopt, 16.0 / 9.0, false));
-  GuidegenOptions options;
-  options.width = 1280, options.height = 720;
-  const GuideSet guides = std::move(OrStop(RenderGuides(scene, view.camera, options)).guides);
-  std::printf(
-      "| style | way | seam excess | tone off the Lit Sphere's | texture | guide error |\n|---|---|---|---|---|---|\n");
-  for (const char* name : {"charcoal", "graphite", "oil", "watercolour"}) Measure(guides, name);
+  const SharedGuides guides = GuidesOfSuzanne();
+  std::vector<std::vector<std::string>> columns;
+  for (const std::string& style : kStyles) columns.push_back(CellsOf(style, guides));
+  for (std::size_t first = 0; first < kStyles.size(); first += 3) {
+    std::printf("| seams, texture, tone off | %s | %s | %s |\n|---|---|---|---|\n", kStyles[first].c_str(),
+                kStyles[first + 1].c_str(), kStyles[first + 2].c_str());
+    for (std::size_t w = 0; w < kWays.size(); ++w) {
+      std::printf("| %s | %s | %s | %s |\n", kWays[w].name, columns[first][w].c_str(), columns[first + 1][w].c_str(),
+                  columns[first + 2][w].c_str());
+    }
+    std::printf("\n");
+  }
   return 0;
 }

@@ -16,4 +16,10 @@ T OrStop(Expected<T> result) {
   std::exit(1);
 }
 
+inline void OrStop(const Status& status) {
+  if (status) return;
+  std::fprintf(stderr, "%s\n", status.error().message.c_str());
+  std::exit(1);
+}
+
 }  // namespace scumble

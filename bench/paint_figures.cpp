@@ -23,12 +23,6 @@ namespace {
 
 constexpr std::size_t kPatches = 512;  // all patches are searched for, as no sources are known
 
-void OrStop(const Status& status) {
-  if (status) return;
-  std::fprintf(stderr, "%s\n", status.error().message.c_str());
-  std::exit(1);
-}
-
 // Every layer that the file has.
 std::shared_ptr<const GuideSet> ReadAll(const std::string& file) {
   GuideReadOptions options;

@@ -63,7 +63,7 @@ Figures Measure(Style style, double variety, const GuideSet& guides, const std::
   const std::vector<std::uint8_t> covered(guides.pixel_count(), 1);
   const SourcePlanes planes{field.width, field.height, field.x, field.y, covered, field.exemplar};
   figures.repetition = SourceRepetition(planes);
-  const SeamStrength seams = MeasureSeams(picture, planes);
+  const SeamStrength seams = MeasureSeams(picture, planes, guides);
   figures.seam_excess = seams.excess;
   figures.border_share = double(seams.border_pairs) / double(seams.border_pairs + seams.inside_pairs);
   figures.tone_spread = ToneSpread(picture, {0, 0, field.width, field.height}, 16.0);

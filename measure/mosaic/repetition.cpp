@@ -12,6 +12,8 @@
 namespace scumble {
 namespace {
 
+constexpr float kSmoothCosine = 0.9659258f;  // 15 degrees
+
 glm::vec3 LabAt(const Picture& picture, int x, int y) {
   const std::uint16_t* pixel = picture.At(x, y);
   return OklabFromLinear({Srgb16ToLinear(pixel[0]), Srgb16ToLinear(pixel[1]), Srgb16ToLinear(pixel[2])});
@@ -97,14 +99,19 @@ double ToneSpread(const Picture& picture, const PictureRegion& region, double si
   return std::sqrt(variance / static_cast<double>(tones.size()));
 }
 
-SeamStrength MeasureSeams(const Picture& picture, const SourcePlanes& planes) {
+SeamStrength MeasureSeams(const Picture& picture, const SourcePlanes& planes, const GuideSet& guides) {
   SCUMBLE_CHECK(picture.width == planes.width && picture.height == planes.height);
+  SCUMBLE_CHECK(guides.width() == planes.width && guides.height() == planes.height);
+  const std::span<const float> object =
+      guides.Has(Layer::kObject) ? guides.Plane(Layer::kObject) : std::span<const float>();
   double across = 0.0, within = 0.0;
   SeamStrength seams;
   const auto add = [&](int x, int y, int dx, int dy) {
     if (x + dx >= planes.width || y + dy >= planes.height) return;
     const std::size_t a = std::size_t(y) * planes.width + x, b = a + std::size_t(dy) * planes.width + std::size_t(dx);
     if (!planes.covered[a] || !planes.covered[b]) return;
+    if (!object.empty() && object[a] != object[b]) return;
+    if (!(glm::dot(guides.Vec3(Layer::kNormal, a), guides.Vec3(Layer::kNormal, b)) > kSmoothCosine)) return;
     const glm::vec3 d = LabAt(picture, x, y) - LabAt(picture, x + dx, y + dy);
     const double length = std::sqrt(double(d.x) * d.x + double(d.y) * d.y + double(d.z) * d.z);
     if (SameChunk(planes, a, b, dx, dy))

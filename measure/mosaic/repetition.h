@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 
+#include "core/image/guides.h"
 #include "measure/mosaic/coherence.h"
 #include "scumble/picture.h"
 
@@ -54,7 +55,9 @@ struct SeamStrength {
   std::size_t inside_pairs = 0;
 };
 
-// Right and lower neighbours that are both covered; a chunk shares one offset and exemplar. O(pixels).
-SeamStrength MeasureSeams(const Picture& picture, const SourcePlanes& planes);
+// Right and lower neighbours on one smooth surface: both covered, of one object, and with normals less than 15 degrees
+// apart. Where the surface itself ends or turns, colours change for that reason, and no seam is to blame. A chunk
+// shares one offset and exemplar. `guides` are of the picture's size; without ids all is one object. O(pixels).
+SeamStrength MeasureSeams(const Picture& picture, const SourcePlanes& planes, const GuideSet& guides);
 
 }  // namespace scumble

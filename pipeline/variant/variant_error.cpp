@@ -187,7 +187,7 @@ Status TradeReference::MeasureMosaic(const Picture& picture, const SourceField& 
   SCUMBLE_ASSIGN(measure.guide_degrees, MeanSourceDegrees(Target(picture), Exemplars(), mosaic.planes));
   const CoherenceReport coherence = MeasureCoherence(mosaic.planes);
   measure.coherence = coherence.share, measure.chunk_area = coherence.mean_chunk_area;
-  measure.seam_excess = MeasureSeams(picture, mosaic.planes).excess;
+  measure.seam_excess = MeasureSeams(picture, mosaic.planes, *guides_).excess;
   measure.repetition = SourceRepetition(mosaic.planes);
   return Ok();
 }

@@ -116,10 +116,20 @@ TEST(SourceRepetition, CountsHowOftenASourceShows) {
   EXPECT_EQ(SourceRepetition(none.Planes()), 0.0);
 }
 
+// A flat wall, of one object.
+GuideSet FlatGuides() {
+  GuideSet guides(Wall::kSize, Wall::kSize);
+  for (const Layer layer : {Layer::kCoverage, Layer::kNormal, Layer::kDepth, Layer::kObject}) guides.Add(layer);
+  for (float& z : guides.Plane(Layer::kNormal, 2)) z = 1.0f;
+  for (float& object : guides.Plane(Layer::kObject)) object = 1.0f;
+  return guides;
+}
+
 TEST(Seams, AreTheExcessAlongBorders) {
   const Wall wall(16, true);
+  const GuideSet guides = FlatGuides();
   // White noise: neighbours differ as much inside as across.
-  const SeamStrength noise = MeasureSeams(TiledNoise(64, 0, 0), wall.Planes());
+  const SeamStrength noise = MeasureSeams(TiledNoise(64, 0, 0), wall.Planes(), guides);
   EXPECT_EQ(noise.border_pairs, 2u * 3 * 64);
   EXPECT_NEAR(noise.excess, 0.0, 0.1);
   // A ramp inside each tile that jumps back at its end: 15 steps across against 1 inside, along rows only.
@@ -130,10 +140,30 @@ TEST(Seams, AreTheExcessAlongBorders) {
       pixel[0] = pixel[1] = pixel[2] = static_cast<std::uint16_t>(20000 + 500 * (x % 16)), pixel[3] = 65535;
     }
   }
-  const SeamStrength seams = MeasureSeams(ramp, wall.Planes());
+  const SeamStrength seams = MeasureSeams(ramp, wall.Planes(), guides);
   EXPECT_NEAR(seams.along_borders / seams.inside, 15.0, 0.8);
   EXPECT_NEAR(seams.excess, seams.along_borders / seams.inside - 1.0, 1e-12);
-  EXPECT_EQ(MeasureSeams(ramp, Wall(64, true).Planes()).excess, 0.0) << "one chunk has no borders";
+  EXPECT_EQ(MeasureSeams(ramp, Wall(64, true).Planes(), guides).excess, 0.0) << "one chunk has no borders";
+}
+
+// The tiles' borders at rows and columns of 16, 32 and 48 are the surface's own: an object ends there, or it turns.
+TEST(Seams, AreNotWhereTheSurfaceItselfEndsOrTurns) {
+  const Wall wall(16, true);
+  const Picture noise = TiledNoise(64, 0, 0);
+  GuideSet objects = FlatGuides(), folded = FlatGuides(), gentle = FlatGuides();
+  for (int y = 0; y < Wall::kSize; ++y) {
+    for (int x = 0; x < Wall::kSize; ++x) {
+      const std::size_t i = objects.Index(x, y);
+      objects.Plane(Layer::kObject)[i] = static_cast<float>(1 + x / 16);
+      const bool odd = (x / 16) % 2;
+      folded.Plane(Layer::kNormal, 0)[i] = odd ? 0.28f : 0.0f, folded.Plane(Layer::kNormal, 2)[i] = odd ? 0.96f : 1.0f;
+      gentle.Plane(Layer::kNormal, 0)[i] = odd ? 0.25f : 0.0f;
+      gentle.Plane(Layer::kNormal, 2)[i] = odd ? 0.96824584f : 1.0f;
+    }
+  }
+  EXPECT_EQ(MeasureSeams(noise, wall.Planes(), objects).border_pairs, 3u * 64);
+  EXPECT_EQ(MeasureSeams(noise, wall.Planes(), folded).border_pairs, 3u * 64) << "16 degrees";
+  EXPECT_EQ(MeasureSeams(noise, wall.Planes(), gentle).border_pairs, 2u * 3 * 64) << "14.5 degrees";
 }
 
 }  // namespace
