@@ -1,5 +1,6 @@
 #include "measure/texture/guided_texture.h"
 
+#include <hwy/contrib/sort/vqsort.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -91,16 +92,19 @@ CellPixels PixelsOf(const FeatureGroup& group, std::uint8_t exemplar, const Coun
 }
 
 std::vector<double> DeviationsOf(const FeatureGroup& group, const CellPixels& cells, double least) {
-  std::vector<double> deviations;
-  for (const auto& plane : group.planes) {
+  std::vector<double> deviations(group.count());
+  tbb::parallel_for(std::size_t{0}, deviations.size(), [&](std::size_t f) {
     double sum = 0.0, squares = 0.0, count = 0.0;
     for (const Pixels& pixels : cells) {
-      for (const std::uint32_t i : pixels) sum += plane[i], squares += double(plane[i]) * plane[i], count += 1.0;
+      for (const std::uint32_t i : pixels) {
+        const double value = group.At(f, i);
+        sum += value, squares += value * value, count += 1.0;
+      }
     }
     const double mean = count > 0.0 ? sum / count : 0.0;
     const double variance = count > 0.0 ? std::max(0.0, squares / count - mean * mean) : 0.0;
-    deviations.push_back(std::max(least, std::sqrt(variance)));
-  }
+    deviations[f] = std::max(least, std::sqrt(variance));
+  });
   return deviations;
 }
 
@@ -126,14 +130,25 @@ std::vector<Weights> SlicesOf(const std::vector<double>& deviations, std::size_t
   return slices;
 }
 
-Quantiles QuantilesOf(const FeatureGroup& group, const Pixels& pixels, const Weights& weights) {
+// The features of a cell's pixels, kMostPixels at most, evenly: by feature, a value for each pixel.
+std::vector<std::vector<float>> SampledFeatures(const FeatureGroup& group, const Pixels& pixels) {
   const std::size_t count = std::min(pixels.size(), kMostPixels);
-  std::vector<float> values(count);
+  std::vector<std::vector<float>> features(group.count(), std::vector<float>(count));
   for (std::size_t k = 0; k < count; ++k) {
     const std::uint32_t i = pixels[k * pixels.size() / count];
-    for (std::size_t f = 0; f < weights.size(); ++f) values[k] += weights[f] * group.planes[f][i];
+    for (std::size_t f = 0; f < features.size(); ++f) features[f][k] = group.At(f, i);
   }
-  std::sort(values.begin(), values.end());
+  return features;
+}
+
+Quantiles QuantilesOf(const std::vector<std::vector<float>>& features, const Weights& weights) {
+  const std::size_t count = features[0].size();
+  std::vector<float> values(count);
+  for (std::size_t f = 0; f < weights.size(); ++f) {
+    if (weights[f] == 0.0f) continue;
+    for (std::size_t k = 0; k < count; ++k) values[k] += weights[f] * features[f][k];
+  }
+  hwy::Sorter()(values.data(), count, hwy::SortAscending());
   Quantiles quantiles;
   for (std::size_t q = 0; q < kQuantiles; ++q) quantiles[q] = values[(2 * q + 1) * count / (2 * kQuantiles)];
   return quantiles;
@@ -144,9 +159,8 @@ Distributions DistributionsOf(const FeatureGroup& group, std::size_t number, con
   result.slices = SlicesOf(DeviationsOf(group, cells, number == 0 ? kLeastTone : kLeastStroke), number);
   tbb::parallel_for(std::size_t{0}, kCells, [&](std::size_t cell) {
     if (cells[cell].size() < kLeastPixels) return;
-    for (const Weights& weights : result.slices) {
-      result.cells[cell].push_back(QuantilesOf(group, cells[cell], weights));
-    }
+    const auto features = SampledFeatures(group, cells[cell]);
+    for (const Weights& weights : result.slices) result.cells[cell].push_back(QuantilesOf(features, weights));
   });
   return result;
 }
@@ -161,8 +175,9 @@ struct Sum {
     std::array<double, kCells> of_cell = {};
     tbb::parallel_for(std::size_t{0}, kCells, [&](std::size_t cell) {
       if (cells[cell].size() < kLeastPixels || exemplar.cells[cell].empty()) return;
+      const auto features = SampledFeatures(group, cells[cell]);
       for (std::size_t s = 0; s < exemplar.slices.size(); ++s) {
-        const Quantiles here = QuantilesOf(group, cells[cell], exemplar.slices[s]);
+        const Quantiles here = QuantilesOf(features, exemplar.slices[s]);
         for (std::size_t q = 0; q < kQuantiles; ++q) of_cell[cell] += std::abs(here[q] - exemplar.cells[cell][s][q]);
       }
       of_cell[cell] /= double(kQuantiles * exemplar.slices.size());

@@ -43,7 +43,7 @@ class GuidedTexture {
 
   // `surface`: by pixel of the target the number of its surface, not below 0: strokes are not measured across its
   // border. Pixels with a coverage below 0.999 are left out, `free` is not read. Errors (kInput): planes of a wrong
-  // size. O(pixels); about 180 bytes for each.
+  // size. O(pixels); about 90 bytes for each.
   Expected<GuidedTextureReport> Measure(const EnergyTarget& target, std::span<const float> surface,
                                         int threads = 0) const;
 

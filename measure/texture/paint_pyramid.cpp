@@ -72,26 +72,12 @@ std::vector<std::uint8_t> ExemplarsWithin(const Level& level, int reach) {
   return exemplar;
 }
 
-// The mean of the values on either side less the one in the middle.
-Plane SecondDifference(const Plane& plane, const Level& level, int dx, int dy) {
-  Plane result(plane.size());
-  tbb::parallel_for(1, std::max(1, level.height - 1), [&](int y) {
-    const float *here = plane.data() + level.Index(0, y), *before = plane.data() + level.Index(0, y - dy) - dx,
-                *after = plane.data() + level.Index(0, y + dy) + dx;
-    float* const out = result.data() + level.Index(0, y);
-    for (int x = 1; x < level.width - 1; ++x) out[x] = 0.5f * (before[x] + after[x]) - here[x];
-  });
-  return result;
-}
-
 FeatureGroup StrokesOf(const Level& level) {
   constexpr int kReach = 3;  // two deviations of the Gaussian, and the neighbour
   FeatureGroup group;
-  for (const Plane& plane : level.detail) {
-    const Plane fine = GaussianBlur(plane, level.width, level.height, 1.0);
-    for (const auto& [dx, dy] : {std::pair(1, 0), {0, 1}, {1, 1}, {1, -1}}) {
-      group.planes.push_back(SecondDifference(fine, level, dx, dy));
-    }
+  group.width = level.width, group.strokes = true;
+  for (std::size_t c = 0; c < 3; ++c) {
+    group.colors[c] = GaussianBlur(level.detail[c], level.width, level.height, 1.0);
   }
   group.exemplar = ExemplarsWithin(level, kReach);
   group.normal = level.normal;
@@ -107,7 +93,8 @@ PaintFeatures FeaturesOf(const Picture& picture, const NormalPlanes& normal, std
   level.surface = std::move(surface);
   PaintFeatures features;
   FeatureGroup& raw = features[0];
-  raw.planes.assign(3, Plane(level.surface.size()));
+  raw.width = level.width;
+  for (Plane& plane : raw.colors) plane.resize(level.surface.size());
   for (Plane& plane : level.detail) plane.resize(level.surface.size());
   for (std::size_t c = 0; c < 2; ++c) level.normal[c].assign(normal[c].begin(), normal[c].end());
   tbb::parallel_for(0, level.height, [&](int y) {
@@ -117,7 +104,7 @@ PaintFeatures FeaturesOf(const Picture& picture, const NormalPlanes& normal, std
       const NormalTone& tone = *tones[ExemplarOf(level.surface[i])];
       const glm::vec3 color = OklabOf(picture.rgba.data() + 4 * i), off = color - tone.At(normal[0][i], normal[1][i]);
       for (int c = 0; c < 3; ++c) {
-        raw.planes[std::size_t(c)][i] = color[c], level.detail[std::size_t(c)][i] = off[c];
+        raw.colors[std::size_t(c)][i] = color[c], level.detail[std::size_t(c)][i] = off[c];
       }
     }
   });

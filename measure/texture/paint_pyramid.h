@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
@@ -15,11 +16,26 @@ namespace scumble::internal {
 inline constexpr int kOctaves = 4;
 inline constexpr std::uint8_t kNoExemplar = 0xff;
 
-// Values of one octave. Its picture is the whole one, each side divided by 2 once an octave.
+// Features of one octave. Its picture is the whole one, each side divided by 2 once an octave.
 struct FeatureGroup {
-  std::vector<std::vector<float>> planes;    // by feature
+  static constexpr std::size_t kDirections = 4;  // of bars
+
+  int width = 0;                             // of a row
+  bool strokes = false;                      // bars of the colours, or else the colours themselves
+  std::array<std::vector<float>, 3> colors;  // L, a and b
   std::vector<std::uint8_t> exemplar;        // the pixel's own, or kNoExemplar where the features see two surfaces
   std::array<std::vector<float>, 2> normal;  // x and y
+
+  std::size_t count() const { return strokes ? colors.size() * kDirections : colors.size(); }
+  // Feature f at a pixel that has an exemplar. Bars are second differences: the mean of the values on either side less
+  // the one in the middle.
+  float At(std::size_t f, std::size_t pixel) const {
+    if (!strokes) return colors[f][pixel];
+    const std::size_t row = std::size_t(width), steps[kDirections] = {1, row, row + 1, row - 1};
+    const float* const here = colors[f / kDirections].data() + pixel;
+    const std::size_t step = steps[f % kDirections];
+    return 0.5f * (*(here - step) + *(here + step)) - *here;
+  }
 };
 
 // The first group is tone: Oklab's L, a and b of each pixel. The others are strokes: what the picture has beside the

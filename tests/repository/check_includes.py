@@ -54,7 +54,7 @@ THIRD_PARTY = {
     "stb_image": {"guidegen"},
     "oneapi/tbb": {"guidegen", "transfer"},
     "tbb/": {"cli", "filter", "finish", "guidegen", "measure", "pipeline", "transfer"},
-    "hwy/": {"filter", "finish", "guidegen", "transfer"},
+    "hwy/": {"filter", "finish", "guidegen", "measure", "transfer"},
     "toml++/": {"style"},
     "apriltag/": {"style"},
     "fmt/": {"measure", "cli", "pipeline", "studio"},
