@@ -7,25 +7,13 @@
 #include "core/style/color_ramp.h"
 #include "core/style/finish_keys.h"
 #include "core/style/finish_mask_keys.h"
+#include "core/style/finish_names.h"
 #include "core/style/finish_tables.h"
 
 namespace scumble {
 namespace {
 
 constexpr std::size_t kMaxPresetBytes = 1 << 20;
-
-// One name, or a list of them.
-Status ReadNames(const toml::node& node, std::vector<std::string>& names) {
-  if (const auto* one = node.as_string()) return names = {one->get()}, Ok();
-  const auto* list = node.as_array();
-  if (!list) return UsageError("expected names in quotes, as [\"Tree*\", \"House\"]");
-  for (const auto& item : *list) {
-    const auto* name = item.as_string();
-    if (!name) return UsageError("expected names in quotes, as [\"Tree*\", \"House\"]");
-    names.push_back(name->get());
-  }
-  return Ok();
-}
 
 // Files that a pass names stand beside the file that names them.
 void ResolveFiles(const std::filesystem::path& folder, FinishPass& pass) {
@@ -58,7 +46,7 @@ Expected<FinishPass> ReadPass(const toml::table& table, const std::string& file,
     const auto value = internal::ValueOf(node);
     Status done = Ok();
     if (name == "objects" || name == "materials") {
-      done = ReadNames(node, name == "objects" ? pass.objects : pass.materials);
+      done = internal::ReadNames(node, name == "objects" ? pass.objects : pass.materials);
     } else if (name == "name") {
       const auto* text = value ? std::get_if<std::string>(&*value) : nullptr;
       if (!text || text->empty() || text->find_first_of(".=: ") != std::string::npos)

@@ -10,6 +10,7 @@
 #include "core/image/hash.h"
 #include "core/style/color_ramp.h"
 #include "core/style/finish_mask_keys.h"
+#include "core/style/finish_names.h"
 #include "core/style/nearest_name.h"
 
 namespace scumble {
@@ -79,6 +80,11 @@ Status SetFinishKey(FinishPass& pass, const std::string& name, const KeyValue& v
     const auto* text = std::get_if<std::string>(&value);
     if (!text) return UsageError("expected names with commas between");
     std::vector<std::string>& list = name == "objects" ? pass.objects : pass.materials;
+    if (text->starts_with('[')) {
+      const auto parsed = internal::ParseToml("value = " + *text, name);
+      if (!parsed || parsed->size() != 1) return UsageError(internal::kNamesExpected);
+      return internal::ReadNames(*parsed->get("value"), list);
+    }
     list.clear();
     for (std::size_t begin = 0; begin <= text->size() && !text->empty();) {
       const std::size_t end = std::min(text->find(',', begin), text->size());

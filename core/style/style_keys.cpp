@@ -240,7 +240,7 @@ std::vector<StyleKey> MakeKeys() {
        true, "Blending", true},
       {Whole(&T::match_step, 1, kMaxMatchStep), "transfer.match_step", "1",
        "pixels from one that is matched to the next, 1 to 8; 1: all are, slowest and best", true, "Matching", false},
-      {Number(&T::scale, 1e-3, 64.0, 0.05), "transfer.scale", "1.0", "exemplar size, above 0 to 64", true,
+      {Number(&T::scale, 1e-3, 64.0, 0.05), "transfer.scale", "1.0", "exemplar size, 0.001 to 64", true,
        "Sphere and paper", true},
       {Number(&T::rim, 0.0, 16384.0, 0.5), "transfer.rim", "2",
        "exemplar pixels at the painted edge that are never used, at least", true, "Sphere and paper", true},

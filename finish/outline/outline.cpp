@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <vector>
 
@@ -32,9 +33,11 @@ void InkFromPaint(bool is_complement, std::uint16_t* texel) {
   for (int c = 0; c < 3; ++c) texel[c] = Srgb16FromLinear(linear[c]);
 }
 
-// `frame`: with the guides of the borders, which are `factor` times smaller than the picture.
+// `frame`: with the guides of the borders, which are `factor` times smaller than the picture. Pieces of lines whose
+// owner `is_masked` are left out: where they cross others, these show.
+template <class IsMasked>
 StrokeCover CoverByStrokes(const OutlinePass& pass, const FinishFrame& frame, int factor, const LineNoise& noise,
-                           BorderMap& borders, bool with_owner) {
+                           BorderMap& borders, bool with_owner, const IsMasked& is_masked) {
   // Of small guides a step of a border is several pixels of the picture: it is evened out, and spurs are left out.
   const double shortest = std::max(kShortest, kShortest * frame.scale / factor);
   std::vector<LineChain> chains = TraceLines(borders, *frame.guides, shortest, factor > 1, factor > 1 ? 1.0f : 0.5f);
@@ -47,7 +50,10 @@ StrokeCover CoverByStrokes(const OutlinePass& pass, const FinishFrame& frame, in
   tbb::parallel_for(std::size_t(0), chains.size(),
                     [&](std::size_t i) { strokes[i] = StrokeOf(pass, frame, noise, chains[i]); });
   std::vector<StrokePiece> pieces;
-  for (const auto& stroke : strokes) pieces.insert(pieces.end(), stroke.begin(), stroke.end());
+  for (const auto& stroke : strokes) {
+    std::copy_if(stroke.begin(), stroke.end(), std::back_inserter(pieces),
+                 [&](const StrokePiece& piece) { return !is_masked(piece.owner); });
+  }
   return CoverOf(pieces, frame.guides->width() * factor, frame.guides->height() * factor, with_owner);
 }
 
@@ -95,8 +101,9 @@ void DrawOutline(const OutlinePass& pass, double strength, std::span<const std::
   }
   const LineNoise noise{across ? &*across : nullptr, down ? &*down : nullptr, gaps ? &*gaps : nullptr};
   const bool of_paint = pass.color != OutlinePass::Color::kInk, with_owner = of_paint || !shares.empty();
+  const auto is_masked = [&](std::uint32_t owner) { return !shares.empty() && shares[middle(owner)] == 0; };
   const StrokeCover cover = is_field ? CoverByDistance(pass, traced, noise.gaps, borders, with_owner)
-                                     : CoverByStrokes(pass, traced, factor, noise, borders, with_owner);
+                                     : CoverByStrokes(pass, traced, factor, noise, borders, with_owner, is_masked);
   std::vector<std::uint16_t> paint;  // as it was before the lines
   if (of_paint) paint = picture.rgba;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cover.share.size(), 1 << 14), [&](const auto& part) {

@@ -94,6 +94,11 @@ std::vector<std::string> OrderDoubts(const StyleSet& styles) {
     for (const std::string& doubt : OrderDoubts(chain)) add(doubt);
     for (const std::string& doubt : IdleGuides(style, chain)) add(doubt);
     if (style.transfer.edge != EdgeMode::kExemplar || !style.unpainted.empty()) continue;
+    const auto hides_paint = [](const FinishPass& pass) {
+      return std::holds_alternative<FillPass>(pass.effect) && pass.at == FinishPass::Stage::kSheet &&
+             pass.strength >= 1.0 && pass.objects.empty() && pass.materials.empty() && pass.mask.empty();
+    };
+    if (std::any_of(chain.begin(), chain.end(), hides_paint)) continue;  // its edge does not show
     for (const FinishPass& pass : chain) {
       const auto* outline = std::get_if<OutlinePass>(&pass.effect);
       if (!outline || !(pass.strength > 0.0) || !(outline->of_class[std::size_t(LineClass::kSilhouette)] > 0.0))

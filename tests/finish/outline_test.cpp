@@ -111,6 +111,43 @@ TEST(Outline, OfUpsampledGuidesHasNoBlocks) {
   EXPECT_NEAR(area / (std::numbers::pi * 120.0 * 2.5), 1.0, 0.05);
 }
 
+// Two boxes side by side, of which only one's lines are wanted: those of the other leave no hole in them.
+TEST(Outline, MaskedLinesHideNoOthers) {
+  constexpr int kSide = 120;
+  for (const bool wants_left : {true, false}) {
+    GuideSet guides(kSide, kSide);
+    for (const Layer layer : {Layer::kCoverage, Layer::kNormal, Layer::kDepth, Layer::kObject, Layer::kMaterial}) {
+      guides.Add(layer);
+    }
+    FinishStep step;
+    OutlinePass pass;
+    pass.width = 12.0;
+    step.pass.effect = pass;
+    step.share.assign(guides.pixel_count(), 0);
+    for (int y = 20; y < 100; ++y) {
+      for (int x = 20; x < 100; ++x) {
+        const std::size_t i = guides.Index(x, y);
+        const bool is_left = x < 60;
+        guides.Plane(Layer::kCoverage)[i] = 1.0f, guides.Plane(Layer::kNormal, 2)[i] = 1.0f;
+        guides.Plane(Layer::kDepth)[i] = is_left == wants_left ? 2.0f : 1.0f;
+        guides.Plane(Layer::kObject)[i] = is_left ? 1.0f : 2.0f;
+        step.share[i] = is_left == wants_left ? 65535 : 0;
+      }
+    }
+    FinishFrame frame;
+    frame.guides = &guides;
+    Picture picture(kSide, kSide);
+    ASSERT_TRUE(ApplyFinish(std::span(&step, 1), FinishPass::Stage::kPaint, frame, 0, {}, picture));
+    const int first = wants_left ? 26 : 61;
+    for (const int edge : {20, 100}) {
+      for (int y = edge - 4; y < edge + 4; ++y) {
+        for (int x = first; x < first + 33; ++x) EXPECT_EQ(picture.At(x, y)[3], 65535) << x << ' ' << y;
+      }
+    }
+    EXPECT_EQ(picture.At(wants_left ? 80 : 40, 20)[3], 0) << "the other box";
+  }
+}
+
 TEST(Outline, ThinnerThanAPixelIsFainter) {
   OutlinePass pass;
   pass.width = 0.4, pass.min_width = 0.0;

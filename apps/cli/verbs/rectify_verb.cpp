@@ -160,7 +160,10 @@ Expected<ExitCode> RunRectify(const CLI::App& verb, const RectifyRequest& reques
   SCUMBLE_RETURN_IF_ERROR(files.CheckOutput(request.output));
   SCUMBLE_ASSIGN(const PictureHeader header, InspectPicture(request.scan));
   SCUMBLE_RETURN_IF_ERROR(CheckScanSize(header.width, header.height, header.dpi, request.scan));
-  const std::optional<fs::path> guides = GuidesOfPainting(request.output);
+  std::optional<fs::path> guides = GuidesOfPainting(request.output);
+  const fs::path of_kit = fs::path(request.output).parent_path() / "guides.exr";  // of a painting of another name
+  std::error_code failed;
+  if (!guides && fs::is_regular_file(of_kit, failed)) guides = of_kit;
   const int kit = guides ? KitSize(*guides).value_or(0) : 0;  // 0: there is none
   RectifyOptions options;
   options.size = verb.count("--size") > 0 ? request.size : kit > 0 ? kit : request.size;

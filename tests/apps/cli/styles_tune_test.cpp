@@ -90,6 +90,8 @@ TEST_F(StylesTune, RefusesWhatCannotBeTuned) {
   ExpectError({"styles", "tune", "coarse", "--scene", "gone.glb"}, 3, {"gone.glb"});
   ExpectError({"styles", "tune", "alone.png", "--scene", Scene("suzanne.glb"), "--write", "1"}, 3,
               {"alone.png has no style.toml"});
+  ExpectError({"styles", "tune", "oil", "--scene", Scene("suzanne.glb"), "--write", "1"}, 2,
+              {"oil is a bundled style", "copy"});
 }
 
 }  // namespace

@@ -170,6 +170,10 @@ TEST_F(FinishFile, OverridesGoToPassesByName) {
   EXPECT_THAT(NoSuchFinish("finish.pen.width=3", passes).message, HasSubstr("there are outline, tones, ink"));
   EXPECT_EQ(*OverrideFinish(passes, "finish.ink.objects=Tree*,House"), 1u);
   EXPECT_THAT(passes[2].objects, ::testing::ElementsAre("Tree*", "House"));
+  EXPECT_EQ(*OverrideFinish(passes, "finish.ink.objects=[\"Ball, red\", 'Dancer']"), 1u) << "as in the file";
+  EXPECT_THAT(passes[2].objects, ::testing::ElementsAre("Ball, red", "Dancer"));
+  EXPECT_THAT(OverrideFinish(passes, "finish.ink.objects=[1]").error().message, HasSubstr("expected names in quotes"));
+  EXPECT_THAT(OverrideFinish(passes, "finish.ink.objects=[\"Ball\"").error().message, HasSubstr("names in quotes"));
   EXPECT_FALSE(OverrideFinish(passes, "finish.width=3"));
   EXPECT_FALSE(OverrideFinish(passes, "finish.ink.width=wide"));
 }
