@@ -103,6 +103,12 @@ def name_of(instance, taken):
     return name if taken[name] == 1 else f"{name}#{taken[name]}"
 
 
+def is_only_template(instance):
+    """Whether a render leaves the object itself out: what is set on the vertices or faces of its parent."""
+    parent = instance.object.original.parent
+    return not instance.is_instance and parent is not None and parent.instance_type in {"VERTS", "FACES"}
+
+
 def every_instance(depsgraph):
     """The rendered objects that may be exported, with their names: pairs of an instance and a string. An instance is
     Blender's own and only lives until the next one."""
@@ -110,7 +116,7 @@ def every_instance(depsgraph):
     for instance in depsgraph.object_instances:
         thing = instance.object
         shown = instance.is_instance or instance.show_self or (instance.show_particles and thing.particle_systems)
-        if not shown or thing.type in SILENT_TYPES:
+        if not shown or thing.type in SILENT_TYPES or is_only_template(instance):
             continue
         if thing.type == "MESH" and thing.original.type in MESH_TYPES - {"MESH"}:
             continue  # a curve's triangles, which follow the curve itself

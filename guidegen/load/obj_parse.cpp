@@ -8,6 +8,7 @@
 #include <new>
 #include <set>
 #include <sstream>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -47,11 +48,36 @@ class CornerCounter {
   std::uint32_t most_ = 0;
 };
 
+// tinyobjloader ends names at blanks. In names of materials and libraries blanks are this until they have been read.
+constexpr char kBlankInName = '\x1f';
+
+std::string WithBlanks(std::string name) {
+  std::replace(name.begin(), name.end(), kBlankInName, ' ');
+  return name;
+}
+std::string WithoutBlanks(std::string name) {
+  while (!name.empty() && IsBlank(name.back())) name.pop_back();
+  std::replace(name.begin(), name.end(), ' ', kBlankInName);
+  return name;
+}
+
+// Joins the words of the name behind `key`, which the line begins with. Returns the name; empty for other lines.
+std::string JoinName(std::string::iterator begin, std::string::iterator end, std::string_view key) {
+  if (std::string_view(begin, end).substr(0, key.size()) != key) return {};
+  const auto behind = begin + static_cast<std::ptrdiff_t>(key.size());
+  if (behind == end || !IsBlank(*behind)) return {};
+  const auto name = std::find_if_not(behind, end, IsBlank);
+  auto last = end;
+  while (last != name && IsBlank(*(last - 1))) --last;
+  std::replace(name, last, ' ', kBlankInName);
+  return WithBlanks({name, last});
+}
+
 // Turns lines into comments that tinyobjloader would store but no code here reads; line numbers stay. A subdivision tag
 // of 20 bytes becomes 360 KB, and again in each shape. The lines and points of an object are copied at each change of
 // material; the first index of each kind shows that they exist. Returns whether smoothing groups are mentioned, `s off`
-// included, which tinyobjloader does not tell from silence.
-bool PrepareText(std::string& text, CornerCounter& faces) {
+// included, which tinyobjloader does not tell from silence. `used` gets the names of materials that faces ask for.
+bool PrepareText(std::string& text, CornerCounter& faces, std::set<std::string>& used) {
   bool has_smoothing = false;
   const auto ends_line = [](char c) { return c == '\n' || c == '\r'; };
   bool has_lines = false, has_points = false;  // in this object or group
@@ -59,6 +85,8 @@ bool PrepareText(std::string& text, CornerCounter& faces) {
     const auto end = std::find_if(begin, text.end(), ends_line);
     const auto what = std::find_if_not(begin, end, IsBlank);
     begin = end == text.end() ? end : end + 1;
+    JoinName(what, end, "mtllib");
+    if (std::string name = JoinName(what, end, "usemtl"); !name.empty()) used.insert(std::move(name));
     if (what == end || what + 1 == end || !IsBlank(what[1])) continue;
     if (*what == 'f') {
       DropEmptyIndices(what, end);
@@ -114,38 +142,67 @@ void DropWholeTransparency(std::string& library, WarningCounter& warnings) {
   tell();
 }
 
-// Reads material libraries from regular files only, each file once, and names missing ones.
+// Reads material libraries from regular files only, each file once, and names missing ones. A line may name one whose
+// name has blanks, or several.
 class LibraryReader : public tinyobj::MaterialReader {
  public:
   LibraryReader(const std::filesystem::path& scene, WarningCounter& warnings) : scene_(scene), warnings_(warnings) {}
 
-  bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials,
+  bool operator()(const std::string& names, std::vector<tinyobj::material_t>* materials,
                   std::map<std::string, int>* indices, std::string* warning, std::string* error) override {
+    const Target target{materials, indices, warning, error};
+    const std::string whole = WithBlanks(names);
+    if (Read(whole, target)) return true;
+    std::vector<std::string> missing;
+    bool found = false;
+    std::istringstream words(whole);
+    for (std::string word; words >> word;) {
+      if (word != whole && Read(word, target)) {
+        found = true;
+      } else {
+        missing.push_back(word);
+      }
+    }
+    if (!found) missing = {whole};
+    for (const std::string& name : missing) {
+      warnings_.Add("a material library is missing, its objects are matt and light grey", Excerpt(name));
+    }
+    return found;
+  }
+
+  bool has_read() const { return !read_.empty(); }
+  // Of the first library that cannot be used at all.
+  const Status& fault() const { return fault_; }
+
+ private:
+  struct Target {
+    std::vector<tinyobj::material_t>* materials;
+    std::map<std::string, int>* indices;
+    std::string *warning, *error;
+  };
+
+  // False: there is no such file. Of one that cannot be used, `fault_` tells.
+  bool Read(const std::string& name, const Target& target) {
     const std::filesystem::path path = BesideScene(scene_, name);
     std::error_code missing;
     const std::filesystem::path library = std::filesystem::canonical(path, missing);
     if (!missing && read_.count(library) > 0) return true;
     const auto bytes = ReadRegularFile(path);
-    if (!bytes) {
-      warnings_.Add("a material library is missing, its objects are matt and light grey", Excerpt(name));
-      return false;
-    }
+    if (!bytes) return false;
     if (!missing) read_.insert(library);
     if (const Status readable = CheckTextEncoding(path.string(), *bytes); !readable) {
       if (fault_) fault_ = readable;
-      return false;
+      return true;
     }
     std::string text = AsTextWithoutMark(*bytes);
     DropWholeTransparency(text, warnings_);
     std::istringstream stream(std::move(text));
-    tinyobj::LoadMtl(indices, materials, &stream, warning, error);
+    tinyobj::LoadMtl(target.indices, target.materials, &stream, target.warning, target.error);
+    const std::map<std::string, int> by_name = *target.indices;
+    for (const auto& [material, index] : by_name) target.indices->insert({WithoutBlanks(material), index});
     return true;
   }
 
-  // Of the first library that cannot be used at all.
-  const Status& fault() const { return fault_; }
-
- private:
   const std::filesystem::path& scene_;
   WarningCounter& warnings_;
   Status fault_ = Ok();
@@ -168,6 +225,20 @@ std::string WhyUnreadable(const std::string& error, const std::string& text) {
          "', a face whose corners are no indices: they count from 1, or back from -1; export it again";
 }
 
+// Exporters that have no material for some faces say so by these names.
+bool IsNoMaterial(const std::string& name) { return name == "None" || name == "(null)"; }
+
+void WarnOfUnknown(const std::set<std::string>& used, const std::vector<tinyobj::material_t>& materials,
+                   WarningCounter& warnings) {
+  std::set<std::string> known;
+  for (const tinyobj::material_t& material : materials) known.insert(WithBlanks(WithoutBlanks(material.name)));
+  for (const std::string& name : used) {
+    if (known.count(name) == 0 && !IsNoMaterial(name)) {
+      warnings.Add("a material is in no library, its faces are matt and light grey", "'" + Excerpt(name, 80) + "'");
+    }
+  }
+}
+
 }  // namespace
 
 std::filesystem::path BesideScene(const std::filesystem::path& scene, std::string name) {
@@ -182,7 +253,8 @@ Status ParseObj(const std::filesystem::path& path, WarningCounter& warnings, Obj
   SCUMBLE_RETURN_IF_ERROR(CheckTextEncoding(file, bytes));
   std::string text = AsTextWithoutMark(bytes);
   CornerCounter faces;
-  contents.has_smoothing = PrepareText(text, faces);
+  std::set<std::string> used;
+  contents.has_smoothing = PrepareText(text, faces, used);
   contents.corner_counts = faces.Take();
   std::istringstream stream(std::move(text));
   LibraryReader library(path, warnings);
@@ -200,7 +272,10 @@ Status ParseObj(const std::filesystem::path& path, WarningCounter& warnings, Obj
     error = e.what();
   }
   SCUMBLE_RETURN_IF_ERROR(library.fault());
-  if (ok) return Ok();
+  if (ok) {
+    if (library.has_read()) WarnOfUnknown(used, contents.materials, warnings);
+    return Ok();
+  }
   return InputError(file + " is not a valid OBJ file: " + WhyUnreadable(error, stream.str()));
 }
 

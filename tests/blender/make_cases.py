@@ -387,7 +387,7 @@ def bounds():
     graph, result = bpy.context.evaluated_depsgraph_get(), {}
     for instance in graph.object_instances:
         name = instance.object.original.name
-        if name in {"Hidden", "InHidden", "Strands"} or (name == "Scatter" and not instance.is_instance):
+        if name in {"Hidden", "InHidden", "Strands"} or (name in {"Scatter", "Leaf"} and not instance.is_instance):
             continue
         if instance.object.type not in {"MESH", "FONT"} or (name.endswith("Words") and instance.is_instance):
             continue  # the text's mesh is listed again behind the text

@@ -153,6 +153,34 @@ TEST_F(Misread, OrdinaryTextIsNotWide) {
   }
 }
 
+// Blender writes `mtllib my model.mtl` beside "my model.obj"; others, materials with blanks in their names.
+TEST_F(Misread, NamesWithBlanksAreWhole) {
+  Write("my model.mtl", std::string("newmtl Red Paint\nKd 0.5 0 0\n"));
+  Write("two.mtl", std::string("newmtl Red\nKd 0 0.5 0\n"));
+  const std::string points = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  const auto colors = [](const Scene& scene) {
+    std::map<std::string, glm::vec4> of;
+    for (const Material& material : scene.materials) of[material.name] = material.base_color;
+    return of;
+  };
+  const Scene scene = Load(Write(
+      "a.obj", "mtllib my model.mtl\nmtllib two.mtl\n" + points + "usemtl Red Paint \nf 1 2 3\nusemtl Red\nf 1 2 3\n"));
+  EXPECT_THAT(scene.warnings, IsEmpty());
+  ASSERT_EQ(colors(scene).count("Red Paint"), 1u);
+  EXPECT_EQ(colors(scene)["Red Paint"].x, 0.5f);
+  EXPECT_EQ(colors(scene)["Red"].y, 0.5f);
+  EXPECT_EQ(colors(scene).count("default"), 0u);
+  // Several libraries in one line are all read, and what is missing is named.
+  const Scene several = Load(Write("b.obj", "mtllib two.mtl gone.mtl\n" + points + "usemtl Red\nf 1 2 3\n"));
+  EXPECT_THAT(several.warnings, ElementsAre(HasSubstr("gone.mtl")));
+  EXPECT_EQ(colors(several)["Red"].y, 0.5f);
+  EXPECT_THAT(Load(Write("c.obj", "mtllib no such.mtl\n" + points + "f 1 2 3\n")).warnings,
+              ElementsAre(HasSubstr("(no such.mtl)")));
+  EXPECT_THAT(
+      Load(Write("d.obj", "mtllib two.mtl\n" + points + "usemtl Blue Paint\nf 1 2 3\nusemtl None\nf 1 2 3\n")).warnings,
+      ElementsAre(AllOf(HasSubstr("in no library"), HasSubstr("'Blue Paint'"))));
+}
+
 // tinyobjloader would lose the first line: here the library, whose own first line is the material's name.
 TEST_F(Misread, TheMarkOfUtf8IsNoText) {
   Write("m.mtl", std::string("\xEF\xBB\xBFnewmtl red\nKd 1 0 0\n"));
