@@ -451,7 +451,7 @@ TEST_F(Greedy, ObjLinesThatNobodyLooksAtTakeNoMemory) {
   Write("m.mtl", std::string("newmtl m\nKd 1 0 0\n"));
   std::string tags, lines, changes;
   for (int i = 0; i < 1000; ++i) tags += i % 2 == 0 ? "t a 8192/8192/8192\n" : " \tt\ta 8192/8192/8192\r\n";
-  for (int i = 0; i < 3000; ++i) lines += "l 1 2\np 1 2\n", changes += "usemtl m\nusemtl none\n";
+  for (int i = 0; i < 3000; ++i) lines += "l 1 2\np 1 2\n", changes += "usemtl m\nusemtl None\n";
   const double before = PeakMegabytes();
   const Scene scene = Load(Write("a.obj", "mtllib m.mtl\n" + tags + "o A\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n" +
                                               lines + changes + "o B\nf 1 2 3\no C\nl 1 2 3\nf 3 2 1\n"));
