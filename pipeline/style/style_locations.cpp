@@ -16,6 +16,18 @@ Expected<Style> OpenStyle(const StyleRequest& request, const RunContext& context
   return LoadStyle(found, request.sets);
 }
 
+bool IsBundledStyle(const std::filesystem::path& path, const RunContext& context) {
+  for (const std::filesystem::path& root : StyleFolders(context)) {
+    for (const std::filesystem::path& style : FindStyles(root)) {
+      std::error_code failed;
+      if (std::filesystem::equivalent(style, path, failed) ||
+          std::filesystem::equivalent(style, path.parent_path(), failed))
+        return true;
+    }
+  }
+  return false;
+}
+
 Expected<fs::path> FindStyle(const std::string& name, const RunContext& context, const fs::path& base) {
   std::error_code failed;
   if (fs::exists(base / name, failed)) return base / name;

@@ -15,6 +15,9 @@ namespace scumble {
 // Folders that may hold bundled styles.
 std::vector<std::filesystem::path> StyleFolders(const RunContext& context);
 
+// Whether that is the folder of a bundled style, or a file in one.
+bool IsBundledStyle(const std::filesystem::path& path, const RunContext& context);
+
 // Where a style is: a path, relative to the folder `base`, or the name of a bundled one. A kInput error lists those.
 Expected<std::filesystem::path> FindStyle(const std::string& name, const RunContext& context,
                                           const std::filesystem::path& base = {});

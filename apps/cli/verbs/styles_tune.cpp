@@ -12,7 +12,6 @@
 #include "core/io/file/atomic_file.h"
 #include "core/io/picture_file.h"
 #include "core/style/style_edit.h"
-#include "core/style/style_file.h"
 #include "measure/report/html_page.h"
 #include "pipeline/style/style_locations.h"
 #include "pipeline/tradeoff/tune_style.h"
@@ -109,12 +108,9 @@ nlohmann::ordered_json JsonOf(const TuneReport& report) {
 Expected<fs::path> StyleFileOf(const StyleRequest& style, const RunContext& context) {
   SCUMBLE_ASSIGN(const fs::path found, FindStyle(style.style, context));
   std::error_code failed;
-  for (const fs::path& root : StyleFolders(context)) {
-    for (const fs::path& bundled : FindStyles(root)) {
-      if (!fs::equivalent(bundled, found, failed) && !fs::equivalent(bundled, found.parent_path(), failed)) continue;
-      return UsageError(style.style + " is a bundled style, which --write would change for everybody: copy " +
-                        bundled.string() + " and tune the copy");
-    }
+  if (IsBundledStyle(found, context)) {
+    return UsageError(style.style + " is a bundled style, which --write would change for everybody: copy " +
+                      found.string() + " and tune the copy");
   }
   const fs::path file = fs::is_directory(found, failed) ? found / "style.toml" : found;
   if (file.extension() != ".toml" || !fs::exists(file, failed)) {

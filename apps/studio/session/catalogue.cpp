@@ -91,15 +91,9 @@ Expected<Catalogue> MakeCatalogue(const std::string& scene, const std::vector<st
   for (const fs::path& root : StyleFolders(context)) {
     for (const fs::path& style : FindStyles(root)) bundled.push_back(style);
   }
-  const auto is_bundled = [&](const fs::path& path) {
-    return std::any_of(bundled.begin(), bundled.end(), [&](const fs::path& style) {
-      std::error_code failed;
-      return fs::equivalent(style, path, failed) || fs::equivalent(style, path.parent_path(), failed);
-    });
-  };
   for (const std::string& given : styles) {
     SCUMBLE_ASSIGN(const fs::path path, scumble::FindStyle(given, context));
-    all.AddStyle(given, path, is_bundled(path));
+    all.AddStyle(given, path, IsBundledStyle(path, context));
   }
   for (const fs::path& style : bundled) all.AddStyle(style.filename().string(), style, true);
   std::vector<fs::path> files;
