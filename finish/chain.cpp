@@ -83,7 +83,11 @@ std::optional<PointEffect> PointEffectOf(const FinishStep& step, const FinishFra
     std::optional<PointEffect> operator()(const EdgesPass&) { return std::nullopt; }
     std::optional<PointEffect> operator()(const HatchPass&) { return std::nullopt; }
     std::optional<PointEffect> operator()(const PigmentPass&) { return std::nullopt; }
-    std::optional<PointEffect> operator()(const ToonPass& one) { return internal::MakeToon(one, frame); }
+    std::optional<PointEffect> operator()(const ToonPass& one) {
+      const auto light = std::make_shared<const internal::FloatPlane>(internal::ToonLight(one, frame));
+      return [light, effect = internal::MakeToon(one, frame, *light)](
+                 std::size_t first, std::size_t count, OklabBlock& block) { effect(first, count, block); };
+    }
     std::optional<PointEffect> operator()(const RenderPass& one) { return internal::MakeRender(one, frame); }
     std::optional<PointEffect> operator()(const TonesPass& one) { return internal::MakeTones(one); }
     std::optional<PointEffect> operator()(const ShadowsPass& one) {

@@ -19,6 +19,11 @@ void Smooth(const SmoothPass& pass, double strength, std::span<const std::uint8_
 // Background has no shade. O(pixels · soften).
 FloatPlane SoftShade(const ShadowsPass& pass, const FinishFrame& frame);
 
+// The light that toon cuts into bands, by pixel: direct light, whose brightest tenth is measures.bright, or wrapped
+// light, 0 … 1. Without the noise of its samples (finish/area/even_light.h) where it is cut and may have any. Empty
+// where toon looks at no light.
+FloatPlane ToonLight(const ToonPass& pass, const FinishFrame& frame);
+
 // The extended difference of Gaussians (Winnemöller, Kyprianidis, Olsen, "XDoG: An eXtended difference-of-Gaussians
 // compendium", 2012, section 2.5): U = (1 + p) G(σ) - p G(1.6 σ) of a tone of 0 … 1; ink is 0 where U reaches the
 // threshold, and -tanh(slope · (U - threshold)) below. σ is width / 2.055: so wide is the dark side of a step, at half

@@ -56,7 +56,8 @@ SCUMBLE_WIDE_LOOPS void FindDoubts(const PairPlanes& of, std::size_t first, std:
 
 class Classifier {
  public:
-  Classifier(const OutlinePass& pass, const GuideSet& guides, double scale, std::span<const std::uint8_t> only)
+  Classifier(const OutlinePass& pass, const GuideSet& guides, double scale, std::span<const std::uint8_t> only,
+             std::span<const float> shadow)
       : pass_(pass),
         only_(only),
         guides_(guides),
@@ -68,7 +69,7 @@ class Classifier {
         object_(guides.Plane(Layer::kObject)),
         texture_step_(static_cast<float>(pass.texture_step * pass.texture_step)) {
     if (IsOn(LineClass::kMaterial)) material_ = guides.Plane(Layer::kMaterial);
-    if (IsOn(LineClass::kShadow)) shadow_ = guides.Plane(Layer::kShadow);
+    if (IsOn(LineClass::kShadow)) shadow_ = shadow.empty() ? guides.Plane(Layer::kShadow) : shadow;
     if (IsOn(LineClass::kTexture)) colors_ = OklabOf(guides);
     if (IsOn(LineClass::kSuggestive)) valleys_.emplace(pass, guides, scale);
   }
@@ -148,9 +149,9 @@ class Classifier {
 
 }  // namespace
 
-BorderMap FindBorders(const OutlinePass& pass, const GuideSet& guides, double scale,
-                      std::span<const std::uint8_t> only) {
-  const Classifier classifier(pass, guides, scale, only);
+BorderMap FindBorders(const OutlinePass& pass, const GuideSet& guides, double scale, std::span<const std::uint8_t> only,
+                      std::span<const float> shadow) {
+  const Classifier classifier(pass, guides, scale, only, shadow);
   BorderMap map{guides.width(), guides.height(), {}, {}};
   map.right.assign(guides.pixel_count(), 0), map.below.assign(guides.pixel_count(), 0);
   const auto width = static_cast<std::size_t>(map.width), height = static_cast<std::size_t>(map.height);

@@ -27,10 +27,8 @@ struct Corner {
 
 class Tracer {
  public:
-  Tracer(BorderMap& map, const GuideSet& guides)
-      : map_(map), owner_(guides), coverage_(guides.Plane(Layer::kCoverage)) {
-    if (guides.Has(Layer::kShadow)) shadow_ = guides.Plane(Layer::kShadow);
-  }
+  Tracer(BorderMap& map, const GuideSet& guides, std::span<const float> shadow)
+      : map_(map), owner_(guides), coverage_(guides.Plane(Layer::kCoverage)), shadow_(shadow) {}
 
   std::vector<LineChain> Trace(double shortest, bool spurs) {
     std::vector<LineChain> chains;
@@ -262,8 +260,9 @@ void Smooth(float give, LineChain& chain) {
 
 }  // namespace
 
-std::vector<LineChain> TraceLines(BorderMap& borders, const GuideSet& guides, double shortest, bool spurs, float give) {
-  std::vector<LineChain> chains = Tracer(borders, guides).Trace(shortest, spurs);
+std::vector<LineChain> TraceLines(BorderMap& borders, const GuideSet& guides, std::span<const float> shadow,
+                                  double shortest, bool spurs, float give) {
+  std::vector<LineChain> chains = Tracer(borders, guides, shadow).Trace(shortest, spurs);
   tbb::parallel_for(std::size_t(0), chains.size(), [&](std::size_t i) { Smooth(give, chains[i]); });
   return chains;
 }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
 #include "core/image/guides.h"
@@ -29,10 +30,10 @@ struct LineChain {
 // Joins borders to lines from junction to junction, or round. Takes borders out of the map. Lines shorter than
 // `shortest` borders that meet no other are noise and left out, and with `spurs` those that meet others at one end
 // alone. Each line is smoothed: a position may move by up to `give` pixels across its border; half a pixel is as much
-// as is unknown about it. Silhouettes begin where the coverage says, shadows where half shade lies between pixels. The
-// order is that of the first border, row by row. O(pixels).
-std::vector<LineChain> TraceLines(BorderMap& borders, const GuideSet& guides, double shortest, bool spurs = false,
-                                  float give = 0.5f);
+// as is unknown about it. Silhouettes begin where the coverage says, shadows where half shade lies between pixels of
+// `shadow`, which is that of FindBorders. The order is that of the first border, row by row. O(pixels).
+std::vector<LineChain> TraceLines(BorderMap& borders, const GuideSet& guides, std::span<const float> shadow,
+                                  double shortest, bool spurs = false, float give = 0.5f);
 
 // `values` under a Gaussian of the chain's own smoothing, for quantities that follow a line.
 void SmoothAlong(const LineChain& chain, std::vector<float>& values);

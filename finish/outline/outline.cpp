@@ -11,6 +11,7 @@
 #include "core/image/color.h"
 #include "core/image/hash.h"
 #include "core/image/oklab.h"
+#include "finish/area/even_light.h"
 #include "finish/area/ink.h"
 #include "finish/area/noise.h"
 #include "finish/outline/border_map.h"
@@ -37,10 +38,12 @@ void InkFromPaint(bool is_complement, std::uint16_t* texel) {
 // owner `is_masked` are left out: where they cross others, these show.
 template <class IsMasked>
 StrokeCover CoverByStrokes(const OutlinePass& pass, const FinishFrame& frame, int factor, const LineNoise& noise,
-                           BorderMap& borders, bool with_owner, const IsMasked& is_masked) {
+                           std::span<const float> shadow, BorderMap& borders, bool with_owner,
+                           const IsMasked& is_masked) {
   // Of small guides a step of a border is several pixels of the picture: it is evened out, and spurs are left out.
   const double shortest = std::max(kShortest, kShortest * frame.scale / factor);
-  std::vector<LineChain> chains = TraceLines(borders, *frame.guides, shortest, factor > 1, factor > 1 ? 1.0f : 0.5f);
+  std::vector<LineChain> chains =
+      TraceLines(borders, *frame.guides, shadow, shortest, factor > 1, factor > 1 ? 1.0f : 0.5f);
   for (LineChain& chain : chains) {
     const auto times = static_cast<float>(factor);
     for (LinePoint& point : chain.points) point.at *= times;
@@ -87,7 +90,11 @@ void DrawOutline(const OutlinePass& pass, double strength, std::span<const std::
     for (std::size_t i = 0; i < small_only.size(); ++i) small_only[i] = only[middle(i)];
     only = small_only;
   }
-  BorderMap borders = FindBorders(pass, guides, scale, only);
+  FloatPlane shadow;
+  if (pass.of_class[std::size_t(LineClass::kShadow)] > 0.0) {
+    shadow = EvenedLight(guides.Plane(Layer::kShadow), guides.Plane(Layer::kObject), width, height, kLightNoise);
+  }
+  BorderMap borders = FindBorders(pass, guides, scale, only, shadow);
   std::optional<SurfaceScale> surface;
   std::optional<NoiseField> across, down, gaps;
   if (pass.stick && (strays || pass.gaps > 0.0)) surface.emplace(guides);
@@ -102,8 +109,9 @@ void DrawOutline(const OutlinePass& pass, double strength, std::span<const std::
   const LineNoise noise{across ? &*across : nullptr, down ? &*down : nullptr, gaps ? &*gaps : nullptr};
   const bool of_paint = pass.color != OutlinePass::Color::kInk, with_owner = of_paint || !shares.empty();
   const auto is_masked = [&](std::uint32_t owner) { return !shares.empty() && shares[middle(owner)] == 0; };
-  const StrokeCover cover = is_field ? CoverByDistance(pass, traced, noise.gaps, borders, with_owner)
-                                     : CoverByStrokes(pass, traced, factor, noise, borders, with_owner, is_masked);
+  const StrokeCover cover = is_field
+                                ? CoverByDistance(pass, traced, noise.gaps, borders, with_owner)
+                                : CoverByStrokes(pass, traced, factor, noise, shadow, borders, with_owner, is_masked);
   std::vector<std::uint16_t> paint;  // as it was before the lines
   if (of_paint) paint = picture.rgba;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cover.share.size(), 1 << 14), [&](const auto& part) {

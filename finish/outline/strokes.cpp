@@ -16,6 +16,7 @@ namespace {
 
 constexpr float kPieceError = 0.1f;  // pixels
 constexpr int kBandRows = 32;
+constexpr float kOverlap = 1.0f;  // pixels: a line beside a border covers half a pixel of its other side, mixed ones
 constexpr double kGapEnd = 0.25;  // of noise: over which a stroke thins into a gap
 
 // Widths before the taper.
@@ -75,9 +76,11 @@ struct Middle {
   std::vector<std::uint32_t> owner;
 };
 
-// Which side of a line its owners lie on, -1 … 1, 1 being the left. Where two surfaces touch, now the one is nearer and
-// now the other: owners count over a stretch of the line, and a change of sides is a passage from one to the other.
-std::vector<float> SidesOf(const LineChain& chain) {
+// Towards which side of a line its owners lie, as a factor of the line's width, -1 … 1, 1 being the left. Where two
+// surfaces touch, now the one is nearer and now the other: owners count over a stretch of the line, and a change of
+// sides is a passage from one to the other. Towards a junction a line runs back to its middle, where the others meet
+// it.
+std::vector<float> SidesOf(const LineChain& chain, const std::vector<float>& widths) {
   const auto& points = chain.points;
   const auto count = static_cast<std::ptrdiff_t>(points.size());
   const auto at = [&](std::ptrdiff_t i) {
@@ -96,6 +99,17 @@ std::vector<float> SidesOf(const LineChain& chain) {
     for (std::ptrdiff_t k = -kStretch; k <= kStretch; ++k) sum += own[at(i + k)];
     sides[std::size_t(i)] = std::clamp(2.0f * sum / (2 * kStretch + 1), -1.0f, 1.0f);
   }
+  if (chain.closed) return sides;
+  const auto run_back = [&](const auto& nth) {
+    float along = 0.0f;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      if (k > 0) along += glm::length(points[nth(k)].at - points[nth(k - 1)].at);
+      if (along >= widths[nth(k)]) break;
+      sides[nth(k)] *= along / widths[nth(k)];
+    }
+  };
+  if (!chain.begins) run_back([](std::size_t k) { return k; });
+  if (!chain.ends) run_back([&](std::size_t k) { return points.size() - 1 - k; });
   return sides;
 }
 
@@ -106,7 +120,7 @@ Middle MiddleOf(const OutlinePass& pass, const FinishFrame& frame, const LineNoi
   const float side = pass.side == OutlinePass::Side::kInside    ? 0.5f
                      : pass.side == OutlinePass::Side::kOutside ? -0.5f
                                                                 : 0.0f;
-  const std::vector<float> to_side = side != 0.0f ? SidesOf(chain) : std::vector<float>();
+  const std::vector<float> to_side = side != 0.0f ? SidesOf(chain, widths) : std::vector<float>();
   const auto wobble = static_cast<float>(pass.wobble * frame.scale);
   const auto per_wave = static_cast<float>(1.0 / (pass.wobble_length * frame.scale));
   const auto moved = [&](glm::vec2 at, std::size_t i) {
@@ -116,7 +130,7 @@ Middle MiddleOf(const OutlinePass& pass, const FinishFrame& frame, const LineNoi
       const glm::vec2 along = points[after].at - points[before].at;
       const float length = std::sqrt(Dot(along, along));
       const glm::vec2 left = length > 0.0f ? glm::vec2(-along.y, along.x) / length : points[i].to_owner;
-      at += left * (to_side[i] * side * widths[i]);
+      at += left * (to_side[i] * side * std::max(0.0f, widths[i] - kOverlap));
     }
     if (wobble > 0.0f && noise.across) {
       const auto width = static_cast<std::uint32_t>(frame.guides->width());

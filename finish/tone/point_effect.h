@@ -14,7 +14,8 @@ namespace scumble::internal {
 using PointEffect = std::function<void(std::size_t first, std::size_t count, OklabBlock& block)>;
 
 // Each keeps references to the frame and its guides, which must hold the pass's layers.
-PointEffect MakeToon(const ToonPass& pass, const FinishFrame& frame);
+// `light`: what ToonLight gives; it must outlive the effect.
+PointEffect MakeToon(const ToonPass& pass, const FinishFrame& frame, std::span<const float> light);
 PointEffect MakeRender(const RenderPass& pass, const FinishFrame& frame);
 PointEffect MakeTones(const TonesPass& pass);
 // `soft`: by pixel how much of it is in shade, and must outlive the effect; empty: what ShadeOf says.

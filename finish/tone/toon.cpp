@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <memory>
-#include <utility>
+#include <span>
 
 #include "core/filter/wide_loops.h"
 #include "finish/tone/point_effect.h"
@@ -85,9 +85,10 @@ class RampShading {
   std::shared_ptr<const RampRows> rows_;  // null: there is one
 };
 
-template <class Light, class Shading>
-PointEffect ToonOf(const ToonPass& pass, const FinishFrame& frame, const Light& of_light, const Shading& shading) {
-  const BandOf<Light> band_of(pass, frame, of_light);
+template <class Shading>
+PointEffect ToonOf(const ToonPass& pass, const FinishFrame& frame, std::span<const float> lights,
+                   const Shading& shading) {
+  const BandOf band_of(pass, frame, lights);
   const bool is_plain = pass.shading == ToonPass::Shading::kPlain, has_bands = pass.bands > 1;
   const bool from_albedo = pass.base == ToonPass::Color::kAlbedo && pass.shading != ToonPass::Shading::kRamp;
   const float per_band = has_bands ? 1.0f / static_cast<float>(pass.bands - 1) : 0.0f;
@@ -110,8 +111,9 @@ PointEffect ToonOf(const ToonPass& pass, const FinishFrame& frame, const Light& 
   };
 }
 
-template <class Light>
-PointEffect ShadedToon(const ToonPass& pass, const FinishFrame& frame, const Light& light) {
+}  // namespace
+
+PointEffect MakeToon(const ToonPass& pass, const FinishFrame& frame, std::span<const float> light) {
   switch (pass.shading) {
     case ToonPass::Shading::kGooch:
       return ToonOf(pass, frame, light, GoochShading(pass));
@@ -121,13 +123,6 @@ PointEffect ShadedToon(const ToonPass& pass, const FinishFrame& frame, const Lig
       break;
   }
   return ToonOf(pass, frame, light, PlainShading(pass));
-}
-
-}  // namespace
-
-PointEffect MakeToon(const ToonPass& pass, const FinishFrame& frame) {
-  return pass.light == ToonPass::Light::kWrapped ? ShadedToon(pass, frame, WrappedLight(pass, frame))
-                                                 : ShadedToon(pass, frame, DirectLight(frame));
 }
 
 }  // namespace scumble::internal

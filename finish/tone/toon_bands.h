@@ -1,4 +1,4 @@
-// The light that toon shades by, and the bands that it is cut into.
+// The bands that toon cuts light into.
 #pragma once
 
 #include <algorithm>
@@ -13,6 +13,11 @@
 #include "finish/finish.h"
 
 namespace scumble::internal {
+
+// The light at which the brightest band ends: the brightness that was measured, or 1 of wrapped light.
+inline double BrightestOf(const ToonPass& pass, const FinishFrame& frame) {
+  return pass.light == ToonPass::Light::kWrapped ? 1.0 : frame.measures.bright;
+}
 
 // What is no number is dark.
 inline float NumberOf(float value) { return value == value ? value : 0.0f; }
@@ -61,80 +66,16 @@ SCUMBLE_WIDE_LOOPS inline void TakeHardBands(const float* places, const float* b
   }
 }
 
-// Direct light, 1 at the brightness that was measured.
-class DirectLight {
- public:
-  explicit DirectLight(const FinishFrame& frame)
-      : light_(frame.guides->Plane(Layer::kLuminance)), bright_(frame.measures.bright) {}
-
-  float At(std::size_t pixel) const { return light_[pixel]; }
-  // The values of At from a pixel on, in `buffer` or elsewhere.
-  const float* Of(std::size_t first, std::size_t, float*) const { return light_.data() + first; }
-  // The number of bands for 1 of At, of `bands` in all.
-  float PerLight(int bands) const { return static_cast<float>(bands / bright_); }
-
- private:
-  std::span<const float> light_;
-  double bright_;
-};
-
-// NaN is dark, and no shadow.
-inline float WrappedLightOf(float cosine, float shadow, float cast, bool squares) {
-  const float turned = cosine > -1.0f ? cosine < 1.0f ? cosine : 1.0f : -1.0f;
-  const float blocked = shadow > 0.0f ? shadow < 1.0f ? shadow : 1.0f : 0.0f;
-  const float lit = turned > 0.0f ? turned * (1.0f - cast * blocked) : turned;
-  const float half = 0.5f + 0.5f * lit;
-  return squares ? half * half : half;
-}
-
-// `shadows`: null where there are none.
-SCUMBLE_WIDE_LOOPS inline void WrapLights(const float* cosines, const float* shadows, float cast, bool squares,
-                                          std::size_t count, float* out) {
-  if (!shadows) {
-    for (std::size_t i = 0; i < count; ++i) out[i] = WrappedLightOf(cosines[i], 0.0f, cast, squares);
-    return;
-  }
-  for (std::size_t i = 0; i < count; ++i) out[i] = WrappedLightOf(cosines[i], shadows[i], cast, squares);
-}
-
-// Light that wraps around the form: ((1 + c) / 2)^power with c the cosine to the key light (Half-Lambert: Mitchell,
-// Francke, Eng, "Illustrative rendering in Team Fortress 2", 2007). Where c is above 0, cast shadow takes of it first.
-class WrappedLight {
- public:
-  WrappedLight(const ToonPass& pass, const FinishFrame& frame)
-      : cosine_(frame.guides->Plane(Layer::kCosine)),
-        cast_(static_cast<float>(pass.cast)),
-        squares_(pass.wrap_power == 2) {
-    if (pass.cast > 0.0) shadow_ = frame.guides->Plane(Layer::kShadow);
-  }
-
-  // 0 … 1, of any floats.
-  float At(std::size_t pixel) const {
-    return WrappedLightOf(cosine_[pixel], shadow_.empty() ? 0.0f : shadow_[pixel], cast_, squares_);
-  }
-  const float* Of(std::size_t first, std::size_t count, float* buffer) const {
-    WrapLights(cosine_.data() + first, shadow_.empty() ? nullptr : shadow_.data() + first, cast_, squares_, count,
-               buffer);
-    return buffer;
-  }
-  float PerLight(int bands) const { return static_cast<float>(bands); }
-
- private:
-  std::span<const float> cosine_, shadow_;
-  float cast_;
-  bool squares_;
-};
-
 // Which band a pixel lies in: 0 the darkest … bands - 1, and between two of them where their border is soft.
-template <class Light>
 class BandOf {
  public:
-  BandOf(const ToonPass& pass, const FinishFrame& frame, const Light& light)
+  // `light`: what ToonLight gives; keeps references to it and to the guides.
+  BandOf(const ToonPass& pass, const FinishFrame& frame, std::span<const float> light)
       : light_(light),
         object_(frame.guides->Plane(Layer::kObject)),
         width_(static_cast<std::size_t>(frame.guides->width())),
         bands_(static_cast<float>(pass.bands)),
-        per_light_(light.PerLight(pass.bands)),
+        per_light_(static_cast<float>(pass.bands / BrightestOf(pass, frame))),
         softness_(static_cast<float>(pass.softness * frame.scale)) {}
 
   // Of pixels of one row, kOklabBlock at most.
@@ -155,18 +96,18 @@ class BandOf {
 
   // The tones themselves, as shares of all bands, 0 … 1.
   void Tones(std::size_t first, std::size_t count, float* tones) const {
-    const float* const light = light_.Of(first, count, tones);
-    for (std::size_t i = 0; i < count; ++i) tones[i] = std::clamp(NumberOf(light[i] * per_light_) / bands_, 0.0f, 1.0f);
+    for (std::size_t i = 0; i < count; ++i)
+      tones[i] = std::clamp(NumberOf(light_[first + i] * per_light_) / bands_, 0.0f, 1.0f);
   }
 
  private:
   void Look(std::size_t first, std::size_t count, float* places, float* borders, float* slopes) const {
     const std::size_t x = first % width_, has_left = x > 0, has_right = x + count < width_;
-    float buffers[3][kOklabBlock + 2], objects[kOklabBlock + 2];
-    const float* const light = light_.Of(first - has_left, count + has_left + has_right, buffers[0]) + has_left;
+    float objects[kOklabBlock + 2];
+    const float* const light = light_.data() + first;
     const bool has_above = first >= width_, has_below = first + width_ < object_.size();
-    const float* const above = has_above ? light_.Of(first - width_, count, buffers[1]) : light;
-    const float* const below = has_below ? light_.Of(first + width_, count, buffers[2]) : light;
+    const float* const above = has_above ? light - width_ : light;
+    const float* const below = has_below ? light + width_ : light;
     const float* const object = object_.data() + first;
     const float* const object_above = has_above ? object - width_ : object;
     const float* const object_below = has_below ? object + width_ : object;
@@ -186,20 +127,19 @@ class BandOf {
     const auto x = static_cast<std::ptrdiff_t>(pixel % width_), y = static_cast<std::ptrdiff_t>(pixel / width_);
     const auto width = static_cast<std::ptrdiff_t>(width_),
                height = static_cast<std::ptrdiff_t>(object_.size()) / width;
-    const bool is_above = light_.At(pixel) * per_light_ >= border;
+    const bool is_above = light_[pixel] * per_light_ >= border;
     const auto reach = static_cast<std::ptrdiff_t>(std::ceil(softness_));
     for (std::ptrdiff_t k = 1; k <= reach; ++k) {
       for (const auto& [dx, dy] : {std::pair(-k, std::ptrdiff_t(0)), {k, 0}, {0, -k}, {0, k}}) {
         if (x + dx < 0 || y + dy < 0 || x + dx >= width || y + dy >= height) continue;
         const auto other = static_cast<std::size_t>((y + dy) * width + x + dx);
-        if (object_[other] == object_[pixel] && (light_.At(other) * per_light_ >= border) != is_above) return true;
+        if (object_[other] == object_[pixel] && (light_[other] * per_light_ >= border) != is_above) return true;
       }
     }
     return false;
   }
 
-  Light light_;
-  std::span<const float> object_;
+  std::span<const float> light_, object_;
   std::size_t width_;
   float bands_, per_light_, softness_;
 };

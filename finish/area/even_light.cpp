@@ -1,0 +1,128 @@
+#include "finish/area/even_light.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <utility>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "finish/area/even_light.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "core/filter/vector_lane-inl.h"
+
+#ifndef SCUMBLE_FINISH_EVEN_LIGHT_ONCE_
+#define SCUMBLE_FINISH_EVEN_LIGHT_ONCE_
+namespace scumble::internal {
+
+// A row, and the rows `step` above and below.
+struct RowsAround {
+  const float *above, *here, *below;
+};
+
+}  // namespace scumble::internal
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace scumble::internal {
+namespace HWY_NAMESPACE {
+
+// Sums of two pairs at a time, so that a picture that is turned or mirrored gets the same.
+void EvenRowHere(const RowsAround& light, const RowsAround& object, std::ptrdiff_t step, float range, std::size_t count,
+                 float* out) {
+  const Floats d;
+  const auto half = hn::Set(d, 0.5f), one = hn::Set(d, 1.0f), most = hn::Set(d, range);
+  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+    const auto own = hn::LoadU(d, light.here + i), own_object = hn::LoadU(d, object.here + i);
+    auto sum = own, weight = one;
+    // Of a row and the one opposite, from `shift` pixels to the right of the place and to its left.
+    struct Share {
+      decltype(own) mean, counts;
+    };
+    const auto share_of = [&](const float* row, const float* objects, const float* other, const float* other_objects,
+                              std::ptrdiff_t shift) HWY_ATTR {
+      const auto at = [&](const float* values, std::ptrdiff_t by) HWY_ATTR { return hn::LoadU(d, values + i + by); };
+      const auto mean = hn::Mul(half, hn::Add(at(row, shift), at(other, -shift)));
+      const auto is_its =
+          hn::And(hn::Eq(at(objects, shift), own_object), hn::Eq(at(other_objects, -shift), own_object));
+      const auto is_near = hn::Le(hn::Abs(hn::Sub(mean, own)), most);
+      const auto takes = hn::And(is_its, is_near);
+      return Share{hn::IfThenElseZero(takes, mean), hn::IfThenElseZero(takes, one)};
+    };
+    const auto add = [&](const Share& a, const Share& b) HWY_ATTR {
+      sum = hn::Add(sum, hn::Add(a.mean, b.mean));
+      weight = hn::Add(weight, hn::Add(a.counts, b.counts));
+    };
+    add(share_of(light.here, object.here, light.here, object.here, step),
+        share_of(light.above, object.above, light.below, object.below, 0));
+    add(share_of(light.above, object.above, light.below, object.below, step),
+        share_of(light.above, object.above, light.below, object.below, -step));
+    hn::StoreU(hn::Div(sum, weight), d, out + i);
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace scumble::internal
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace scumble::internal {
+namespace {
+
+HWY_EXPORT(EvenRowHere);
+
+constexpr std::array<int, 3> kSteps = {1, 2, 4};
+constexpr int kPad = kSteps.back();
+
+constexpr int kVector = 16;  // values of a vector, which may reach so far beyond a row
+
+// A plane with kPad pixels more on all sides.
+class PaddedPlane {
+ public:
+  PaddedPlane(std::span<const float> values, int width, int height, float outside)
+      : stride_(kPad + width + kPad + kVector), values_(std::size_t(stride_) * std::size_t(height + 2 * kPad)) {
+    tbb::parallel_for(tbb::blocked_range<int>(-kPad, height + kPad, 16), [&](const auto& rows) {
+      for (int y = rows.begin(); y != rows.end(); ++y) {
+        std::fill_n(Row(y) - kPad, stride_, outside);
+        if (y >= 0 && y < height) std::copy_n(values.begin() + std::ptrdiff_t(width) * y, width, Row(y));
+      }
+    });
+  }
+  float* Row(int y) { return values_.data() + std::ptrdiff_t(stride_) * (y + kPad) + kPad; }
+  const float* Row(int y) const { return values_.data() + std::ptrdiff_t(stride_) * (y + kPad) + kPad; }
+
+ private:
+  int stride_;
+  FloatPlane values_;
+};
+
+}  // namespace
+
+FloatPlane EvenedLight(std::span<const float> light, std::span<const float> object, int width, int height,
+                       float range) {
+  const PaddedPlane objects(object, width, height, std::numeric_limits<float>::quiet_NaN());
+  PaddedPlane from(light, width, height, 0.0f), to = from;
+  FloatPlane result(light.size());
+  for (const int step : kSteps) {
+    tbb::parallel_for(tbb::blocked_range<int>(0, height, 16), [&](const auto& rows) {
+      for (int y = rows.begin(); y != rows.end(); ++y) {
+        const auto around = [&](const PaddedPlane& plane) {
+          return RowsAround{plane.Row(y - step), plane.Row(y), plane.Row(y + step)};
+        };
+        HWY_DYNAMIC_DISPATCH(EvenRowHere)
+        (around(from), around(objects), step, range, std::size_t(width), to.Row(y));
+        if (step == kPad) std::copy_n(to.Row(y), width, result.begin() + std::ptrdiff_t(width) * y);
+      }
+    });
+    std::swap(from, to);
+  }
+  return result;
+}
+
+}  // namespace scumble::internal
+#endif

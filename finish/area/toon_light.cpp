@@ -1,0 +1,57 @@
+#include <algorithm>
+
+#include "core/filter/wide_loops.h"
+#include "finish/area/area_effects.h"
+#include "finish/area/even_light.h"
+#include "finish/area/oklab_blocks.h"
+#include "finish/tone/toon_bands.h"
+
+namespace scumble::internal {
+namespace {
+
+// NaN is dark, and no shadow.
+inline float WrappedLightOf(float cosine, float shadow, float cast, bool squares) {
+  const float turned = cosine > -1.0f ? cosine < 1.0f ? cosine : 1.0f : -1.0f;
+  const float blocked = shadow > 0.0f ? shadow < 1.0f ? shadow : 1.0f : 0.0f;
+  const float lit = turned > 0.0f ? turned * (1.0f - cast * blocked) : turned;
+  const float half = 0.5f + 0.5f * lit;
+  return squares ? half * half : half;
+}
+
+// Light that wraps around the form: ((1 + c) / 2)^power with c the cosine to the key light (Half-Lambert: Mitchell,
+// Francke, Eng, "Illustrative rendering in Team Fortress 2", 2007). Where c is above 0, cast shadow takes of it first.
+// `shadows`: null where there are none.
+SCUMBLE_WIDE_LOOPS void WrapLights(const float* cosines, const float* shadows, float cast, bool squares,
+                                   std::size_t count, float* out) {
+  if (!shadows) {
+    for (std::size_t i = 0; i < count; ++i) out[i] = WrappedLightOf(cosines[i], 0.0f, cast, squares);
+    return;
+  }
+  for (std::size_t i = 0; i < count; ++i) out[i] = WrappedLightOf(cosines[i], shadows[i], cast, squares);
+}
+
+}  // namespace
+
+FloatPlane ToonLight(const ToonPass& pass, const FinishFrame& frame) {
+  if (pass.bands == 1 && pass.shading == ToonPass::Shading::kPlain) return {};
+  const GuideSet& guides = *frame.guides;
+  FloatPlane light(guides.pixel_count());
+  const bool is_wrapped = pass.light == ToonPass::Light::kWrapped, has_cast = is_wrapped && pass.cast > 0.0;
+  if (is_wrapped) {
+    const float* const cosines = guides.Plane(Layer::kCosine).data();
+    const float* const shadows = has_cast ? guides.Plane(Layer::kShadow).data() : nullptr;
+    ForEachOklabBlock(light.size(), [&](std::size_t first, std::size_t count) {
+      WrapLights(cosines + first, shadows ? shadows + first : nullptr, static_cast<float>(pass.cast),
+                 pass.wrap_power == 2, count, light.data() + first);
+    });
+  } else {
+    const auto direct = guides.Plane(Layer::kLuminance);
+    std::copy(direct.begin(), direct.end(), light.begin());
+  }
+  const bool may_be_noisy = !is_wrapped || has_cast;
+  if (pass.bands == 1 || !may_be_noisy) return light;
+  return EvenedLight(light, guides.Plane(Layer::kObject), guides.width(), guides.height(),
+                     kLightNoise * static_cast<float>(BrightestOf(pass, frame)));
+}
+
+}  // namespace scumble::internal

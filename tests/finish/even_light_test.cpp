@@ -1,0 +1,105 @@
+// Light without the noise of its samples, and what cuts it into steps.
+#include "finish/area/even_light.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "tests/finish/finish_fixtures.h"
+
+namespace scumble {
+namespace {
+
+using internal::EvenedLight, internal::FloatPlane, internal::kLightNoise;
+
+constexpr int kWide = 64, kHigh = 40;
+
+template <class Value>
+FloatPlane PlaneOf(const Value& value) {
+  FloatPlane plane(std::size_t(kWide) * kHigh);
+  for (int y = 0; y < kHigh; ++y) {
+    for (int x = 0; x < kWide; ++x) plane[std::size_t(y) * kWide + std::size_t(x)] = value(x, y);
+  }
+  return plane;
+}
+const FloatPlane kOneObject = PlaneOf([](int, int) { return 1.0f; });
+
+TEST(EvenLight, SlopesKeepTheirValuesUpToTheBorder) {
+  const FloatPlane slope = PlaneOf([](int x, int y) { return 0.03125f * static_cast<float>(x) + 0.25f * float(y); });
+  const FloatPlane halves = PlaneOf([](int x, int y) { return x + y < 50 ? 1.0f : 2.0f; });
+  for (const FloatPlane* object : {&kOneObject, &halves})
+    EXPECT_EQ(EvenedLight(slope, *object, kWide, kHigh, kLightNoise), slope);
+}
+
+TEST(EvenLight, StepsStaySharp) {
+  const FloatPlane step = PlaneOf([](int x, int) { return x < 30 ? 0.25f : 0.5f; });
+  EXPECT_EQ(EvenedLight(step, kOneObject, kWide, kHigh, kLightNoise), step);
+}
+
+TEST(EvenLight, ObjectsAreNotMixed) {
+  const auto faint = [](int x, int y) { return (x * 7 + y * 3) % 11 < 5; };
+  const FloatPlane light = PlaneOf([&](int x, int y) { return faint(x, y) ? 0.25f : 0.26f; });
+  const FloatPlane object = PlaneOf([&](int x, int y) { return faint(x, y) ? 1.0f : 2.0f; });
+  EXPECT_EQ(EvenedLight(light, object, kWide, kHigh, kLightNoise), light);
+}
+
+TEST(EvenLight, NoiseFallsToATwelfth) {
+  std::mt19937 random(1);
+  std::normal_distribution<float> noise(0.0f, 0.012f);
+  const FloatPlane light = PlaneOf([&](int x, int) { return 0.5f + 0.004f * static_cast<float>(x) + noise(random); });
+  const FloatPlane even = EvenedLight(light, kOneObject, kWide, kHigh, kLightNoise);
+  double squares = 0.0, count = 0.0;
+  for (int y = 8; y < kHigh - 8; ++y) {
+    for (int x = 8; x < kWide - 8; ++x) {
+      const double error = even[std::size_t(y) * kWide + std::size_t(x)] - (0.5 + 0.004 * x);
+      squares += error * error, count += 1.0;
+    }
+  }
+  EXPECT_LT(std::sqrt(squares / count), 0.012 / 8.0) << "samples of pixels that overlap, and some beyond the range";
+}
+
+TEST(EvenLight, WhatIsNoNumberStaysAlone) {
+  FloatPlane light = PlaneOf([](int, int) { return 0.5f; });
+  const std::size_t at = 20 * kWide + 20;
+  for (const float odd : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    light[at] = odd;
+    const FloatPlane even = EvenedLight(light, kOneObject, kWide, kHigh, kLightNoise);
+    EXPECT_FALSE(std::isfinite(even[at]));
+    for (std::size_t i = 0; i < even.size(); ++i) {
+      if (i != at) {
+        ASSERT_EQ(even[i], 0.5f);
+      }
+    }
+  }
+}
+
+TEST(EvenLight, OfOnePixelAndOfNone) {
+  EXPECT_EQ(EvenedLight(FloatPlane{0.3f}, FloatPlane{1.0f}, 1, 1, kLightNoise), FloatPlane{0.3f});
+  EXPECT_TRUE(EvenedLight({}, {}, 0, 0, kLightNoise).empty());
+}
+
+// A soft shadow across the picture with as much noise as guides have: one border of two tones, and no specks.
+TEST(EvenLight, BandsOfANoisyShadowHaveNoSpecks) {
+  std::mt19937 random(2);
+  std::normal_distribution<float> noise(0.0f, 0.012f);
+  GuideSet guides = FlatGuides(160, 60);
+  guides.Add(Layer::kAlbedo);
+  for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
+    guides.Plane(Layer::kLuminance)[i] = 0.1f + 0.005f * static_cast<float>(i % 160) + noise(random);
+    for (int c = 0; c < 3; ++c) guides.Plane(Layer::kAlbedo, c)[i] = 0.5f;
+  }
+  ToonPass pass;
+  pass.bands = 2, pass.softness = 0.0;
+  const Picture made = Finished(StepOf(pass), &guides, PlainPicture(160, 60, 9, 9, 9));
+  for (int y = 0; y < 60; ++y) {
+    int borders = 0;
+    for (int x = 1; x < 160; ++x) borders += made.At(x, y)[0] != made.At(x - 1, y)[0];
+    EXPECT_EQ(borders, 1) << y;
+  }
+}
+
+}  // namespace
+}  // namespace scumble
