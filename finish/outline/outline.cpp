@@ -90,6 +90,13 @@ void DrawOutline(const OutlinePass& pass, double strength, std::span<const std::
     for (std::size_t i = 0; i < small_only.size(); ++i) small_only[i] = only[middle(i)];
     only = small_only;
   }
+  // A field has one line for each pixel, so that one that the mask hides must not stand before another.
+  std::vector<std::uint8_t> shown;
+  if (is_field && !shares.empty()) {
+    shown.resize(guides.pixel_count());
+    for (std::size_t i = 0; i < shown.size(); ++i) shown[i] = (only.empty() || only[i] != 0) && shares[i] != 0;
+    only = shown;
+  }
   FloatPlane shadow;
   if (pass.of_class[std::size_t(LineClass::kShadow)] > 0.0) {
     shadow = EvenedLight(guides.Plane(Layer::kShadow), guides.Plane(Layer::kObject), width, height, kLightNoise);

@@ -115,6 +115,31 @@ TEST(Mask, OfDepthDoesNotCutLinesInHalf) {
   EXPECT_EQ(Finished(step, &guides, white).rgba, white.rgba);
 }
 
+// Lines that the mask hides take nothing from the ones beside them, whichever form they have.
+TEST(Mask, HiddenLinesStandBeforeNoOther) {
+  const auto seen = [](glm::vec2 at) {
+    if (std::fabs(at.y - 40.0f) >= 30.0f || at.x < 20.0f || at.x >= 60.0f) return SeenPoint{};
+    const bool is_left = at.x < 40.0f;
+    return SeenPoint{true, {0.0f, 0.0f, 1.0f}, is_left ? 5.0f : 5.2f, is_left ? 1.0f : 2.0f};
+  };
+  const GuideSet guides = GuidesOf(80, 80, seen);
+  OutlinePass pass;
+  pass.width = 8.0;
+  for (const auto form : {OutlinePass::Form::kStrokes, OutlinePass::Form::kField}) {
+    pass.form = form;
+    FinishStep step = StepOf(pass);
+    step.share.assign(guides.pixel_count(), 0);
+    for (std::size_t i = 0; i < step.share.size(); ++i) {
+      if (guides.Plane(Layer::kObject)[i] == 2.0f) step.share[i] = 65535;
+    }
+    const Picture made = Finished(step, &guides, PlainPicture(80, 80, 60000, 60000, 60000));
+    // The upper line of the right square, up to the hidden line that both squares share.
+    for (int x = 40; x < 60; ++x) EXPECT_LT(made.At(x, 10)[0], 20000) << x << " " << int(form);
+    EXPECT_EQ(made.At(30, 10)[0], 60000) << "the left square's";
+    EXPECT_EQ(made.At(42, 40)[0], 60000) << "the one between them";
+  }
+}
+
 TEST(Mask, MakesInkAsFaintAsItSays) {
   const GuideSet guides = BallGuides(80, 25.0f);
   const Picture white = PlainPicture(80, 80, 65535, 65535, 65535);
