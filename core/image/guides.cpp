@@ -151,4 +151,9 @@ std::vector<std::uint32_t> IdsForNames(std::span<const std::string> names) {
   return result;
 }
 
+bool HasExactLight(const GuideSet& guides) {
+  const auto found = guides.attributes.find(kLightKey);
+  return found != guides.attributes.end() && found->second == kExactLight;
+}
+
 }  // namespace scumble

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "core/filter/wide_loops.h"
+#include "finish/area/even_light.h"
 
 namespace scumble::internal {
 
@@ -57,11 +58,18 @@ FloatPlane ToneOf(EdgesPass::Tone of, const FinishFrame& frame, const Picture& p
   const auto coverage = guides.Plane(Layer::kCoverage);
   const bool of_light = of == EdgesPass::Tone::kLight;
   const auto per_bright = static_cast<float>(1.0 / frame.measures.bright);
+  std::span<const float> light;
+  if (of_light) light = guides.Plane(Layer::kLuminance);
+  FloatPlane even;
+  if (of_light && !HasExactLight(guides)) {
+    even = EvenedLight(light, coverage, guides.width(), guides.height(),
+                       kLightNoise * static_cast<float>(frame.measures.bright));
+    light = even;
+  }
   ForEachOklabBlock(pixels, [&](std::size_t first, std::size_t count) {
     float* const out = tone.data() + first;
     if (of_light) {
-      const float* const light = guides.Plane(Layer::kLuminance).data() + first;
-      for (std::size_t i = 0; i < count; ++i) out[i] = light[i] * per_bright;
+      for (std::size_t i = 0; i < count; ++i) out[i] = light[first + i] * per_bright;
       LightnessFromGreys(out, count, out);
     } else {
       const auto plane = [&](int c) { return guides.Plane(Layer::kAlbedo, c).data() + first; };

@@ -29,8 +29,8 @@ void ForEachOklabBlock(std::size_t pixels, const Visit& visit) {
 void PutBlock(const OklabBlock& before, float share, const std::uint8_t* only, std::size_t count, OklabBlock& after,
               std::uint16_t* texels);
 
-// By pixel, the lightness 0 … 1 of the paint, of the light, or of base colours; of the latter two background has that
-// of bare paper, 1. The guides hold coverage and the layer.
+// By pixel, the lightness 0 … 1 of the paint, of the light without its noise, or of base colours; of the latter two
+// background has that of bare paper, 1. The guides hold coverage and the layer.
 FloatPlane ToneOf(EdgesPass::Tone of, const FinishFrame& frame, const Picture& picture);
 
 }  // namespace scumble::internal

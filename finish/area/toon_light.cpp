@@ -48,8 +48,8 @@ FloatPlane ToonLight(const ToonPass& pass, const FinishFrame& frame) {
     const auto direct = guides.Plane(Layer::kLuminance);
     std::copy(direct.begin(), direct.end(), light.begin());
   }
-  const bool may_be_noisy = !is_wrapped || has_cast;
-  if (pass.bands == 1 || !may_be_noisy) return light;
+  const bool takes_chance = (!is_wrapped || has_cast) && !HasExactLight(guides);
+  if (pass.bands == 1 || !takes_chance) return light;
   return EvenedLight(light, guides.Plane(Layer::kObject), guides.width(), guides.height(),
                      kLightNoise * static_cast<float>(BrightestOf(pass, frame)));
 }

@@ -69,7 +69,7 @@ class Classifier {
         object_(guides.Plane(Layer::kObject)),
         texture_step_(static_cast<float>(pass.texture_step * pass.texture_step)) {
     if (IsOn(LineClass::kMaterial)) material_ = guides.Plane(Layer::kMaterial);
-    if (IsOn(LineClass::kShadow)) shadow_ = shadow.empty() ? guides.Plane(Layer::kShadow) : shadow;
+    if (IsOn(LineClass::kShadow)) shadow_ = shadow;
     if (IsOn(LineClass::kTexture)) colors_ = OklabOf(guides);
     if (IsOn(LineClass::kSuggestive)) valleys_.emplace(pass, guides, scale);
   }

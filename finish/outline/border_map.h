@@ -33,9 +33,9 @@ class BorderOwner {
 };
 
 // A border counts where its class has a width. The guides must hold the pass's layers. `only`: by pixel; borders whose
-// nearer pixel has 0 do not count; empty: all do. `scale`: pixels for one of the reference height. `shadow`: instead of
-// the guides' own; empty: that.
+// nearer pixel has 0 do not count; empty: all do. `scale`: pixels for one of the reference height. `shadow`: by pixel,
+// where that class has a width.
 BorderMap FindBorders(const OutlinePass& pass, const GuideSet& guides, double scale, std::span<const std::uint8_t> only,
-                      std::span<const float> shadow = {});
+                      std::span<const float> shadow);
 
 }  // namespace scumble::internal

@@ -98,10 +98,12 @@ void DrawOutline(const OutlinePass& pass, double strength, std::span<const std::
     only = shown;
   }
   FloatPlane shadow;
-  if (pass.of_class[std::size_t(LineClass::kShadow)] > 0.0) {
+  if (pass.of_class[std::size_t(LineClass::kShadow)] > 0.0 && !HasExactLight(guides)) {
     shadow = EvenedLight(guides.Plane(Layer::kShadow), guides.Plane(Layer::kObject), width, height, kLightNoise);
   }
-  BorderMap borders = FindBorders(pass, guides, scale, only, shadow);
+  std::span<const float> shade = shadow;
+  if (shade.empty() && guides.Has(Layer::kShadow)) shade = guides.Plane(Layer::kShadow);
+  BorderMap borders = FindBorders(pass, guides, scale, only, shade);
   std::optional<SurfaceScale> surface;
   std::optional<NoiseField> across, down, gaps;
   if (pass.stick && (strays || pass.gaps > 0.0)) surface.emplace(guides);
@@ -118,7 +120,7 @@ void DrawOutline(const OutlinePass& pass, double strength, std::span<const std::
   const auto is_masked = [&](std::uint32_t owner) { return !shares.empty() && shares[middle(owner)] == 0; };
   const StrokeCover cover = is_field
                                 ? CoverByDistance(pass, traced, noise.gaps, borders, with_owner)
-                                : CoverByStrokes(pass, traced, factor, noise, shadow, borders, with_owner, is_masked);
+                                : CoverByStrokes(pass, traced, factor, noise, shade, borders, with_owner, is_masked);
   std::vector<std::uint16_t> paint;  // as it was before the lines
   if (of_paint) paint = picture.rgba;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cover.share.size(), 1 << 14), [&](const auto& part) {

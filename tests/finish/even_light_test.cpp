@@ -101,5 +101,25 @@ TEST(EvenLight, BandsOfANoisyShadowHaveNoSpecks) {
   }
 }
 
+TEST(EvenLight, ExactLightIsCutAsItIs) {
+  GuideSet guides = FlatGuides(40, 30);
+  guides.Add(Layer::kAlbedo);
+  for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
+    guides.Plane(Layer::kLuminance)[i] = i % 3 == 0 ? 0.49f : 0.51f;
+    for (int c = 0; c < 3; ++c) guides.Plane(Layer::kAlbedo, c)[i] = 0.5f;
+  }
+  ToonPass pass;
+  pass.bands = 2, pass.softness = 0.0;
+  const auto steps = [&] {
+    const Picture made = Finished(StepOf(pass), &guides, PlainPicture(40, 30, 9, 9, 9));
+    int count = 0;
+    for (int x = 1; x < 40; ++x) count += made.At(x, 15)[0] != made.At(x - 1, 15)[0];
+    return count;
+  };
+  EXPECT_EQ(steps(), 0);
+  guides.attributes[kLightKey] = kExactLight;
+  EXPECT_GT(steps(), 20);
+}
+
 }  // namespace
 }  // namespace scumble

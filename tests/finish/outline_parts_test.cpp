@@ -64,14 +64,15 @@ GuideSet PatchyGuides(int width, int height) {
 TEST(BorderMap, PairsThatArePassedOverHaveNoBorder) {
   for (const glm::ivec2 size : {glm::ivec2(131, 67), glm::ivec2(1, 40), glm::ivec2(40, 1), glm::ivec2(1, 1)}) {
     const GuideSet guides = PatchyGuides(size.x, size.y);
+    const auto shadow = guides.Plane(Layer::kShadow);
     for (const double others : {0.0, 1.0}) {
       OutlinePass pass;
       for (const LineClass line : {LineClass::kMaterial, LineClass::kShadow}) pass.of_class[std::size_t(line)] = others;
       pass.of_class[std::size_t(LineClass::kTexture)] = 0.0;
       OutlinePass all = pass;
       all.of_class[std::size_t(LineClass::kTexture)] = 1.0;
-      const internal::BorderMap quick = internal::FindBorders(pass, guides, 1.0, {}),
-                                plain = internal::FindBorders(all, guides, 1.0, {});
+      const internal::BorderMap quick = internal::FindBorders(pass, guides, 1.0, {}, shadow),
+                                plain = internal::FindBorders(all, guides, 1.0, {}, shadow);
       EXPECT_EQ(quick.right, plain.right) << size.x << ' ' << others;
       EXPECT_EQ(quick.below, plain.below) << size.x << ' ' << others;
       if (size.x > 100) {

@@ -137,6 +137,18 @@ TEST(AreaLightTile, PlainLightTakesTheFirstSamples) {
   EXPECT_EQ(Render(scene, below, two).rays.shadow, 2u * 37 * 21) << "the most there may be is less";
 }
 
+// Whoever cuts light into steps looks at the attribute.
+TEST(AreaLightTile, LightWithoutChanceIsSaidToBeExact) {
+  Scene scene = Stage(0.5);
+  const Camera above = FlatCamera(10.0, 1.0);
+  EXPECT_FALSE(HasExactLight(Render(scene, above, Chosen(8, 8)).guides));
+  scene.lights = {PointLight({0, 0, 4}, 10.0)};
+  EXPECT_TRUE(HasExactLight(Render(scene, above, Chosen(8, 8)).guides));
+  EXPECT_FALSE(HasExactLight(Render(scene, above, Sized(8, 8, {Layer::kAlbedo})).guides)) << "there is no light";
+  scene.world_radiance = glm::vec3(0.1f);
+  EXPECT_FALSE(HasExactLight(Render(scene, above, Chosen(8, 8)).guides));
+}
+
 struct Difference {
   double rms = 0.0, worst = 0.0;
   std::size_t rays = 0, most_rays = 0;
