@@ -18,6 +18,10 @@ namespace {
 // Of a step in depth, as a share of the distance; see DepthTolerance.
 constexpr double kDepthTolerance = 0.002;
 
+// By how much of a surface's slope the step to its last pixel may differ from it. A ball's depth falls like the root of
+// the distance to its rim: the last step is up to 1 + √2 times the one before.
+constexpr float kSlopeGive = 1.0f, kSlopeGiveAtEnd = 1.5f;
+
 std::vector<glm::vec3> OklabOf(const GuideSet& guides) {
   std::vector<glm::vec3> colors(guides.pixel_count());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, colors.size(), 1 << 14), [&](const auto& part) {
@@ -91,7 +95,7 @@ class Classifier {
                        std::optional<std::size_t> after) const {
     const bool covers_p = coverage_[p] > 0.0f, covers_q = coverage_[q] > 0.0f;
     if (!covers_p && !covers_q) return 0;
-    if (!only_.empty() && !only_[owner_.Of(p, q)]) return 0;
+    if (!only_.empty() && !IsWanted(p, q)) return 0;
     const std::optional<LineClass> line = covers_p == covers_q ? Inside(before, p, q, after) : LineClass::kSilhouette;
     return line && IsOn(*line) ? static_cast<std::uint8_t>(1 + int(*line)) : 0;
   }
@@ -99,19 +103,25 @@ class Classifier {
  private:
   bool IsOn(LineClass line) const { return pass_.of_class[std::size_t(line)] > 0.0; }
 
+  bool IsWanted(std::size_t p, std::size_t q) const {
+    return only_[owner_.Of(p, q)] || ((only_[p] || only_[q]) && owner_.Meet(p, q));
+  }
+
   // Whether the depth goes on from p to q: as it does on one of the sides, by up to twice the slope there, give or take
-  // the tolerance. A step's two sides are flatter than the step.
+  // the tolerance, and by a little more where the surface ends. A step's two sides are flatter than the step.
   bool DepthGoesOn(std::optional<std::size_t> before, std::size_t p, std::size_t q,
                    std::optional<std::size_t> after) const {
     const float step = depth_[q] - depth_[p], give = give_.At(std::min(depth_[p], depth_[q]));
     if (std::fabs(step) <= give) return true;
-    const auto fits = [&](std::optional<std::size_t> from, std::optional<std::size_t> to) {
-      if (!from || !to || !(coverage_[*from] > 0.0f && coverage_[*to] > 0.0f)) return false;
-      if (object_[*from] != object_[*to]) return false;
-      const float slope = depth_[*to] - depth_[*from];
-      return std::fabs(step - slope) <= std::fabs(slope) + give;
+    const auto goes_on = [&](std::optional<std::size_t> there, std::size_t here) {
+      return there && coverage_[*there] > 0.0f && object_[*there] == object_[here];
     };
-    return fits(before, p) || fits(q, after);
+    const bool has_before = goes_on(before, p), has_after = goes_on(after, q);
+    const auto fits = [&](float slope, bool is_end) {
+      return std::fabs(step - slope) <= (is_end ? kSlopeGiveAtEnd : kSlopeGive) * std::fabs(slope) + give;
+    };
+    return (has_before && fits(depth_[p] - depth_[*before], !has_after)) ||
+           (has_after && fits(depth_[*after] - depth_[q], !has_before));
   }
 
   bool IsCrease(std::size_t p, std::size_t q) const {
@@ -148,6 +158,36 @@ class Classifier {
 };
 
 }  // namespace
+
+BorderOwner::BorderOwner(const GuideSet& guides)
+    : coverage_(guides.Plane(Layer::kCoverage)),
+      depth_(guides.Plane(Layer::kDepth)),
+      object_(guides.Plane(Layer::kObject)),
+      facing_(guides.Plane(Layer::kNormal, 2)),
+      width_(static_cast<std::size_t>(guides.width())),
+      give_(guides, kDepthTolerance) {}
+
+float BorderOwner::DepthTowards(std::size_t pixel, std::optional<std::size_t> before) const {
+  if (!before || !(coverage_[*before] > 0.0f) || object_[*before] != object_[pixel]) return depth_[pixel];
+  return depth_[pixel] + 0.5f * (depth_[pixel] - depth_[*before]);
+}
+
+bool BorderOwner::Meet(std::size_t p, std::size_t q) const {
+  if (!(coverage_[p] > 0.0f) || !(coverage_[q] > 0.0f) || object_[p] == object_[q]) return false;
+  const std::size_t step = q - p, count = depth_.size();
+  const bool is_below = step == width_;
+  const auto at = [&](bool is_inside, std::size_t pixel) { return is_inside ? std::optional(pixel) : std::nullopt; };
+  const auto before = at(is_below ? p >= step : p % width_ > 0, p - step);
+  const auto after = at(is_below ? q + step < count : (q + 1) % width_ > 0, q + step);
+  const float from = DepthTowards(p, before), to = DepthTowards(q, after);
+  return std::fabs(to - from) <= give_.At(std::min(from, to));
+}
+
+bool BorderOwner::IsSecond(std::size_t p, std::size_t q) const {
+  if (!(coverage_[q] > 0.0f)) return false;
+  if (!(coverage_[p] > 0.0f)) return true;
+  return Meet(p, q) ? facing_[q] > facing_[p] : depth_[q] < depth_[p];
+}
 
 BorderMap FindBorders(const OutlinePass& pass, const GuideSet& guides, double scale, std::span<const std::uint8_t> only,
                       std::span<const float> shadow) {

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "core/filter/edge_test.h"
 #include "core/image/finish_pass.h"
 #include "core/image/guides.h"
 #include "core/image/plane_allocator.h"
@@ -18,23 +20,28 @@ struct BorderMap {
   std::vector<std::uint8_t, PlaneAllocator<std::uint8_t>> right, below;
 };
 
-// The pixel that a border between p and q belongs to: the nearer one.
+// The pixel that a border between neighbours p and q belongs to, q being to the right of p or below: the nearer one.
 class BorderOwner {
  public:
-  explicit BorderOwner(const GuideSet& guides)
-      : coverage_(guides.Plane(Layer::kCoverage)), depth_(guides.Plane(Layer::kDepth)) {}
-  bool IsSecond(std::size_t p, std::size_t q) const {
-    return coverage_[q] > 0.0f && (!(coverage_[p] > 0.0f) || depth_[q] < depth_[p]);
-  }
+  explicit BorderOwner(const GuideSet& guides);
+  // Where two objects meet neither is nearer: there it is the one that faces the viewer more.
+  bool IsSecond(std::size_t p, std::size_t q) const;
   std::size_t Of(std::size_t p, std::size_t q) const { return IsSecond(p, q) ? q : p; }
+  // Whether two objects meet in the border: their surfaces reach it at one depth, to a tolerance.
+  bool Meet(std::size_t p, std::size_t q) const;
 
  private:
-  std::span<const float> coverage_, depth_;
+  // Of the pixel's surface in its border with the next one, which is `step` further; `before` is the one beyond it.
+  float DepthTowards(std::size_t pixel, std::optional<std::size_t> before) const;
+
+  std::span<const float> coverage_, depth_, object_, facing_;
+  std::size_t width_;
+  DepthTolerance give_;
 };
 
 // A border counts where its class has a width. The guides must hold the pass's layers. `only`: by pixel; borders whose
-// nearer pixel has 0 do not count; empty: all do. `scale`: pixels for one of the reference height. `shadow`: by pixel,
-// where that class has a width.
+// owner has 0 do not count, but where it meets an object that has not; empty: all do. `scale`: pixels for one of the
+// reference height. `shadow`: by pixel, where that class has a width.
 BorderMap FindBorders(const OutlinePass& pass, const GuideSet& guides, double scale, std::span<const std::uint8_t> only,
                       std::span<const float> shadow);
 

@@ -17,6 +17,7 @@ constexpr std::uint8_t kTaken = 0x80;  // a border that is in a line already
 struct Border {
   int x, y;
   bool is_right;
+  bool operator==(const Border&) const = default;
 };
 
 // A corner of the pixels, 0 … width by 0 … height.
@@ -30,12 +31,12 @@ class Tracer {
   Tracer(BorderMap& map, const GuideSet& guides, std::span<const float> shadow)
       : map_(map), owner_(guides), coverage_(guides.Plane(Layer::kCoverage)), shadow_(shadow) {}
 
-  std::vector<LineChain> Trace(double shortest, bool spurs) {
+  std::vector<LineChain> Trace(double shortest) {
+    Prune(shortest);
     std::vector<LineChain> chains;
     const auto add = [&](LineChain chain) {
-      const bool is_noise = double(chain.points.size()) < (chain.closed ? 2.0 * shortest : shortest);
-      const bool is_loose = spurs ? chain.begins || chain.ends : chain.begins && chain.ends;
-      if (!is_noise || !is_loose) chains.push_back(std::move(chain));
+      const bool is_noise = chain.closed && double(chain.points.size()) < 2.0 * shortest;
+      if (!is_noise) chains.push_back(std::move(chain));
     };
     // From ends and junctions first; what is left then are rings.
     ForEachBorder([&](const Border& border) {
@@ -50,6 +51,30 @@ class Tracer {
   }
 
  private:
+  // Takes short lines with a free end out of the map, so that they do not part the lines that they branch from.
+  void Prune(double shortest) {
+    std::vector<Border> line;
+    ForEachBorder([&](const Border& first) {
+      for (const Corner& start : Corners(first)) {
+        if (!At(first) || EndAt(start) != LineEnd::kFree) continue;
+        line.clear();
+        Corner corner = start;
+        for (Border border = first; double(line.size()) < shortest;) {
+          line.push_back(border);
+          const std::array<Corner, 2> ends = Corners(border);
+          corner = ends[0] == corner ? ends[1] : ends[0];
+          if (Degree(corner) != 2) break;
+          const Border last = border;
+          ForEachAt(corner, [&](const Border& one) {
+            if (!(one == last)) border = one;
+          });
+        }
+        if (double(line.size()) >= shortest) continue;
+        for (const Border& border : line) At(border) = 0;
+      }
+    });
+  }
+
   std::uint8_t& At(const Border& border) {
     const std::size_t i = std::size_t(border.y) * map_.width + border.x;
     return border.is_right ? map_.right[i] : map_.below[i];
@@ -102,11 +127,18 @@ class Tracer {
     return count;
   }
 
+  // Of a line that ends in the corner.
+  LineEnd EndAt(const Corner& corner) {
+    if (Degree(corner) != 1) return LineEnd::kJunction;
+    const bool is_at_edge = corner.x == 0 || corner.y == 0 || corner.x == map_.width || corner.y == map_.height;
+    return is_at_edge ? LineEnd::kPictureEdge : LineEnd::kFree;
+  }
+
   LineChain Walk(Border border, Corner corner) {
     LineChain chain;
     const Corner start = corner;
     chain.first = {corner.x, corner.y};
-    chain.begins = Degree(corner) == 1;
+    chain.begin = EndAt(corner);
     for (;;) {
       At(border) |= kTaken;
       const std::array<Corner, 2> ends = Corners(border);
@@ -123,8 +155,7 @@ class Tracer {
     }
     chain.last = {corner.x, corner.y};
     chain.closed = corner == start && Degree(start) == 2;
-    chain.ends = Degree(corner) == 1;
-    if (chain.closed) chain.begins = chain.ends = true;
+    chain.end = EndAt(corner);
     return chain;
   }
 
@@ -144,7 +175,7 @@ class Tracer {
       const float from = shadow_[p], to = shadow_[q];
       shift = (std::clamp((0.5f - from) / (to - from), 0.0f, 1.0f) - 0.5f) * (q_owns ? 1.0f : -1.0f);
     }
-    return {at, to_owner, static_cast<std::uint32_t>(owner), line, shift};
+    return {at, to_owner, static_cast<std::uint32_t>(owner), line, owner_.Meet(p, q), shift};
   }
 
   // How far behind its border a silhouette runs: what is not covered of the pixels from (x, y) inwards. A line at less
@@ -261,8 +292,8 @@ void Smooth(float give, LineChain& chain) {
 }  // namespace
 
 std::vector<LineChain> TraceLines(BorderMap& borders, const GuideSet& guides, std::span<const float> shadow,
-                                  double shortest, bool spurs, float give) {
-  std::vector<LineChain> chains = Tracer(borders, guides, shadow).Trace(shortest, spurs);
+                                  double shortest, float give) {
+  std::vector<LineChain> chains = Tracer(borders, guides, shadow).Trace(shortest);
   tbb::parallel_for(std::size_t(0), chains.size(), [&](std::size_t i) { Smooth(give, chains[i]); });
   return chains;
 }

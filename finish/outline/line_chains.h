@@ -17,23 +17,26 @@ struct LinePoint {
   glm::vec2 to_owner;   // unit vector along x or y, to the pixel that the line belongs to
   std::uint32_t owner;  // that pixel: the nearer one
   LineClass line;
+  bool meets = false;  // two objects meet there, and neither is nearer
   float shift = 0.0f;  // pixels towards the owner, by which the line misses the border where it runs along that
 };
 
+enum class LineEnd { kFree, kJunction, kPictureEdge };
+
 struct LineChain {
   std::vector<LinePoint> points;
-  bool closed = false;              // the last point is next to the first
-  bool begins = true, ends = true;  // the line has an end there; otherwise other lines go on
-  glm::vec2 first, last;            // where an open line begins and ends
+  bool closed = false;                                   // the last point is next to the first
+  LineEnd begin = LineEnd::kFree, end = LineEnd::kFree;  // of an open line
+  glm::vec2 first, last;                                 // where an open line begins and ends
 };
 
 // Joins borders to lines from junction to junction, or round. Takes borders out of the map. Lines shorter than
-// `shortest` borders that meet no other are noise and left out, and with `spurs` those that meet others at one end
-// alone. Each line is smoothed: a position may move by up to `give` pixels across its border; half a pixel is as much
-// as is unknown about it. Silhouettes begin where the coverage says, shadows where half shade lies between pixels of
-// `shadow`, which is that of FindBorders. The order is that of the first border, row by row. O(pixels).
+// `shortest` borders that have a free end are noise and left out. Each line is smoothed: a position may move by up to
+// `give` pixels across its border; half a pixel is as much as is unknown about it. Silhouettes begin where the coverage
+// says, shadows where half shade lies between pixels of `shadow`, which is that of FindBorders. The order is that of
+// the first border, row by row. O(pixels).
 std::vector<LineChain> TraceLines(BorderMap& borders, const GuideSet& guides, std::span<const float> shadow,
-                                  double shortest, bool spurs = false, float give = 0.5f);
+                                  double shortest, float give = 0.5f);
 
 // `values` under a Gaussian of the chain's own smoothing, for quantities that follow a line.
 void SmoothAlong(const LineChain& chain, std::vector<float>& values);

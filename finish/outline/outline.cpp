@@ -40,10 +40,9 @@ template <class IsMasked>
 StrokeCover CoverByStrokes(const OutlinePass& pass, const FinishFrame& frame, int factor, const LineNoise& noise,
                            std::span<const float> shadow, BorderMap& borders, bool with_owner,
                            const IsMasked& is_masked) {
-  // Of small guides a step of a border is several pixels of the picture: it is evened out, and spurs are left out.
+  // Of small guides a step of a border is several pixels of the picture: it is evened out.
   const double shortest = std::max(kShortest, kShortest * frame.scale / factor);
-  std::vector<LineChain> chains =
-      TraceLines(borders, *frame.guides, shadow, shortest, factor > 1, factor > 1 ? 1.0f : 0.5f);
+  std::vector<LineChain> chains = TraceLines(borders, *frame.guides, shadow, shortest, factor > 1 ? 1.0f : 0.5f);
   for (LineChain& chain : chains) {
     const auto times = static_cast<float>(factor);
     for (LinePoint& point : chain.points) point.at *= times;

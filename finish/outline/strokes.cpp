@@ -53,7 +53,8 @@ void Taper(double length, const LineChain& chain, std::vector<float>& widths) {
   }
   const auto per_length = static_cast<float>(1.0 / length);
   for (std::size_t i = 0; i < along.size(); ++i) {
-    const float to_end = std::min(chain.begins ? along[i] : 1e9f, chain.ends ? along.back() - along[i] : 1e9f);
+    const float to_end = std::min(chain.begin == LineEnd::kFree ? along[i] : 1e9f,
+                                  chain.end == LineEnd::kFree ? along.back() - along[i] : 1e9f);
     const float share = std::min(to_end * per_length, 1.0f);
     widths[i] *= share * (2.0f - share);
   }
@@ -76,10 +77,10 @@ struct Middle {
   std::vector<std::uint32_t> owner;
 };
 
-// Towards which side of a line its owners lie, as a factor of the line's width, -1 … 1, 1 being the left. Where two
-// surfaces touch, now the one is nearer and now the other: owners count over a stretch of the line, and a change of
-// sides is a passage from one to the other. Towards a junction a line runs back to its middle, where the others meet
-// it.
+// Towards which side of a line its owners lie, as a factor of the line's width, -1 … 1, 1 being the left. Where the
+// nearer surface changes, owners count over a stretch of the line, so that it passes from one side to the other. Where
+// two objects meet neither is nearer, and the rest of the line decides, if it has any. Towards a junction a line runs
+// back to its middle, where the others meet it.
 std::vector<float> SidesOf(const LineChain& chain, const std::vector<float>& widths) {
   const auto& points = chain.points;
   const auto count = static_cast<std::ptrdiff_t>(points.size());
@@ -87,16 +88,24 @@ std::vector<float> SidesOf(const LineChain& chain, const std::vector<float>& wid
     return static_cast<std::size_t>(chain.closed ? (i % count + count) % count
                                                  : std::clamp<std::ptrdiff_t>(i, 0, count - 1));
   };
-  std::vector<float> own(points.size());
+  const bool all_meet = std::ranges::all_of(points, [](const LinePoint& point) { return point.meets; });
+  std::vector<float> own(points.size());  // 0: it has no say
+  float most = 0.0f;
   for (std::ptrdiff_t i = 0; i < count; ++i) {
+    if (points[std::size_t(i)].meets && !all_meet) continue;
     const glm::vec2 along = points[at(i + 1)].at - points[at(i - 1)].at;
     own[std::size_t(i)] = Dot(glm::vec2(-along.y, along.x), points[std::size_t(i)].to_owner) < 0.0f ? -1.0f : 1.0f;
+    most += own[std::size_t(i)];
   }
+  const float side_of_most = most < 0.0f ? -1.0f : 1.0f;
   constexpr std::ptrdiff_t kStretch = 8;
   std::vector<float> sides(points.size());
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     float sum = 0.0f;
-    for (std::ptrdiff_t k = -kStretch; k <= kStretch; ++k) sum += own[at(i + k)];
+    for (std::ptrdiff_t k = -kStretch; k <= kStretch; ++k) {
+      const float one = all_meet ? side_of_most : own[at(i + k)];
+      sum += one == 0.0f ? side_of_most : one;
+    }
     sides[std::size_t(i)] = std::clamp(2.0f * sum / (2 * kStretch + 1), -1.0f, 1.0f);
   }
   if (chain.closed) return sides;
@@ -108,8 +117,8 @@ std::vector<float> SidesOf(const LineChain& chain, const std::vector<float>& wid
       sides[nth(k)] *= along / widths[nth(k)];
     }
   };
-  if (!chain.begins) run_back([](std::size_t k) { return k; });
-  if (!chain.ends) run_back([&](std::size_t k) { return points.size() - 1 - k; });
+  if (chain.begin == LineEnd::kJunction) run_back([](std::size_t k) { return k; });
+  if (chain.end == LineEnd::kJunction) run_back([&](std::size_t k) { return points.size() - 1 - k; });
   return sides;
 }
 
