@@ -32,17 +32,43 @@ HWY_BEFORE_NAMESPACE();
 namespace scumble::internal {
 namespace HWY_NAMESPACE {
 
+// A value that stands out by more than a quarter of `range` from all eight around it that are of its object: the
+// nearest of them.
+template <class Values>
+Values WithoutSpeckHere(const RowsAround& light, const RowsAround& object, std::size_t i, Values own, Values own_object,
+                        float range) {
+  const Floats d;
+  auto least = hn::Set(d, std::numeric_limits<float>::infinity()), most = hn::Neg(least);
+  const auto look = [&](const float* row, const float* objects, std::ptrdiff_t shift) HWY_ATTR {
+    const auto value = hn::LoadU(d, row + i + shift);
+    const auto is_its = hn::Eq(hn::LoadU(d, objects + i + shift), own_object);
+    least = hn::IfThenElse(hn::And(is_its, hn::Lt(value, least)), value, least);
+    most = hn::IfThenElse(hn::And(is_its, hn::Gt(value, most)), value, most);
+  };
+  for (const std::ptrdiff_t shift : {-1, 0, 1}) {
+    look(light.above, object.above, shift);
+    look(light.below, object.below, shift);
+    if (shift != 0) look(light.here, object.here, shift);
+  }
+  const auto slack = hn::Set(d, 0.25f * range), low = hn::Sub(least, slack), high = hn::Add(most, slack);
+  const auto has_any = hn::Le(least, most);
+  own = hn::IfThenElse(hn::And(has_any, hn::Lt(own, low)), least, own);
+  return hn::IfThenElse(hn::And(has_any, hn::Gt(own, high)), most, own);
+}
+
 // Sums of two pairs at a time, so that a picture that is turned or mirrored gets the same.
 void EvenRowHere(const RowsAround& light, const RowsAround& object, std::ptrdiff_t step, float range, std::size_t count,
                  float* out) {
   const Floats d;
   const auto half = hn::Set(d, 0.5f), one = hn::Set(d, 1.0f), most = hn::Set(d, range);
   for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
-    const auto own = hn::LoadU(d, light.here + i), own_object = hn::LoadU(d, object.here + i);
+    auto own = hn::LoadU(d, light.here + i);
+    const auto own_object = hn::LoadU(d, object.here + i);
+    if (step == 1) own = WithoutSpeckHere(light, object, i, own, own_object, range);
     auto sum = own, weight = one;
     // Of a row and the one opposite, from `shift` pixels to the right of the place and to its left.
     struct Share {
-      decltype(own) mean, counts;
+      hn::Vec<Floats> mean, counts;
     };
     const auto share_of = [&](const float* row, const float* objects, const float* other, const float* other_objects,
                               std::ptrdiff_t shift) HWY_ATTR {

@@ -28,7 +28,8 @@ FloatPlane PlaneOf(const Value& value) {
 const FloatPlane kOneObject = PlaneOf([](int, int) { return 1.0f; });
 
 TEST(EvenLight, SlopesKeepTheirValuesUpToTheBorder) {
-  const FloatPlane slope = PlaneOf([](int x, int y) { return 0.03125f * static_cast<float>(x) + 0.25f * float(y); });
+  const FloatPlane slope =
+      PlaneOf([](int x, int y) { return 0.0078125f * static_cast<float>(x) + 0.00390625f * float(y); });
   const FloatPlane halves = PlaneOf([](int x, int y) { return x + y < 50 ? 1.0f : 2.0f; });
   for (const FloatPlane* object : {&kOneObject, &halves})
     EXPECT_EQ(EvenedLight(slope, *object, kWide, kHigh, kLightNoise), slope);
@@ -64,16 +65,22 @@ TEST(EvenLight, NoiseFallsToATwelfth) {
 TEST(EvenLight, WhatIsNoNumberStaysAlone) {
   FloatPlane light = PlaneOf([](int, int) { return 0.5f; });
   const std::size_t at = 20 * kWide + 20;
-  for (const float odd : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
-    light[at] = odd;
-    const FloatPlane even = EvenedLight(light, kOneObject, kWide, kHigh, kLightNoise);
-    EXPECT_FALSE(std::isfinite(even[at]));
-    for (std::size_t i = 0; i < even.size(); ++i) {
-      if (i != at) {
-        ASSERT_EQ(even[i], 0.5f);
-      }
+  light[at] = std::numeric_limits<float>::quiet_NaN();
+  const FloatPlane even = EvenedLight(light, kOneObject, kWide, kHigh, kLightNoise);
+  EXPECT_TRUE(std::isnan(even[at]));
+  for (std::size_t i = 0; i < even.size(); ++i) {
+    if (i != at) {
+      ASSERT_EQ(even[i], 0.5f);
     }
   }
+}
+
+TEST(EvenLight, SpecksAreTakenForWhatIsAround) {
+  const FloatPlane even = PlaneOf([](int, int) { return 0.5f; });
+  FloatPlane light = even;
+  light[20 * kWide + 20] = 1.0f, light[30 * kWide + 63] = 0.0f;
+  const FloatPlane made = EvenedLight(light, kOneObject, kWide, kHigh, kLightNoise);
+  for (std::size_t i = 0; i < made.size(); ++i) ASSERT_NEAR(made[i], 0.5f, 0.02f) << i;
 }
 
 TEST(EvenLight, OfOnePixelAndOfNone) {
