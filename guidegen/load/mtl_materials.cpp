@@ -83,11 +83,19 @@ Material MakeMaterial(const MtlLibrary& library, std::size_t index, const Scene&
     material.base_color[c] = std::isfinite(kd) ? std::max(kd, 0.0f) : 1.0f;
   }
   material.base_color.a = std::isfinite(static_cast<float>(from.dissolve)) ? UpTo(from.dissolve, 1.0f) : 1.0f;
-  if (material.base_color.a < 1.0f) material.alpha_mode = AlphaMode::kBlend;
+  const bool has_cutout = !from.alpha_texname.empty() && from.alpha_texname == from.diffuse_texname;
+  if (material.base_color.a < 1.0f || has_cutout) material.alpha_mode = AlphaMode::kBlend;
   SetLighting(from, material);
   material.emission_texture = UseTexture(library, scene, from.emissive_texname, from.emissive_texopt);
   material.emission = material.emission_texture.texture >= 0 ? glm::vec3(1.0f) : Color(from.emission);
   return material;
+}
+
+void WarnOfLeftOut(const tinyobj::material_t& from, WarningCounter& warnings) {
+  const std::string name = "'" + Excerpt(from.name, 80) + "'";
+  if (!from.alpha_texname.empty() && from.alpha_texname != from.diffuse_texname)
+    warnings.Add("a map_d other than map_Kd is left out, its surface is opaque: put it into map_Kd's alpha", name);
+  if (!from.bump_texname.empty()) warnings.Add("map_Bump is left out: name a normal map norm", name);
 }
 
 }  // namespace scumble

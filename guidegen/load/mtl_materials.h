@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "guidegen/load/loader_util.h"
 #include "guidegen/scene/scene.h"
 
 namespace scumble {
@@ -21,5 +22,8 @@ std::vector<std::string> TexturesOf(const tinyobj::material_t& material);
 
 // A material of the library, without a name. Textures that the scene leaves out are ignored.
 Material MakeMaterial(const MtlLibrary& library, std::size_t index, const Scene& scene);
+
+// Warns of textures that MakeMaterial does not read and that would show.
+void WarnOfLeftOut(const tinyobj::material_t& material, WarningCounter& warnings);
 
 }  // namespace scumble

@@ -419,6 +419,7 @@ class ObjLoader {
     mtl_->materials = std::move(contents_.materials);
     for (std::size_t i = 0; i < mtl_->materials.size(); ++i) {
       for (const std::string& name : TexturesOf(mtl_->materials[i])) KeepTexture(name, i);
+      WarnOfLeftOut(mtl_->materials[i], warnings_);
     }
     for (std::size_t i = 0; i < mtl_->materials.size(); ++i) {
       const std::string& name = mtl_->materials[i].name;

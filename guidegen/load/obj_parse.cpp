@@ -73,6 +73,20 @@ std::string JoinName(std::string::iterator begin, std::string::iterator end, std
   return WithBlanks({name, last});
 }
 
+// A line that ends with a backslash goes on in the next one; comments do not.
+void JoinLines(std::string& text) {
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    std::size_t last = end;
+    if (last > begin && text[last - 1] == '\r') --last;
+    const bool is_comment = text.find_first_not_of(" \t", begin) == text.find('#', begin);
+    if (last > begin && text[last - 1] == '\\' && !is_comment && end < text.size()) {
+      std::fill(text.begin() + std::ptrdiff_t(last) - 1, text.begin() + std::ptrdiff_t(end) + 1, ' ');
+    }
+    begin = end + 1;
+  }
+}
+
 // Turns lines into comments that tinyobjloader would store but no code here reads; line numbers stay. A subdivision tag
 // of 20 bytes becomes 360 KB, and again in each shape. The lines and points of an object are copied at each change of
 // material; the first index of each kind shows that they exist. Returns whether smoothing groups are mentioned, `s off`
@@ -254,6 +268,7 @@ Status ParseObj(const std::filesystem::path& path, WarningCounter& warnings, Obj
   std::string text = AsTextWithoutMark(bytes);
   CornerCounter faces;
   std::set<std::string> used;
+  JoinLines(text);
   contents.has_smoothing = PrepareText(text, faces, used);
   contents.corner_counts = faces.Take();
   std::istringstream stream(std::move(text));

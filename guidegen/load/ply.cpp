@@ -382,15 +382,22 @@ class PlyLoader {
     return Ok();
   }
 
+  // As the header has it: faces may come before vertices.
+  std::uint64_t VertexCount() const {
+    const auto is_vertex = [](const Element& element) { return element.name == "vertex"; };
+    const auto found = std::find_if(header_.elements.begin(), header_.elements.end(), is_vertex);
+    return found == header_.elements.end() ? 0 : found->count;
+  }
+
   Status ReadCorners(const Property& property, const Element& element, std::uint64_t face, Values& values) {
     double count = 0.0, value = 0.0;
     if (!values.Next(*property.list_count, count) || !(count >= 0.0)) return CutShort(element, face);
     std::vector<std::uint32_t> corners;
     for (double c = 0.0; c < count; ++c) {
       if (!values.Next(property.type, value)) return CutShort(element, face);
-      if (!(value >= 0.0) || value != std::floor(value) || value >= static_cast<double>(mesh_.positions.size())) {
+      if (!(value >= 0.0) || value != std::floor(value) || value >= static_cast<double>(VertexCount())) {
         std::ostringstream reason;
-        reason << "face " << face << " uses vertex " << value << ", but there are " << mesh_.positions.size();
+        reason << "face " << face << " uses vertex " << value << ", but there are " << VertexCount();
         return Bad(reason.str());
       }
       corners.push_back(static_cast<std::uint32_t>(value));

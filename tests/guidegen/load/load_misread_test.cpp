@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 
+#include "core/io/picture_file.h"
 #include "guidegen/load/load_scene.h"
 #include "guidegen/load/loader_util.h"
 #include "tests/support/gltf_builder.h"
@@ -179,6 +180,35 @@ TEST_F(Misread, NamesWithBlanksAreWhole) {
   EXPECT_THAT(
       Load(Write("d.obj", "mtllib two.mtl\n" + points + "usemtl Blue Paint\nf 1 2 3\nusemtl None\nf 1 2 3\n")).warnings,
       ElementsAre(AllOf(HasSubstr("in no library"), HasSubstr("'Blue Paint'"))));
+}
+
+TEST_F(Misread, ALineOfAnObjGoesOnBehindABackslash) {
+  const Scene scene = Load(Write("a.obj", std::string("# C:\\\nv 0 0 0\nv 1 \\\n 0 0\nv 0 1 \\\r\n0\nf 1 2 \\\n3\n")));
+  ASSERT_EQ(scene.meshes.size(), 1u);
+  EXPECT_THAT(scene.meshes[0].positions, ElementsAre(glm::vec3(0, 0, 0), glm::vec3(1, 0, 0), glm::vec3(0, 1, 0)));
+}
+
+// A leaf's picture cuts it out by its alpha; other pictures of what is opaque are told.
+TEST_F(Misread, WhatAnMtlCutsOut) {
+  Write("leaf.mtl", std::string("newmtl leaf\nmap_Kd leaf.png\nmap_d leaf.png\nnewmtl wing\nmap_d other.png\n"
+                                "newmtl bark\nmap_Bump bark.png\n"));
+  ASSERT_TRUE(WritePicture(Path("leaf.png").string(), Picture(2, 2), {}).ok());
+  const Scene scene =
+      Load(Write("a.obj", std::string("mtllib leaf.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl leaf\nf 1 2 3\n")));
+  EXPECT_EQ(scene.materials[0].alpha_mode, AlphaMode::kBlend);
+  EXPECT_EQ(scene.materials[1].alpha_mode, AlphaMode::kOpaque);
+  EXPECT_THAT(scene.warnings, ::testing::UnorderedElementsAre(AllOf(HasSubstr("map_d"), HasSubstr("'wing'")),
+                                                              AllOf(HasSubstr("map_Bump"), HasSubstr("'bark'"))));
+}
+
+TEST_F(Misread, FacesOfAPlyBeforeItsVertices) {
+  const std::string header =
+      "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\nelement vertex 3\n"
+      "property float x\nproperty float y\nproperty float z\nend_header\n";
+  EXPECT_EQ(Load(Write("a.ply", header + "3 0 1 2\n0 0 0\n1 0 0\n0 1 0\n")).meshes[0].positions.size(), 3u);
+  const auto wrong = LoadScene(Write("b.ply", header + "3 0 1 3\n0 0 0\n1 0 0\n0 1 0\n"));
+  ASSERT_FALSE(wrong.ok());
+  EXPECT_THAT(wrong.error().message, HasSubstr("uses vertex 3, but there are 3"));
 }
 
 // tinyobjloader would lose the first line: here the library, whose own first line is the material's name.
