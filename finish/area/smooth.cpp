@@ -89,6 +89,42 @@ FloatPlane LaidOut(std::span<const float> plane, const SmoothPlanes& planes) {
   return out;
 }
 
+// Whoever weighs by difference leaves a pixel alone that is unlike all of its neighbours, pass after pass. Such a one
+// takes their mean.
+void FillLonePixels(double range, SmoothPlanes& planes) {
+  const float per_square = BiweightPerSquare(range);
+  const auto stride = static_cast<std::ptrdiff_t>(planes.stride);
+  const auto color_at = [&](std::size_t p) { return glm::vec3(planes.lightness[p], planes.a[p], planes.b[p]); };
+  planes.MakeNext();
+  ForEachSmoothRow(planes.height, [&](std::size_t y) {
+    for (std::size_t x = 0; x < planes.width; ++x) {
+      const std::size_t p = planes.At(x, y);
+      glm::vec3 color = color_at(p);
+      float found = 0.0f;
+      bool is_alone = true;
+      // By pairs: the sum is that of the turned picture.
+      const auto pair = [&](std::ptrdiff_t to) {
+        glm::vec3 sum(0.0f);
+        for (const std::ptrdiff_t offset : {-to, to}) {
+          const std::size_t q = std::size_t(std::ptrdiff_t(p) + offset);
+          if (planes.key[q] != planes.key[p]) continue;
+          const glm::vec3 other = color_at(q), off = other - color;
+          is_alone = is_alone && glm::dot(off, off) * per_square >= 1.0f;
+          sum += other, found += 1.0f;
+        }
+        return sum;
+      };
+      const glm::vec3 straight = pair(1) + pair(stride);
+      if (is_alone) {
+        const glm::vec3 sum = straight + (pair(stride - 1) + pair(stride + 1));
+        if (is_alone && found > 0.0f) color = sum / found;
+      }
+      planes.next_lightness[p] = color.x, planes.next_a[p] = color.y, planes.next_b[p] = color.z;
+    }
+  });
+  planes.TakeNext();
+}
+
 // A pixel at an object's border may show some of its neighbour, and what is smoothed has only its own. So it takes the
 // neighbours' smoothed colour by the share that the given colour has of it, half at most. Borders are not jagged then.
 void MixAtBorders(const SmoothPlanes& planes, std::size_t place, std::size_t count, const OklabBlock& given,
@@ -163,6 +199,8 @@ void Smooth(const SmoothPass& pass, double strength, std::span<const std::uint8_
     stops = {LaidOut(guides.Plane(Layer::kNormal, 0), planes), LaidOut(guides.Plane(Layer::kNormal, 1), planes),
              LaidOut(guides.Plane(Layer::kNormal, 2), planes), LaidOut(guides.Plane(Layer::kDepth), planes)};
   }
+  const bool weighs = pass.filter == SmoothPass::Filter::kBilateral || pass.filter == SmoothPass::Filter::kWavelets;
+  if (weighs) FillLonePixels(pass.range, planes);
   for (int i = 0; i < pass.passes; ++i) {
     switch (pass.filter) {
       case SmoothPass::Filter::kBilateral:

@@ -78,6 +78,22 @@ TEST_P(SmoothFilters, NoiseGoesAndHighStepsStand) {
   }
 }
 
+// A speck goes, at the picture's corner, too; a line of one pixel stands.
+TEST(SmoothSpecks, GoAndLinesStand) {
+  Picture picture = PlainPicture(40, 30, 40000, 40000, 40000);
+  const auto blacken = [&](int x, int y) { std::fill_n(picture.At(x, y), 3, std::uint16_t(0)); };
+  blacken(20, 15), blacken(0, 0);
+  for (int y = 0; y < 30; ++y) blacken(30, y);
+  for (const Filter filter : {Filter::kBilateral, Filter::kWavelets}) {
+    SmoothPass pass;
+    pass.filter = filter, pass.borders = false;
+    const Picture made = Finished(StepOf(pass), nullptr, picture);
+    EXPECT_NEAR(made.At(20, 15)[0], 40000, 300);
+    EXPECT_NEAR(made.At(0, 0)[0], 40000, 300);
+    EXPECT_LT(made.At(30, 15)[0], 3000);
+  }
+}
+
 TEST_P(SmoothFilters, TurnsWithThePicture) {
   const Picture given = NoisyHalves(41, 37);
   const Picture made = TurnedOnce(Finished(StepOf(Pass()), nullptr, given));
