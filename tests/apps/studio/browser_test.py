@@ -428,7 +428,7 @@ class Lasting(Page):
         self.browser.refresh()
         self.settled()
         self.assertEqual((self.state()["style"], self.state()["view"]), ("gouache", view))
-        self.assertEqual(self.pixels(), before)
+        self.until(lambda: self.pixels() == before, "the picture before")
         self.assertEqual(self.studio.stop(), 0)
         self.until(lambda: self.find("#gone").is_displayed(), "the banner of a server that is gone")
         self.studio = Studio(self.folder, self.scene, self.studio.port)
