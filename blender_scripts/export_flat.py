@@ -275,6 +275,8 @@ def fill_export_scene(flat, materials, unsupported):
     """A new scene that holds one object for each mesh at a place, at the origin: places are written afterwards, because
     the exporter would drop the shear of a matrix. `materials` are the exporter's, by key."""
     scene = bpy.data.scenes.new("scumble")
+    for mesh in bpy.data.meshes:  # the exporter looks for UV maps in each mesh of the file, and fails at empty slots
+        mesh.materials.clear()
     done, strands = set(), 0
     for number, placed in enumerate(flat.meshes):
         mesh = placed.mesh

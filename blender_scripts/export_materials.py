@@ -37,14 +37,14 @@ class Reader:
             node = previous(socket).node
             self.complain(f"node '{node.name}' ({node.type}) feeds {socket.name}, which keeps its own value instead")
             value = socket.default_value
-        return float(value if isinstance(value, (int, float)) else sum(value) / 3)
+        return float(value)
 
     def color(self, socket):
         """The colour, and the part of the input that glTF can keep: nothing, an image's socket, or a tuple with the
         name of a colour attribute."""
         value = constant(socket)
         if value is not None:
-            return (value if isinstance(value, tuple) else (value,) * 3), None
+            return value, None
         source = previous(socket)
         node = source.node
         if node.type == "TEX_IMAGE" and source.name == "Color":

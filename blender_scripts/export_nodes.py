@@ -7,6 +7,8 @@ PRINCIPLED_INPUTS = {"Subsurface": "Subsurface Weight", "Specular": "Specular IO
                      "Clearcoat Normal": "Coat Normal", "Transmission": "Transmission Weight",
                      "Emission": "Emission Color"}
 
+LUMINANCE = (0.2126, 0.7152, 0.0722)  # of Blender's own colour space
+
 
 def principled_input(node, name):
     """The input of that older name; None where this Blender's node has none."""
@@ -24,16 +26,15 @@ def previous(socket):
 
 
 def constant(socket):
-    """The value of an input that is a number or a colour; None where something else feeds it."""
+    """The value of an input, a number or a tuple as the input is; None where something else feeds it. Blender turns a
+    colour into a number by its luminance."""
     source = previous(socket)
-    value = None
-    if source is None:
-        value = socket.default_value
-    elif source.node.type in {"RGB", "VALUE"}:
-        value = source.default_value
-    if value is None or isinstance(value, (int, float)):
-        return value
-    return tuple(value)[:3]
+    if source is not None and source.node.type not in {"RGB", "VALUE"}:
+        return None
+    value, is_number = (source or socket).default_value, isinstance(socket.default_value, (int, float))
+    if isinstance(value, (int, float)):
+        return float(value) if is_number else (float(value),) * 3
+    return sum(a * b for a, b in zip(LUMINANCE, value)) if is_number else tuple(value)[:3]
 
 
 def coordinates_of(socket):
