@@ -271,12 +271,11 @@ def place_mesh(flat, meshes, placed, instance, depsgraph, unsupported):
     flat.meshes.append(placed)
 
 
-def fill_export_scene(flat, materials, unsupported):
+def fill_export_scene(flat, materials):
     """A new scene that holds one object for each mesh at a place, at the origin: places are written afterwards, because
     the exporter would drop the shear of a matrix. `materials` are the exporter's, by key."""
     scene = bpy.data.scenes.new("scumble")
-    for mesh in bpy.data.meshes:  # the exporter looks for UV maps in each mesh of the file, and fails at empty slots
-        mesh.materials.clear()
+    clear_other_slots({placed.mesh.as_pointer() for placed in flat.meshes})
     done, strands = set(), 0
     for number, placed in enumerate(flat.meshes):
         mesh = placed.mesh
@@ -288,12 +287,17 @@ def fill_export_scene(flat, materials, unsupported):
                 stand_in = export_hair.stand_in(materials[material_key(hair.material)], strands)
                 scene.collection.objects.link(stand_in)
                 hair.exported = stand_in.name
-            if not keep_used_colors(mesh):
-                unsupported.add(f"object '{placed.name}': its materials read different colour attributes, none is kept")
         copy = bpy.data.objects.new(f"scumble.{number:06d}", mesh)
         scene.collection.objects.link(copy)
         placed.exported = copy.name
     bpy.context.window.scene = scene
+
+
+def clear_other_slots(ours):
+    """The exporter looks for UV maps in every mesh of the file, and fails at empty slots."""
+    for mesh in bpy.data.meshes:
+        if mesh.as_pointer() not in ours:
+            mesh.materials.clear()
 
 
 def fill_slots(mesh, materials):
@@ -302,18 +306,3 @@ def fill_slots(mesh, materials):
     for material in materials:
         mesh.materials.append(material)
     mesh.polygons.foreach_set("material_index", indices)
-
-
-def keep_used_colors(mesh):
-    """glTF multiplies vertex colours into every material, so only those stay that all materials of the mesh read.
-    Returns false where the materials do not agree."""
-    wanted = {material.get("scumble_color_attribute") for material in mesh.materials}
-    agreed = len(wanted) == 1
-    name = wanted.pop() if agreed else None
-    if name == "":
-        name = mesh.color_attributes.active_color.name if mesh.color_attributes.active_color else None
-    for unused in [attribute.name for attribute in mesh.color_attributes if attribute.name != name]:
-        mesh.color_attributes.remove(mesh.color_attributes[unused])
-    if len(mesh.color_attributes) > 0:
-        mesh.color_attributes.render_color_index = 0
-    return agreed

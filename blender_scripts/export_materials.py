@@ -18,6 +18,7 @@ GGX = {"GGX", "MULTI_GGX"}
 IGNORED = {"Subsurface": 0.0, "Specular": 0.5, "Specular Tint": 0.0, "Anisotropic": 0.0, "Sheen": 0.0, "Clearcoat": 0.0,
            "Transmission": 0.0, "Diffuse Roughness": 0.0, "Thin Film Thickness": 0.0}
 DEFAULT_INDEX, CLOSE_INDEX = 1.5, 0.06  # 1.45 was the default of 4.0 and 4.1: F0 is 0.034 instead of 0.04
+COLOR_ATTRIBUTE = "scumble_color_attribute"  # property of a material: the one it reads, "" for the mesh's own choice
 WHITE = (1.0, 1.0, 1.0)  # of Specular Tint from Blender 4.0 on, where it is a colour
 
 
@@ -55,6 +56,8 @@ class Reader:
         elif node.type == "VERTEX_COLOR" and source.name == "Color":
             return (1.0, 1.0, 1.0), (node.layer_name,)
         elif node.type == "ATTRIBUTE" and source.name == "Color" and node.attribute_type == "GEOMETRY":
+            if not node.attribute_name:
+                return (0.0, 0.0, 0.0), None  # as in Cycles
             return (1.0, 1.0, 1.0), (node.attribute_name,)
         else:
             self.complain(f"node '{node.name}' ({node.type}) feeds {socket.name}, which keeps its own colour instead")
@@ -206,7 +209,7 @@ def simplify_nodes(copy, reader):
             output = copy.node_tree.nodes.new("ShaderNodeOutputMaterial")
         rebuild(copy, bsdf, None, bends, surface, output)
     if isinstance(source, tuple):
-        copy["scumble_color_attribute"] = source[0]
+        copy[COLOR_ATTRIBUTE] = source[0]
         carrier = surface_of(copy)[1].node.inputs["Base Color"]
         clear_links(copy.node_tree, carrier)
         carrier.default_value = (1.0, 1.0, 1.0, 1.0)
@@ -233,5 +236,6 @@ def simplify(materials, unsupported):
         copy.use_backface_culling = False
         copy.blend_method = "BLEND" if holes else "OPAQUE"
         extras = {"bsdf": bsdf, **bends.extras, "pass_index": material.pass_index if material else 0}
-        entries[key] = {"material": copy, "name": name, "extras": extras, "exported": copy.name, "bends": bends}
+        entries[key] = {"material": copy, "name": name, "extras": extras, "exported": copy.name, "bends": bends,
+                        "color_attribute": copy.get(COLOR_ATTRIBUTE)}
     return entries
