@@ -11,6 +11,8 @@ from blend_common import action_curves, camera_rank, cameras_of, can_be_looked_t
 
 MESH_TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 SHAPE_TYPES = MESH_TYPES | {"CURVES"}
+SHOWN_BY_MESHES = {"CURVE", "SURFACE", "FONT"}  # renders show the meshes that Blender makes of them, as instances
+LAST_LEVEL = 0x7FFFFFFF  # fills up the numbers of an instance that is nested less deeply
 SILENT_TYPES = {"EMPTY", "ARMATURE", "LATTICE", "SPEAKER", "LIGHT_PROBE"}
 RAYS = {"visible_diffuse": "diffuse", "visible_glossy": "glossy",
         "visible_shadow": "shadow"}
@@ -94,10 +96,18 @@ def show_as_rendered(scene, view_layer):
     view_layer.update()
 
 
+def is_made_of_itself(instance):
+    """Whether it is the mesh that Blender makes of a curve in the scene. What its nodes instance is nested deeper."""
+    thing = instance.object.original
+    if not instance.is_instance or thing.type not in SHOWN_BY_MESHES or instance.parent.original != thing:
+        return False
+    return instance.persistent_id[1] == LAST_LEVEL
+
+
 def name_of(instance, taken):
     """The object's name; of an instance "Instancer/Object". Repeated ones count on in Blender's own order."""
     name = instance.object.original.name
-    if instance.is_instance and instance.parent:
+    if instance.is_instance and instance.parent and not is_made_of_itself(instance):
         name = instance.parent.original.name + "/" + name
     taken[name] = taken.get(name, 0) + 1
     return name if taken[name] == 1 else f"{name}#{taken[name]}"
@@ -106,7 +116,9 @@ def name_of(instance, taken):
 def is_only_template(instance):
     """Whether a render leaves the object itself out: what is set on the vertices or faces of its parent."""
     parent = instance.object.original.parent
-    return not instance.is_instance and parent is not None and parent.instance_type in {"VERTS", "FACES"}
+    if parent is None or parent.instance_type not in {"VERTS", "FACES"}:
+        return False
+    return not instance.is_instance or is_made_of_itself(instance)
 
 
 def every_instance(depsgraph):
@@ -118,10 +130,8 @@ def every_instance(depsgraph):
         shown = instance.is_instance or instance.show_self or (instance.show_particles and thing.particle_systems)
         if not shown or thing.type in SILENT_TYPES or is_only_template(instance):
             continue
-        if thing.type == "MESH" and thing.original.type in MESH_TYPES - {"MESH"}:
-            continue  # a curve's triangles, which follow the curve itself
-        if instance.is_instance and thing.type == "CURVE" and thing.original.type == "MESH":
-            continue  # curves that a mesh's nodes leave, which are not drawn
+        if thing.type in SHOWN_BY_MESHES or (thing.type == "MESH" and thing.original.type == "META"):
+            continue
         yield instance, name_of(instance, taken)
 
 
