@@ -195,7 +195,6 @@ def note_limits(thing, shown, view_layer, unsupported):
 
 
 def flatten(scene, view_layer, unsupported):
-    bpy.context.window.view_layer = view_layer
     show_as_rendered(scene, view_layer)
     depsgraph = view_layer.depsgraph
     depsgraph.update()

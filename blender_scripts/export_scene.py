@@ -119,11 +119,17 @@ def open_again():
     bpy.ops.wm.open_mainfile(filepath=bpy.data.filepath, use_scripts=False)
 
 
+def show_frame(scene, view_layer, frame):
+    """Animation reaches the file's own data only from the window's layer, and only once that has been evaluated."""
+    bpy.context.window.scene, bpy.context.window.view_layer = scene, view_layer
+    view_layer.update()
+    scene.frame_set(frame)
+
+
 def export_frame(arguments, frame, output, unsupported):
     scene = choose_scene(arguments.scene)
-    bpy.context.window.scene = scene
-    scene.frame_set(frame if frame is not None else scene.frame_current)
     view_layer = choose_layer(scene, arguments.view_layer)
+    show_frame(scene, view_layer, frame if frame is not None else scene.frame_current)
     blend_check.check_file(view_layer, unsupported)
     export(scene, view_layer, output, unsupported)
 
