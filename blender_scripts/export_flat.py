@@ -7,7 +7,8 @@ import bpy
 import export_hair
 import export_normals
 import export_rest
-from blend_common import action_curves, camera_rank, cameras_of, can_be_looked_through, note_crooked_camera
+import export_viewport
+from blend_common import camera_rank, cameras_of, can_be_looked_through, note_crooked_camera
 
 MESH_TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 SHAPE_TYPES = MESH_TYPES | {"CURVES"}
@@ -43,57 +44,6 @@ class FlatScene:
 
 def material_key(material):
     return material.name_full if material else ""
-
-
-def mute_visibility(thing):
-    """Animation of the viewport's visibility would bring back, at the next evaluation, objects that the render
-    hides."""
-    for curve in action_curves(thing):
-        curve.mute = curve.mute or curve.data_path == "hide_viewport"
-
-
-def use_render_modifiers(thing):
-    for modifier in thing.modifiers:
-        modifier.show_viewport = modifier.show_render
-        if modifier.type in {"SUBSURF", "MULTIRES"}:
-            modifier.levels = modifier.render_levels
-    for system in thing.particle_systems:
-        settings = system.settings
-        settings.display_percentage = 100
-        if settings.child_type != "NONE":
-            shown = "child_nbr" if hasattr(settings, "child_nbr") else "child_percent"  # from Blender 4.0 on
-            setattr(settings, shown, settings.rendered_child_count)
-        settings.display_step = settings.render_step
-
-
-def use_render_data(data):
-    for render, viewport in (("render_resolution_u", "resolution_u"), ("render_resolution_v", "resolution_v"),
-                             ("render_resolution", "resolution")):
-        if getattr(data, render, 0) and hasattr(data, viewport):
-            setattr(data, viewport, getattr(data, render))
-
-
-def show_as_rendered(scene, view_layer):
-    """Scripts see a scene as the viewport does, so the viewport gets the render's settings."""
-    scene.render.simplify_subdivision = scene.render.simplify_subdivision_render
-    pending = [view_layer.layer_collection]
-    while pending:
-        layer = pending.pop()
-        pending += layer.children
-        layer.hide_viewport = False
-        layer.collection.hide_viewport = layer.collection.hide_render
-    for collection in bpy.data.collections:
-        collection.hide_viewport = collection.hide_render
-    for thing in bpy.data.objects:
-        mute_visibility(thing)
-        thing.hide_viewport = thing.hide_render
-        thing.show_instancer_for_viewport = thing.show_instancer_for_render
-        use_render_modifiers(thing)
-        if thing.data is not None:
-            use_render_data(thing.data)
-    for thing in view_layer.objects:
-        thing.hide_set(False, view_layer=view_layer)
-    view_layer.update()
 
 
 def is_made_of_itself(instance):
@@ -195,7 +145,7 @@ def note_limits(thing, shown, view_layer, unsupported):
 
 
 def flatten(scene, view_layer, unsupported):
-    show_as_rendered(scene, view_layer)
+    export_viewport.show_as_rendered(scene, view_layer)
     depsgraph = view_layer.depsgraph
     depsgraph.update()
     flat, meshes = FlatScene(normals=export_normals.of_metaballs(depsgraph)), {}
