@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 import bpy
 
 import export_hair
+import export_maps
 import export_normals
 import export_rest
 import export_viewport
@@ -230,9 +231,9 @@ def place_mesh(flat, meshes, placed, instance, depsgraph, unsupported):
     flat.meshes.append(placed)
 
 
-def fill_export_scene(flat, materials):
+def fill_export_scene(flat, materials, unsupported):
     """A new scene that holds one object for each mesh at a place, at the origin: places are written afterwards, because
-    the exporter would drop the shear of a matrix. `materials` are the exporter's, by key."""
+    the exporter would drop the shear of a matrix. `materials` are export_materials.py's, by key."""
     scene = bpy.data.scenes.new("scumble")
     clear_other_slots({placed.mesh.as_pointer() for placed in flat.meshes})
     done, strands = set(), 0
@@ -240,10 +241,13 @@ def fill_export_scene(flat, materials):
         mesh = placed.mesh
         if mesh.name not in done:
             done.add(mesh.name)
-            fill_slots(mesh, [materials[material_key(slot)] for slot in placed.slots])
+            def complain(what, name=placed.name):
+                unsupported.add(f"object '{name}': {what}")
+            fill_slots(mesh, [export_maps.material_for(mesh, material_key(slot), materials, complain)
+                              for slot in placed.slots])
             for hair in placed.hair:
                 strands += 1
-                stand_in = export_hair.stand_in(materials[material_key(hair.material)], strands)
+                stand_in = export_hair.stand_in(materials[material_key(hair.material)]["material"], strands)
                 scene.collection.objects.link(stand_in)
                 hair.exported = stand_in.name
         copy = bpy.data.objects.new(f"scumble.{number:06d}", mesh)

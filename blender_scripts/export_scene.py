@@ -68,7 +68,7 @@ def export(scene, view_layer, output, unsupported):
     lamps = [export_lamps.describe_lamp(lamp, unsupported) for lamp in flat.lamps]
     border = export_lamps.describe_border(scene, unsupported)
     cameras = [{**export_lamps.describe_camera(camera, scene), **border} for camera in flat.cameras]
-    export_flat.fill_export_scene(flat, {name: entry["material"] for name, entry in materials.items()})
+    export_flat.fill_export_scene(flat, materials, unsupported)
     with tempfile.TemporaryDirectory(prefix="scumble-") as folder:
         raw = Path(folder) / "raw.glb"
         bpy.ops.export_scene.gltf(
