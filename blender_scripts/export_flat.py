@@ -243,8 +243,8 @@ def fill_export_scene(flat, materials, unsupported):
             done.add(mesh.name)
             def complain(what, name=placed.name):
                 unsupported.add(f"object '{name}': {what}")
-            fill_slots(mesh, [export_maps.material_for(mesh, material_key(slot), materials, complain)
-                              for slot in placed.slots])
+            keys = [material_key(slot) for slot in placed.slots]
+            fill_slots(mesh, export_maps.materials_for(mesh, keys, materials, complain))
             for hair in placed.hair:
                 strands += 1
                 stand_in = export_hair.stand_in(materials[material_key(hair.material)]["material"], strands)
