@@ -8,6 +8,7 @@ becomes a Diffuse surface in the material's viewport colour.
 import bpy
 
 import export_bends
+import export_copies
 from export_nodes import clear_links, constant, image_fault, previous, principled_input
 
 PLAIN = {"BSDF_DIFFUSE": "DIFFUSE", "BSDF_GLOSSY": "GLOSSY", "EMISSION": "EMISSION", "BSDF_PRINCIPLED": "PRINCIPLED"}
@@ -179,6 +180,7 @@ def rebuild(copy, bsdf, source, bends, surface, output):
 def simplify_nodes(copy, reader):
     """The extras of a material with nodes, whose copy is made exportable; what bends its normals; and whether it has
     holes."""
+    export_copies.prepare(copy.node_tree)
     output, surface = surface_of(copy)
     if output is not None:
         for name in ("Volume", "Displacement"):
