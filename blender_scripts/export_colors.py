@@ -1,7 +1,7 @@
 """Colour attributes as Cycles reads them: part of export_scene.py.
 
-glTF multiplies vertex colours into every material. Each corner therefore gets the attribute that its own face's material
-reads, and white where that reads none. Blender 3.4's exporter mixes up the colours of corners and leaves attributes of
+glTF multiplies vertex colours into every material. Each corner therefore gets the attribute that the material of its
+face reads, and white if that reads none. Blender 3.4's exporter mixes up the colours of corners and leaves attributes of
 other types white. It writes our colours as an attribute of its own, which export_glb.py renames to COLOR_0.
 """
 
@@ -12,7 +12,8 @@ from export_flat import material_key
 ATTRIBUTE = "_scumble_color"  # as in export_rest.py
 # How attributes of each type that Cycles reads store their values: the property and the number of them.
 TYPES = {"FLOAT": ("value", 1), "INT": ("value", 1), "BOOLEAN": ("value", 1), "INT8": ("value", 1),
-         "FLOAT2": ("vector", 2), "FLOAT_VECTOR": ("vector", 3), "FLOAT_COLOR": ("color", 4), "BYTE_COLOR": ("color", 4)}
+         "FLOAT2": ("vector", 2), "FLOAT_VECTOR": ("vector", 3), "FLOAT_COLOR": ("color", 4),
+         "BYTE_COLOR": ("color", 4)}
 
 
 def colors_of(data, name, width):

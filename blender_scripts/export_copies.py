@@ -86,9 +86,11 @@ def associate_images(tree):
     """Cycles multiplies straight alpha into the colour unless something reads the alpha."""
     for node in [node for node in tree.nodes if node.type == "TEX_IMAGE" and node.image is not None]:
         image = node.image
-        if node.outputs["Alpha"].is_linked or image.alpha_mode != "STRAIGHT" or image.source not in {"FILE", "GENERATED"}:
+        if node.outputs["Alpha"].is_linked or image.alpha_mode != "STRAIGHT":
             continue
-        if image.colorspace_settings.name == "sRGB" and not image.is_float and image.channels == 4 and image.depth == 32:
+        if image.source not in {"FILE", "GENERATED"} or image.colorspace_settings.name != "sRGB":
+            continue
+        if image.depth == 32 and image.channels == 4:
             node.image = associated(image)
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from export_nodes import coordinates_of
 
+NEARLY_ZERO = 1e-6
 MOST_MAPS = 8  # of a mesh in Blender
 
 
@@ -34,9 +35,11 @@ def drop_unread(mesh, read):
 
 
 def add_map(mesh, name):
-    """One of zeros; the map that renders take stays."""
+    """One of zeros, nearly: glTF's v would be 1, which belongs to the other end of an image that repeats. The map that
+    renders take stays."""
     shown = shown_map(mesh)
     mesh.uv_layers.new(name=name, do_init=False)
+    mesh.uv_layers[name].data.foreach_set("uv", np.full(2 * len(mesh.loops), NEARLY_ZERO, np.float32))
     if shown:
         mesh.uv_layers[shown].active_render = True
 
@@ -67,7 +70,7 @@ def number_of(mesh, name, wanted, taken):
         return None
     if number not in taken and wanted is not None and wanted not in taken:
         while len(mesh.uv_layers) <= wanted:
-            add_map(mesh, "scumble")
+            add_map(mesh, f"scumble.{len(mesh.uv_layers)}")
         if number != wanted:
             swap(mesh, number, wanted)
         number = wanted
@@ -76,8 +79,8 @@ def number_of(mesh, name, wanted, taken):
 
 
 def material_for(mesh, key, materials, taken, complain):
-    """The exporter's material for that key on that mesh; `materials` gets an entry for each copy. `taken`: the numbers of
-    maps that the mesh's other materials read."""
+    """The exporter's material for that key on that mesh; `materials` gets an entry for each copy. `taken`: the numbers
+    of maps that the mesh's other materials read."""
     entry = materials[key]
     names = [name for name in maps_of(entry["material"]) if name or mesh.uv_layers]
     if not names:

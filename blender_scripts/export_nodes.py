@@ -21,8 +21,8 @@ def passed_through(output):
 
 
 def trace(socket):
-    """(output, input): the output that feeds this input, past reroutes and muted nodes, None where nothing does; and the
-    last input on the way, None where a muted node hands nothing on."""
+    """(output, input): the output that feeds this input, past reroutes and muted nodes, None where nothing does; and
+    the last input on the way, None where a muted node hands nothing on."""
     while socket is not None and socket.is_linked and not socket.links[0].is_muted:
         source = socket.links[0].from_socket
         if source.node.type == "REROUTE":
