@@ -1,8 +1,8 @@
 """Colour attributes as Cycles reads them: part of export_scene.py.
 
 glTF multiplies vertex colours into every material. Each corner therefore gets the attribute that the material of its
-face reads, and white if that reads none. Blender 3.4's exporter mixes up the colours of corners and leaves attributes of
-other types white. It writes our colours as an attribute of its own, which export_glb.py renames to COLOR_0.
+face reads, and white if that reads none. Blender 3.4's exporter mixes up the colours of corners and leaves attributes
+of other types white. It writes our colours as an attribute of its own, which export_glb.py renames to COLOR_0.
 """
 
 import numpy as np
@@ -11,9 +11,8 @@ from export_flat import material_key
 
 ATTRIBUTE = "_scumble_color"  # as in export_rest.py
 # How attributes of each type that Cycles reads store their values: the property and the number of them.
-TYPES = {"FLOAT": ("value", 1), "INT": ("value", 1), "BOOLEAN": ("value", 1), "INT8": ("value", 1),
-         "FLOAT2": ("vector", 2), "FLOAT_VECTOR": ("vector", 3), "FLOAT_COLOR": ("color", 4),
-         "BYTE_COLOR": ("color", 4)}
+TYPES = {"FLOAT": ("value", 1), "INT": ("value", 1), "BOOLEAN": ("value", 1), "FLOAT2": ("vector", 2),
+         "FLOAT_VECTOR": ("vector", 3), "FLOAT_COLOR": ("color", 4), "BYTE_COLOR": ("color", 4)}
 
 
 def colors_of(data, name, width):
@@ -26,19 +25,42 @@ def colors_of(data, name, width):
     return np.pad(values, ((0, 0), (0, 1))) if width == 2 else values[:, :3]
 
 
-def read(mesh, name):
+def of_faces(mesh, values):
+    totals = np.empty(len(mesh.polygons), np.int32)
+    mesh.polygons.foreach_get("loop_total", totals)
+    return np.repeat(values, totals, axis=0)
+
+
+def of_edges(mesh, values):
+    """Each vertex has the mean of its edges."""
+    ends = np.empty(2 * len(mesh.edges), np.int32)
+    mesh.edges.foreach_get("vertices", ends)
+    sums, counts = np.zeros((len(mesh.vertices), 3), np.float32), np.bincount(ends, minlength=len(mesh.vertices))
+    np.add.at(sums, ends, np.repeat(values, 2, axis=0))
+    return sums / np.maximum(counts, 1)[:, None]
+
+
+SPREAD = {"FACE": ("CORNER", of_faces), "EDGE": ("POINT", of_edges)}
+
+
+def black(mesh):
+    return "POINT", np.zeros((len(mesh.vertices), 3), np.float32)
+
+
+def read(mesh, name, only_colors):
     """(domain, colours): by vertex if possible, else by corner. What is missing is black in Cycles."""
     attribute = mesh.attributes.get(name)
-    if attribute is not None and attribute.data_type in TYPES and attribute.domain in {"POINT", "CORNER", "FACE"}:
+    if only_colors and (attribute is None or attribute.data_type not in {"FLOAT_COLOR", "BYTE_COLOR"}):
+        return black(mesh)
+    if attribute is not None and attribute.data_type in TYPES and attribute.domain in ("POINT", "CORNER", *SPREAD):
         colors = colors_of(attribute.data, *TYPES[attribute.data_type])
-        if attribute.domain != "FACE":
+        if attribute.domain not in SPREAD:
             return attribute.domain, colors
-        totals = np.empty(len(mesh.polygons), np.int32)
-        mesh.polygons.foreach_get("loop_total", totals)
-        return "CORNER", np.repeat(colors, totals, axis=0)
+        domain, spread = SPREAD[attribute.domain]
+        return domain, spread(mesh, colors)
     if name in mesh.uv_layers:
         return "CORNER", colors_of(mesh.uv_layers[name].data, "uv", 2)
-    return "POINT", np.zeros((len(mesh.vertices), 3), np.float32)
+    return black(mesh)
 
 
 def at_corners(mesh, domain, colors):
@@ -50,10 +72,9 @@ def at_corners(mesh, domain, colors):
 
 
 def slots_of_corners(mesh, count):
-    slots, totals = np.empty(len(mesh.polygons), np.int32), np.empty(len(mesh.polygons), np.int32)
+    slots = np.empty(len(mesh.polygons), np.int32)
     mesh.polygons.foreach_get("material_index", slots)
-    mesh.polygons.foreach_get("loop_total", totals)
-    return np.repeat(np.minimum(slots, count - 1), totals)
+    return of_faces(mesh, np.minimum(slots, count - 1))
 
 
 def render_color(mesh):
@@ -62,21 +83,21 @@ def render_color(mesh):
     return mesh.color_attributes[index].name if 0 <= index < len(mesh.color_attributes) else ""
 
 
-def colors_of_mesh(mesh, names):
-    """(domain, colours) of a mesh whose materials read the attributes `names`, one for each slot; None where no face
-    reads any."""
-    names = [render_color(mesh) if name == "" else name for name in names]
-    slots = slots_of_corners(mesh, len(names))
-    used = {names[slot] for slot in np.unique(slots)}
+def colors_of_mesh(mesh, attributes):
+    """(domain, colours) of a mesh whose materials read these attributes, export_materials.py's, one for each slot; None
+    where no face reads any."""
+    attributes = [attribute and (attribute[0] or render_color(mesh), attribute[1]) for attribute in attributes]
+    slots = slots_of_corners(mesh, len(attributes))
+    used = {attributes[slot] for slot in np.unique(slots)}
     if used <= {None}:
         return None
     if len(used) == 1:
-        return read(mesh, used.pop())
+        return read(mesh, *used.pop())
     colors = np.ones((len(mesh.loops), 3), np.float32)
-    for number, name in enumerate(names):
-        if name is not None:
+    for number, attribute in enumerate(attributes):
+        if attribute is not None:
             wanted = slots == number
-            colors[wanted] = at_corners(mesh, *read(mesh, name))[wanted]
+            colors[wanted] = at_corners(mesh, *read(mesh, *attribute))[wanted]
     return "CORNER", colors
 
 

@@ -71,7 +71,7 @@ def associated(image):
         pixels = np.empty(len(image.pixels), np.float32)
         image.pixels.foreach_get(pixels)
         pixels = pixels.reshape(-1, 4)
-        image[ASSOCIATED] = None
+        image[ASSOCIATED] = 0
         if pixels.size and pixels[:, 3].min() < 1.0:
             pixels[:, :3] *= pixels[:, 3:]
             pixels[:, 3] = 1.0
@@ -79,7 +79,7 @@ def associated(image):
             copy.pixels.foreach_set(pixels.ravel())
             copy.pack()
             image[ASSOCIATED] = copy
-    return image[ASSOCIATED] or image
+    return image[ASSOCIATED] if image[ASSOCIATED] != 0 else image
 
 
 def associate_images(tree):

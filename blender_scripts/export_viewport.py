@@ -66,7 +66,7 @@ def use_render_data(data):
 
 
 def use_render_nodes(tree):
-    """The node Is Viewport says no."""
+    """The node Is Viewport answers no."""
     for node in [node for node in tree.nodes if node.type == "IS_VIEWPORT"]:
         no = tree.nodes.new("FunctionNodeInputBool")
         no.boolean = False

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""What few files do is exported as Cycles renders it: odd materials, curves with geometry nodes, settings of the viewport,
-and view layers other than the window's.
+"""What few files do is exported as Cycles renders it: odd materials, curves with geometry nodes, settings of the
+viewport, and view layers other than the window's.
 
     oddities_test.py PROGRAM [BLENDER]
 """
