@@ -106,12 +106,22 @@ def take_settings(scene, view_layer):
     view_layer.update()
 
 
+def hidden_objects(view_layer):
+    """Those that the viewport does not show, though an instance may."""
+    in_layer = set(view_layer.objects)
+    return [thing for thing in bpy.data.objects
+            if thing.hide_viewport or any(collection.hide_viewport for collection in thing.users_collection)
+            or (thing in in_layer and not thing.visible_get(view_layer=view_layer))]
+
+
 def show_as_rendered(scene, view_layer):
     """Animation of what was hidden only reaches the file's data once that was evaluated, and it may be that of the
-    render's settings. What became visible has stale places until it is tagged."""
+    render's settings. What became visible has stale places until it is tagged. The others keep theirs: an emitter that
+    is tagged would throw its particles away."""
+    hidden = hidden_objects(view_layer)
     take_settings(scene, view_layer)
     scene.frame_set(scene.frame_current)
     take_settings(scene, view_layer)
-    for thing in bpy.data.objects:
+    for thing in hidden:
         thing.update_tag(refresh={"OBJECT"})
     view_layer.update()

@@ -111,7 +111,6 @@ def attributes():
     paint(plane("Vectors", 4, painted("vectors", "Attribute", "v")), "v", "FLOAT_VECTOR", "POINT", "vector",
           lambda n: (n, 0.2, 0.9))
     paint(plane("Edges", 30, named), "B", "FLOAT_COLOR", "EDGE", "color", rainbow)
-    paint(plane("Uncoloured", 31, named), "B", "INT", "FACE", "value", lambda n: int(n > 0.4))
     paint(plane("Whole", 32, painted("whole", "Attribute", "B")), "B", "INT", "FACE", "value", lambda n: int(n > 0.4))
     plane("Missing", 5, painted("missing", "Attribute", "nowhere"))
     render = plane("Unnamed", 6, painted("unnamed", "VertexColor", ""))

@@ -140,6 +140,18 @@ def stale(path):
     bpy.context.scene.collection.objects.link(instancer)
 
 
+def emitter():
+    """Sends leaves up, 1 m in a second."""
+    leaf = plane("Leaf", 39)
+    leaf.hide_render = True
+    source = plane("Emitter", 4)
+    source.modifiers.new("Particles", "PARTICLE_SYSTEM")
+    settings = source.particle_systems[0].settings
+    settings.count, settings.frame_end = 10, 10
+    settings.render_type, settings.instance_object, settings.particle_size = "OBJECT", leaf, 0.1
+    settings.effector_weights.gravity = 0
+
+
 def build(asset_path):
     red = diffuse("red", (1, 0, 0))
     viewport(red)

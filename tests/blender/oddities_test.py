@@ -81,6 +81,8 @@ def check_layered(document, extras):
     colors = [material["extras"]["scumble"]["bsdf"]["color"] for material in document["materials"]
               if material["name"] == "painted"]
     expect(colors == [[0, 0, 1]], colors)
+    heights = [node["matrix"][13] for node in document["nodes"] if node["name"].startswith("Emitter/Leaf")]
+    expect(heights and abs(max(heights) - 9 / 24) < 0.05, "particles keep their way", heights)
     lost = extras["unsupported"]
     expect(len(lost) == 1 and "material 'tilted': node 'Mapping'" in lost[0], lost)
 
