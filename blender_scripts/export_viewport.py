@@ -120,6 +120,8 @@ def show_as_rendered(scene, view_layer):
     is tagged would throw its particles away."""
     hidden = hidden_objects(view_layer)
     take_settings(scene, view_layer)
+    if not hidden:
+        return
     scene.frame_set(scene.frame_current)
     take_settings(scene, view_layer)
     for thing in hidden:
