@@ -5,12 +5,16 @@ from dataclasses import dataclass, field
 import bpy
 
 import export_hair
+import export_maps
 import export_normals
 import export_rest
-from blend_common import action_curves, camera_rank, cameras_of, can_be_looked_through, note_crooked_camera
+import export_viewport
+from blend_common import camera_rank, cameras_of, can_be_looked_through, note_crooked_camera
 
 MESH_TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 SHAPE_TYPES = MESH_TYPES | {"CURVES"}
+SHOWN_BY_MESHES = {"CURVE", "SURFACE", "FONT"}  # renders show the meshes that Blender makes of them, as instances
+LAST_LEVEL = 0x7FFFFFFF  # fills up the numbers of an instance that is nested less deeply
 SILENT_TYPES = {"EMPTY", "ARMATURE", "LATTICE", "SPEAKER", "LIGHT_PROBE"}
 RAYS = {"visible_diffuse": "diffuse", "visible_glossy": "glossy",
         "visible_shadow": "shadow"}
@@ -43,61 +47,18 @@ def material_key(material):
     return material.name_full if material else ""
 
 
-def mute_visibility(thing):
-    """Animation of the viewport's visibility would bring back, at the next evaluation, objects that the render
-    hides."""
-    for curve in action_curves(thing):
-        curve.mute = curve.mute or curve.data_path == "hide_viewport"
-
-
-def use_render_modifiers(thing):
-    for modifier in thing.modifiers:
-        modifier.show_viewport = modifier.show_render
-        if modifier.type in {"SUBSURF", "MULTIRES"}:
-            modifier.levels = modifier.render_levels
-    for system in thing.particle_systems:
-        settings = system.settings
-        settings.display_percentage = 100
-        if settings.child_type != "NONE":
-            shown = "child_nbr" if hasattr(settings, "child_nbr") else "child_percent"  # from Blender 4.0 on
-            setattr(settings, shown, settings.rendered_child_count)
-        settings.display_step = settings.render_step
-
-
-def use_render_data(data):
-    for render, viewport in (("render_resolution_u", "resolution_u"), ("render_resolution_v", "resolution_v"),
-                             ("render_resolution", "resolution")):
-        if getattr(data, render, 0) and hasattr(data, viewport):
-            setattr(data, viewport, getattr(data, render))
-
-
-def show_as_rendered(scene, view_layer):
-    """Scripts see a scene as the viewport does, so the viewport gets the render's settings."""
-    scene.render.simplify_subdivision = scene.render.simplify_subdivision_render
-    pending = [view_layer.layer_collection]
-    while pending:
-        layer = pending.pop()
-        pending += layer.children
-        layer.hide_viewport = False
-        layer.collection.hide_viewport = layer.collection.hide_render
-    for collection in bpy.data.collections:
-        collection.hide_viewport = collection.hide_render
-    for thing in bpy.data.objects:
-        mute_visibility(thing)
-        thing.hide_viewport = thing.hide_render
-        thing.show_instancer_for_viewport = thing.show_instancer_for_render
-        use_render_modifiers(thing)
-        if thing.data is not None:
-            use_render_data(thing.data)
-    for thing in view_layer.objects:
-        thing.hide_set(False, view_layer=view_layer)
-    view_layer.update()
+def is_made_of_itself(instance):
+    """Whether it is the mesh that Blender makes of a curve in the scene. What its nodes instance is nested deeper."""
+    thing = instance.object.original
+    if not instance.is_instance or thing.type not in SHOWN_BY_MESHES or instance.parent.original != thing:
+        return False
+    return instance.persistent_id[1] == LAST_LEVEL
 
 
 def name_of(instance, taken):
     """The object's name; of an instance "Instancer/Object". Repeated ones count on in Blender's own order."""
     name = instance.object.original.name
-    if instance.is_instance and instance.parent:
+    if instance.is_instance and instance.parent and not is_made_of_itself(instance):
         name = instance.parent.original.name + "/" + name
     taken[name] = taken.get(name, 0) + 1
     return name if taken[name] == 1 else f"{name}#{taken[name]}"
@@ -106,7 +67,9 @@ def name_of(instance, taken):
 def is_only_template(instance):
     """Whether a render leaves the object itself out: what is set on the vertices or faces of its parent."""
     parent = instance.object.original.parent
-    return not instance.is_instance and parent is not None and parent.instance_type in {"VERTS", "FACES"}
+    if parent is None or parent.instance_type not in {"VERTS", "FACES"}:
+        return False
+    return not instance.is_instance or is_made_of_itself(instance)
 
 
 def every_instance(depsgraph):
@@ -118,10 +81,8 @@ def every_instance(depsgraph):
         shown = instance.is_instance or instance.show_self or (instance.show_particles and thing.particle_systems)
         if not shown or thing.type in SILENT_TYPES or is_only_template(instance):
             continue
-        if thing.type == "MESH" and thing.original.type in MESH_TYPES - {"MESH"}:
-            continue  # a curve's triangles, which follow the curve itself
-        if instance.is_instance and thing.type == "CURVE" and thing.original.type == "MESH":
-            continue  # curves that a mesh's nodes leave, which are not drawn
+        if thing.type in SHOWN_BY_MESHES or (thing.type == "MESH" and thing.original.type == "META"):
+            continue
         yield instance, name_of(instance, taken)
 
 
@@ -185,8 +146,7 @@ def note_limits(thing, shown, view_layer, unsupported):
 
 
 def flatten(scene, view_layer, unsupported):
-    bpy.context.window.view_layer = view_layer
-    show_as_rendered(scene, view_layer)
+    export_viewport.show_as_rendered(scene, view_layer)
     depsgraph = view_layer.depsgraph
     depsgraph.update()
     flat, meshes = FlatScene(normals=export_normals.of_metaballs(depsgraph)), {}
@@ -273,25 +233,34 @@ def place_mesh(flat, meshes, placed, instance, depsgraph, unsupported):
 
 def fill_export_scene(flat, materials, unsupported):
     """A new scene that holds one object for each mesh at a place, at the origin: places are written afterwards, because
-    the exporter would drop the shear of a matrix. `materials` are the exporter's, by key."""
+    the exporter would drop the shear of a matrix. `materials` are export_materials.py's, by key."""
     scene = bpy.data.scenes.new("scumble")
+    clear_other_slots({placed.mesh.as_pointer() for placed in flat.meshes})
     done, strands = set(), 0
     for number, placed in enumerate(flat.meshes):
         mesh = placed.mesh
         if mesh.name not in done:
             done.add(mesh.name)
-            fill_slots(mesh, [materials[material_key(slot)] for slot in placed.slots])
+            def complain(what, name=placed.name):
+                unsupported.add(f"object '{name}': {what}")
+            keys = [material_key(slot) for slot in placed.slots]
+            fill_slots(mesh, export_maps.materials_for(mesh, keys, materials, complain))
             for hair in placed.hair:
                 strands += 1
-                stand_in = export_hair.stand_in(materials[material_key(hair.material)], strands)
+                stand_in = export_hair.stand_in(materials[material_key(hair.material)]["material"], strands)
                 scene.collection.objects.link(stand_in)
                 hair.exported = stand_in.name
-            if not keep_used_colors(mesh):
-                unsupported.add(f"object '{placed.name}': its materials read different colour attributes, none is kept")
         copy = bpy.data.objects.new(f"scumble.{number:06d}", mesh)
         scene.collection.objects.link(copy)
         placed.exported = copy.name
     bpy.context.window.scene = scene
+
+
+def clear_other_slots(ours):
+    """The exporter looks for UV maps in every mesh of the file, and fails at empty slots."""
+    for mesh in bpy.data.meshes:
+        if mesh.as_pointer() not in ours:
+            mesh.materials.clear()
 
 
 def fill_slots(mesh, materials):
@@ -300,18 +269,3 @@ def fill_slots(mesh, materials):
     for material in materials:
         mesh.materials.append(material)
     mesh.polygons.foreach_set("material_index", indices)
-
-
-def keep_used_colors(mesh):
-    """glTF multiplies vertex colours into every material, so only those stay that all materials of the mesh read.
-    Returns false where the materials do not agree."""
-    wanted = {material.get("scumble_color_attribute") for material in mesh.materials}
-    agreed = len(wanted) == 1
-    name = wanted.pop() if agreed else None
-    if name == "":
-        name = mesh.color_attributes.active_color.name if mesh.color_attributes.active_color else None
-    for unused in [attribute.name for attribute in mesh.color_attributes if attribute.name != name]:
-        mesh.color_attributes.remove(mesh.color_attributes[unused])
-    if len(mesh.color_attributes) > 0:
-        mesh.color_attributes.render_color_index = 0
-    return agreed

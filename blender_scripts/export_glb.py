@@ -7,6 +7,7 @@ import re
 import struct
 
 import export_bends
+import export_colors
 import export_hair
 from blend_common import GLTF_FROM_BLENDER
 
@@ -102,6 +103,12 @@ def add_hair(document, binary, flat, by_name, settings):
             primitives.append(export_hair.primitive_of(document, binary, hair, stand_in.get("material"), settings))
 
 
+def final_name(attribute):
+    """Blender 3.4 puts a _ before names that begin with one."""
+    name = re.sub("^__", "_", attribute)
+    return "COLOR_0" if name == export_colors.ATTRIBUTE.upper() else name
+
+
 def complete(document, binary, flat, materials, lamps, cameras, curves):
     """Restores the places and names of meshes, and adds hair, cameras, lights and extras. Returns the binary chunk."""
     document["asset"]["generator"] = "scumble export_scene.py"
@@ -144,9 +151,8 @@ def complete(document, binary, flat, materials, lamps, cameras, curves):
         document.pop("nodes")
     entries = {entry["exported"]: entry for entry in materials.values()}
     for mesh in document.get("meshes", []):
-        for primitive in mesh["primitives"]:  # Blender 3.4 puts a _ before names that begin with one
-            primitive["attributes"] = {re.sub("^__", "_", name): value
-                                       for name, value in primitive["attributes"].items()}
+        for primitive in mesh["primitives"]:
+            primitive["attributes"] = {final_name(name): value for name, value in primitive["attributes"].items()}
     for material in document.get("materials", []):
         entry = entries[material["name"]]
         material["name"] = entry["name"]

@@ -33,8 +33,7 @@ def emission_of(lamp, complain):
         node = previous(surface.node.inputs["Strength"]).node
         complain(f"node '{node.name}' ({node.type}) feeds its strength, which is 1 instead")
         strength = 1.0
-    color = color if isinstance(color, tuple) else (color,) * 3
-    return color, strength if isinstance(strength, float) else sum(strength) / 3
+    return color, strength
 
 
 def has_soft_falloff(lamp):
@@ -142,4 +141,4 @@ def world_radiance(scene, view_layer, unsupported):
         fed = previous(surface.node.inputs["Color" if color is None else "Strength"]).node
         unsupported.add(f"world '{world.name}': node '{fed.name}' ({fed.type}); it is black instead")
         return [0.0, 0.0, 0.0]
-    return [max(strength * c, 0.0) for c in (color if isinstance(color, tuple) else (color,) * 3)]
+    return [max(strength * c, 0.0) for c in color]

@@ -8,6 +8,7 @@ becomes a Diffuse surface in the material's viewport colour.
 import bpy
 
 import export_bends
+import export_copies
 from export_nodes import clear_links, constant, image_fault, previous, principled_input
 
 PLAIN = {"BSDF_DIFFUSE": "DIFFUSE", "BSDF_GLOSSY": "GLOSSY", "EMISSION": "EMISSION", "BSDF_PRINCIPLED": "PRINCIPLED"}
@@ -18,6 +19,7 @@ GGX = {"GGX", "MULTI_GGX"}
 IGNORED = {"Subsurface": 0.0, "Specular": 0.5, "Specular Tint": 0.0, "Anisotropic": 0.0, "Sheen": 0.0, "Clearcoat": 0.0,
            "Transmission": 0.0, "Diffuse Roughness": 0.0, "Thin Film Thickness": 0.0}
 DEFAULT_INDEX, CLOSE_INDEX = 1.5, 0.06  # 1.45 was the default of 4.0 and 4.1: F0 is 0.034 instead of 0.04
+CYCLES_OWN = {"N", "generated", "pointiness", "random_per_island", "tangent"}  # attributes that no mesh stores
 WHITE = (1.0, 1.0, 1.0)  # of Specular Tint from Blender 4.0 on, where it is a colour
 
 
@@ -37,14 +39,14 @@ class Reader:
             node = previous(socket).node
             self.complain(f"node '{node.name}' ({node.type}) feeds {socket.name}, which keeps its own value instead")
             value = socket.default_value
-        return float(value if isinstance(value, (int, float)) else sum(value) / 3)
+        return float(value)
 
     def color(self, socket):
-        """The colour, and the part of the input that glTF can keep: nothing, an image's socket, or a tuple with the
-        name of a colour attribute."""
+        """The colour, and the part of the input that glTF can keep: nothing, an image's socket, or an attribute: its
+        name, "" for the mesh's own choice, and whether it has to be one of colours."""
         value = constant(socket)
         if value is not None:
-            return (value if isinstance(value, tuple) else (value,) * 3), None
+            return value, None
         source = previous(socket)
         node = source.node
         if node.type == "TEX_IMAGE" and source.name == "Color":
@@ -53,9 +55,13 @@ class Reader:
                 return (1.0, 1.0, 1.0), source
             self.complain(f"{fault} feeds {socket.name}, which keeps its own colour instead")
         elif node.type == "VERTEX_COLOR" and source.name == "Color":
-            return (1.0, 1.0, 1.0), (node.layer_name,)
+            return (1.0, 1.0, 1.0), (node.layer_name, True)
         elif node.type == "ATTRIBUTE" and source.name == "Color" and node.attribute_type == "GEOMETRY":
-            return (1.0, 1.0, 1.0), (node.attribute_name,)
+            if not node.attribute_name:
+                return (0.0, 0.0, 0.0), None  # as in Cycles
+            if node.attribute_name in CYCLES_OWN:
+                self.complain(f"attribute '{node.attribute_name}', which Cycles makes up, is black")
+            return (1.0, 1.0, 1.0), (node.attribute_name, False)
         else:
             self.complain(f"node '{node.name}' ({node.type}) feeds {socket.name}, which keeps its own colour instead")
         return tuple(socket.default_value)[:3], None
@@ -174,8 +180,9 @@ def rebuild(copy, bsdf, source, bends, surface, output):
 
 
 def simplify_nodes(copy, reader):
-    """The extras of a material with nodes, whose copy is made exportable; what bends its normals; and whether it has
-    holes."""
+    """The extras of a material with nodes, whose copy is made exportable; what bends its normals; whether it has holes;
+    and the attribute that is its colour."""
+    export_copies.prepare(copy.node_tree)
     output, surface = surface_of(copy)
     if output is not None:
         for name in ("Volume", "Displacement"):
@@ -206,11 +213,10 @@ def simplify_nodes(copy, reader):
             output = copy.node_tree.nodes.new("ShaderNodeOutputMaterial")
         rebuild(copy, bsdf, None, bends, surface, output)
     if isinstance(source, tuple):
-        copy["scumble_color_attribute"] = source[0]
         carrier = surface_of(copy)[1].node.inputs["Base Color"]
         clear_links(copy.node_tree, carrier)
         carrier.default_value = (1.0, 1.0, 1.0, 1.0)
-    return bsdf, bends, holes
+    return bsdf, bends, holes, source if isinstance(source, tuple) else None
 
 
 def simplify(materials, unsupported):
@@ -224,14 +230,15 @@ def simplify(materials, unsupported):
         else:
             copy, name = material.copy(), material.name
         copy.name = f"scumble.{number:06d}"
-        holes, bends, bsdf = False, export_bends.Bends(), diffuse(copy.diffuse_color[:3])
+        holes, bends, bsdf, attribute = False, export_bends.Bends(), diffuse(copy.diffuse_color[:3]), None
         if copy.use_nodes and copy.node_tree:
-            bsdf, bends, holes = simplify_nodes(copy, Reader(name, unsupported))
+            bsdf, bends, holes, attribute = simplify_nodes(copy, Reader(name, unsupported))
         # Old files hold values beyond 1 here, which the exporter writes for a material without nodes.
         copy.roughness, copy.metallic = min(copy.roughness, 1.0), min(copy.metallic, 1.0)
         # These settings are the viewport's; Cycles shows both sides of every surface and always applies alpha.
         copy.use_backface_culling = False
         copy.blend_method = "BLEND" if holes else "OPAQUE"
         extras = {"bsdf": bsdf, **bends.extras, "pass_index": material.pass_index if material else 0}
-        entries[key] = {"material": copy, "name": name, "extras": extras, "exported": copy.name, "bends": bends}
+        entries[key] = {"material": copy, "name": name, "extras": extras, "exported": copy.name, "bends": bends,
+                        "color_attribute": attribute}
     return entries

@@ -7,33 +7,59 @@ PRINCIPLED_INPUTS = {"Subsurface": "Subsurface Weight", "Specular": "Specular IO
                      "Clearcoat Normal": "Coat Normal", "Transmission": "Transmission Weight",
                      "Emission": "Emission Color"}
 
+LUMINANCE = (0.2126, 0.7152, 0.0722)  # of Blender's own colour space
+
 
 def principled_input(node, name):
     """The input of that older name; None where this Blender's node has none."""
     return node.inputs.get(PRINCIPLED_INPUTS.get(name, name)) or node.inputs.get(name)
 
 
-def previous(socket):
-    """The socket that feeds this one, past reroutes; None where nothing does."""
-    while socket is not None and socket.is_linked:
+def passed_through(output):
+    """The input that a muted node hands on to that output; None where there is none."""
+    return next((link.from_socket for link in output.node.internal_links if link.to_socket == output), None)
+
+
+def trace(socket):
+    """(output, input): the output that feeds this input, past reroutes and muted nodes, None where nothing does; and
+    the last input on the way, None where a muted node hands nothing on."""
+    while socket is not None and socket.is_linked and not socket.links[0].is_muted:
         source = socket.links[0].from_socket
-        if source.node.type != "REROUTE":
-            return None if source.node.mute else source
-        socket = source.node.inputs[0]
-    return None
+        if source.node.type == "REROUTE":
+            socket = source.node.inputs[0]
+        elif source.node.mute:
+            socket = passed_through(source)
+        else:
+            return source, socket
+    return None, socket
+
+
+def previous(socket):
+    """The socket that feeds this one, past reroutes and muted nodes; None where nothing does."""
+    return trace(socket)[0]
 
 
 def constant(socket):
-    """The value of an input that is a number or a colour; None where something else feeds it."""
-    source = previous(socket)
-    value = None
-    if source is None:
-        value = socket.default_value
-    elif source.node.type in {"RGB", "VALUE"}:
-        value = source.default_value
-    if value is None or isinstance(value, (int, float)):
-        return value
-    return tuple(value)[:3]
+    """The value of an input, a number or a tuple as the input is; None where something else feeds it. Blender turns a
+    colour into a number by its luminance."""
+    source, last = trace(socket)
+    if source is not None and source.node.type not in {"RGB", "VALUE"}:
+        return None
+    value, is_number = (source or socket).default_value, isinstance(socket.default_value, (int, float))
+    if source is None and last not in (None, socket):
+        value = 0.0  # a reroute or a muted node that nothing feeds
+    if isinstance(value, (int, float)):
+        return float(value) if is_number else (float(value),) * 3
+    return sum(a * b for a, b in zip(LUMINANCE, value)) if is_number else tuple(value)[:3]
+
+
+def is_plain_mapping(node):
+    """Whether it turns, scales and moves coordinates in the plane of the image, all by constants."""
+    if node.type != "MAPPING" or node.vector_type != "POINT":
+        return False
+    if any(previous(node.inputs[name]) is not None for name in ("Location", "Rotation", "Scale")):
+        return False
+    return max(abs(angle) for angle in node.inputs["Rotation"].default_value[:2]) < 1e-6
 
 
 def coordinates_of(socket):
@@ -44,8 +70,9 @@ def coordinates_of(socket):
         return "", None
     if source.node.type == "UVMAP":
         return source.node.uv_map, None
-    if source.node.type == "MAPPING" and source.node.vector_type == "POINT":
-        if all(previous(source.node.inputs[name]) is None for name in ("Location", "Rotation", "Scale")):
+    if is_plain_mapping(source.node):
+        below = previous(source.node.inputs["Vector"])
+        if below is not None and below.node.type != "MAPPING":
             return coordinates_of(source.node.inputs["Vector"])
     return "", f"node '{source.node.name}' ({source.node.type}) as coordinates"
 

@@ -41,7 +41,7 @@ def relax(thing):
 def drop_other_attributes(mesh, ours):
     """The exporter is to write ours, and would write every other one as well. The materials of faces are one, too,
     which it reads and does not write."""
-    kept = {layer.name for layers in (mesh.color_attributes, mesh.uv_layers) for layer in layers} | ours | SHAPE
+    kept = {layer.name for layer in mesh.uv_layers} | ours | SHAPE
     for name in [attribute.name for attribute in mesh.attributes if not getattr(attribute, "is_required", False)]:
         if name in kept or name.startswith("."):
             continue

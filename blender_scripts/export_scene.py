@@ -30,6 +30,7 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import blend_check  # noqa: E402  (Blender does not put a script's own folder on the path)
 import export_bends  # noqa: E402
+import export_colors  # noqa: E402
 import export_flat  # noqa: E402
 import export_glb  # noqa: E402
 import export_hair  # noqa: E402
@@ -40,12 +41,13 @@ import export_stretch  # noqa: E402
 from blend_common import (Unsupported, action_curves, cameras_of, check_version, choose_layer,  # noqa: E402
                           choose_scene, fail, say)
 
+OUR_ATTRIBUTES = {export_rest.ATTRIBUTE, export_bends.ATTRIBUTE, export_colors.ATTRIBUTE}
 
-def export_colors():
-    """The exporter's option for the one colour attribute that is left of a mesh; its name depends on the version."""
+
+def without_colors():
+    """The exporter's option for that; its name depends on the version. Ours are an attribute of their own."""
     known = bpy.ops.export_scene.gltf.get_rna_type().properties.keys()
-    return {"export_colors": True} if "export_colors" in known else {"export_vertex_color": "ACTIVE",
-                                                                      "export_all_vertex_colors": False}
+    return {"export_colors": False} if "export_colors" in known else {"export_vertex_color": "NONE"}
 
 
 def export(scene, view_layer, output, unsupported):
@@ -57,21 +59,23 @@ def export(scene, view_layer, output, unsupported):
     has_rest = export_rest.add_rest_positions(flat, view_layer)
     materials = export_materials.simplify(flat.materials, unsupported)
     has_heights = export_bends.add_exact_v(flat, materials)
-    if has_rest or has_heights:
+    has_colors = export_colors.add_colors(flat, materials)
+    has_attributes = has_rest or has_heights or has_colors
+    if has_attributes:
         for mesh in {placed.mesh.name: placed.mesh for placed in flat.meshes}.values():
-            export_rest.drop_other_attributes(mesh, {export_rest.ATTRIBUTE, export_bends.ATTRIBUTE})
+            export_rest.drop_other_attributes(mesh, OUR_ATTRIBUTES)
     world = export_lamps.world_radiance(scene, view_layer, unsupported)
     lamps = [export_lamps.describe_lamp(lamp, unsupported) for lamp in flat.lamps]
     border = export_lamps.describe_border(scene, unsupported)
     cameras = [{**export_lamps.describe_camera(camera, scene), **border} for camera in flat.cameras]
-    export_flat.fill_export_scene(flat, {name: entry["material"] for name, entry in materials.items()}, unsupported)
+    export_flat.fill_export_scene(flat, materials, unsupported)
     with tempfile.TemporaryDirectory(prefix="scumble-") as folder:
         raw = Path(folder) / "raw.glb"
         bpy.ops.export_scene.gltf(
             filepath=str(raw), export_format="GLB", use_active_scene=True, export_yup=True, export_apply=False,
             export_cameras=False, export_lights=False, export_animations=False, export_skins=False, export_morph=False,
-            export_tangents=False, export_extras=False, export_attributes=has_rest or has_heights,
-            export_image_format="AUTO", **export_colors())
+            export_tangents=False, export_extras=False, export_attributes=has_attributes,
+            export_image_format="AUTO", **without_colors())
         document, binary = export_glb.read(raw)
     curves = export_hair.curve_settings(scene)
     binary = export_glb.complete(document, binary, flat, materials, lamps, cameras, curves)
@@ -115,11 +119,17 @@ def open_again():
     bpy.ops.wm.open_mainfile(filepath=bpy.data.filepath, use_scripts=False)
 
 
+def show_frame(scene, view_layer, frame):
+    """Animation reaches the file's own data only from the window's layer, and only once that has been evaluated."""
+    bpy.context.window.scene, bpy.context.window.view_layer = scene, view_layer
+    view_layer.update()
+    scene.frame_set(frame)
+
+
 def export_frame(arguments, frame, output, unsupported):
     scene = choose_scene(arguments.scene)
-    bpy.context.window.scene = scene
-    scene.frame_set(frame if frame is not None else scene.frame_current)
     view_layer = choose_layer(scene, arguments.view_layer)
+    show_frame(scene, view_layer, frame if frame is not None else scene.frame_current)
     blend_check.check_file(view_layer, unsupported)
     export(scene, view_layer, output, unsupported)
 

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 
 import bpy
 
-from export_flat import RAYS, every_instance, is_generated, new_mesh, seen_by_camera, show_as_rendered
+from export_flat import RAYS, every_instance, is_generated, is_made_of_itself, new_mesh, seen_by_camera
+from export_viewport import show_as_rendered
 
 LONGEST_NAME = 63  # bytes that Blender keeps of a name
 SCATTERED = {"OBJECT", "COLLECTION"}  # the rendered form of particles
@@ -34,7 +35,7 @@ def name_apart(scene, view_layer, unsupported):
     standing, copies, instancers, made, too_long = [], [], [], {}, 0
     for instance, name in every_instance(depsgraph):
         thing = instance.object
-        if not instance.is_instance:
+        if not instance.is_instance or is_made_of_itself(instance):
             standing.append((thing.original, name))
             continue
         if len(name.encode()) > LONGEST_NAME:

@@ -91,4 +91,5 @@ def main():
                 print(f"made by {versions[maker]}, drawn by {versions[blender]}: agrees")
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,129 @@
+"""Gives the viewport the render's settings, because scripts see a scene as the viewport does: part of export_scene.py.
+
+The file is opened anew for each frame, so nothing is put back.
+"""
+
+import re
+
+import bpy
+
+from blend_common import action_curves
+
+# Of a modifier, by its type: the viewport's property and the render's.
+MODIFIERS = {"SUBSURF": ("levels", "render_levels"), "MULTIRES": ("levels", "render_levels"),
+             "SCREW": ("steps", "render_steps"), "OCEAN": ("viewport_resolution", "resolution")}
+DATA = (("resolution_u", "render_resolution_u"), ("resolution_v", "render_resolution_v"),
+        ("resolution", "render_resolution"))
+# Paths of properties that are the viewport's. The resolution of an Ocean is the render's.
+OF_VIEWPORT = re.compile(r"(hide_viewport|show_viewport|\.levels|\.steps|viewport_resolution|^resolution(_u|_v)?"
+                         r"|show_instancer_for_viewport|display_percentage|display_step|child_nbr|child_percent)$")
+
+
+def release(thing):
+    """Takes animation and drivers off the viewport's own settings, which the next evaluation would bring back."""
+    data = getattr(thing, "animation_data", None)
+    if data is None:
+        return
+    curves = list(action_curves(thing))
+    for strip in (strip for track in data.nla_tracks for strip in track.strips if strip.action):
+        curves += getattr(strip.action, "fcurves", [])
+    for curve in curves:
+        curve.mute = curve.mute or OF_VIEWPORT.search(curve.data_path) is not None
+    for driver in [driver for driver in data.drivers if OF_VIEWPORT.search(driver.data_path)]:
+        data.drivers.remove(driver)
+
+
+def put(owner, name, value):
+    """Each change costs an evaluation."""
+    if getattr(owner, name) != value:
+        setattr(owner, name, value)
+
+
+def use_render_particles(settings):
+    release(settings)
+    put(settings, "display_percentage", 100)
+    if settings.child_type != "NONE":
+        shown = "child_nbr" if hasattr(settings, "child_nbr") else "child_percent"  # from Blender 4.0 on
+        put(settings, shown, settings.rendered_child_count)
+    put(settings, "display_step", settings.render_step)
+
+
+def use_render_modifiers(thing):
+    for modifier in thing.modifiers:
+        put(modifier, "show_viewport", modifier.show_render)
+        if modifier.type in MODIFIERS:
+            viewport, render = MODIFIERS[modifier.type]
+            put(modifier, viewport, getattr(modifier, render))
+    for system in thing.particle_systems:
+        use_render_particles(system.settings)
+
+
+def use_render_data(data):
+    release(data)
+    for viewport, render in DATA:
+        if getattr(data, render, 0) and hasattr(data, viewport):
+            put(data, viewport, getattr(data, render))
+
+
+def use_render_nodes(tree):
+    """The node Is Viewport answers no."""
+    for node in [node for node in tree.nodes if node.type == "IS_VIEWPORT"]:
+        no = tree.nodes.new("FunctionNodeInputBool")
+        no.boolean = False
+        for link in list(node.outputs[0].links):
+            tree.links.new(no.outputs[0], link.to_socket)
+
+
+def unhide(view_layer):
+    pending = [view_layer.layer_collection]
+    while pending:
+        layer = pending.pop()
+        pending += layer.children
+        put(layer, "hide_viewport", False)
+        put(layer.collection, "hide_viewport", layer.collection.hide_render)
+    for collection in bpy.data.collections:
+        put(collection, "hide_viewport", collection.hide_render)
+
+
+def take_settings(scene, view_layer):
+    render = scene.render
+    put(render, "simplify_subdivision", render.simplify_subdivision_render)
+    put(render, "simplify_child_particles", render.simplify_child_particles_render)
+    unhide(view_layer)
+    for tree in bpy.data.node_groups:
+        if tree.type == "GEOMETRY":
+            use_render_nodes(tree)
+    for thing in bpy.data.objects:
+        release(thing)
+        put(thing, "hide_viewport", thing.hide_render)
+        put(thing, "show_instancer_for_viewport", thing.show_instancer_for_render)
+        use_render_modifiers(thing)
+        if thing.data is not None:
+            use_render_data(thing.data)
+    for thing in view_layer.objects:
+        if thing.hide_get(view_layer=view_layer):
+            thing.hide_set(False, view_layer=view_layer)
+    view_layer.update()
+
+
+def hidden_objects(view_layer):
+    """Those that the viewport does not show, though an instance may."""
+    in_layer = set(view_layer.objects)
+    return [thing for thing in bpy.data.objects
+            if thing.hide_viewport or any(collection.hide_viewport for collection in thing.users_collection)
+            or (thing in in_layer and not thing.visible_get(view_layer=view_layer))]
+
+
+def show_as_rendered(scene, view_layer):
+    """Animation of what was hidden only reaches the file's data once that was evaluated, and it may be that of the
+    render's settings. What became visible has stale places until it is tagged. The others keep theirs: an emitter that
+    is tagged would throw its particles away."""
+    hidden = hidden_objects(view_layer)
+    take_settings(scene, view_layer)
+    if not hidden:
+        return
+    scene.frame_set(scene.frame_current)
+    take_settings(scene, view_layer)
+    for thing in hidden:
+        thing.update_tag(refresh={"OBJECT"})
+    view_layer.update()

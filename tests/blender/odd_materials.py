@@ -1,0 +1,188 @@
+"""Materials that few files have, each on a plane in a cell of its own: part of make_oddities.py.
+
+Every texture has cells of one colour, so that renderers need not interpolate alike.
+"""
+
+import bpy
+import numpy as np
+
+COLUMNS, SIZE, GRID = 8, 0.9, 4
+
+
+def plane(name, cell, material=None, collection=None):
+    """A grid of 4 x 4 quads with a UV map from 0 to 1."""
+    places = [(SIZE * (x / GRID - 0.5), SIZE * (y / GRID - 0.5), 0) for y in range(GRID + 1) for x in range(GRID + 1)]
+    row = GRID + 1
+    faces = [(y * row + x, y * row + x + 1, y * row + x + row + 1, y * row + x + row)
+             for y in range(GRID) for x in range(GRID)]
+    data = bpy.data.meshes.new(name)
+    data.from_pydata(places, [], faces)
+    data.uv_layers.new(name="UVMap")
+    fill_map(data, "UVMap", 1.0)
+    if material:
+        data.materials.append(material)
+    thing = bpy.data.objects.new(name, data)
+    thing.location = (cell % COLUMNS, -(cell // COLUMNS), 0)
+    (collection or bpy.context.scene.collection).objects.link(thing)
+    return thing
+
+
+def fill_map(data, name, scale):
+    for loop in data.loops:
+        place = data.vertices[loop.vertex_index].co
+        data.uv_layers[name].data[loop.index].uv = [scale * (place[axis] / SIZE + 0.5) for axis in (0, 1)]
+
+
+def shader(name, kind="ShaderNodeBsdfDiffuse"):
+    """(material, node tree, surface node)"""
+    material = bpy.data.materials.new(name)
+    material.use_nodes = True
+    tree = material.node_tree
+    tree.nodes.clear()
+    surface = tree.nodes.new(kind)
+    tree.links.new(surface.outputs[0], tree.nodes.new("ShaderNodeOutputMaterial").inputs["Surface"])
+    return material, tree, surface
+
+
+def diffuse(name, color):
+    material, _, surface = shader(name)
+    surface.inputs["Color"].default_value = (*color, 1)
+    return material
+
+
+def picture(name, alpha=1.0):
+    """4 x 4 cells; the lower half has that alpha."""
+    image = bpy.data.images.new(name, 4, 4, alpha=alpha < 1.0)
+    y, x = np.mgrid[0:4, 0:4]
+    image.pixels.foreach_set(np.stack([x / 4, y / 4, (x + y) % 2, np.where(y < 2, alpha, 1.0)], axis=2)
+                             .astype(np.float32).ravel())
+    image.pack()
+    return image
+
+
+def textured(name, image, *chain):
+    """A Diffuse surface; `chain` has what feeds the image's coordinates, the nearest first: (type, settings)."""
+    material, tree, surface = shader(name)
+    texture = tree.nodes.new("ShaderNodeTexImage")
+    texture.image, texture.interpolation = image, "Closest"
+    tree.links.new(texture.outputs["Color"], surface.inputs["Color"])
+    socket = texture.inputs["Vector"]
+    for kind, settings in chain:
+        node = tree.nodes.new("ShaderNode" + kind)
+        for key, value in settings.items():
+            if key[0].isupper():
+                node.inputs[key].default_value = value
+            else:
+                setattr(node, key, value)
+        tree.links.new(node.outputs["UV" if kind in {"UVMap", "TexCoord"} else 0], socket)
+        socket = node.inputs["Vector"] if "Vector" in node.inputs else None
+    return material
+
+
+def painted(name, kind, attribute):
+    material, tree, surface = shader(name)
+    node = tree.nodes.new("ShaderNode" + kind)
+    setattr(node, "layer_name" if kind == "VertexColor" else "attribute_name", attribute)
+    tree.links.new(node.outputs["Color"], surface.inputs["Color"])
+    return material
+
+
+def paint(thing, name, kind, domain, prop, value):
+    """An attribute whose items hold `value` of a number from 0 to 1."""
+    thing.data.attributes.new(name, kind, domain)
+    items = thing.data.attributes[name].data
+    for number, item in enumerate(items):
+        setattr(item, prop, value(number / len(items)))
+
+
+def rainbow(share):
+    return share, 0.5, 0.1, 1
+
+
+# ---- The cells ------------------------------------------------------------------------------------------------------
+
+
+def attributes():
+    named = painted("named", "VertexColor", "B")
+    for cell, (kind, domain) in enumerate((("FLOAT_COLOR", "CORNER"), ("BYTE_COLOR", "CORNER"),
+                                           ("FLOAT_COLOR", "FACE"))):
+        paint(plane(f"{kind} {domain}", cell, named), "B", kind, domain, "color", rainbow)
+    paint(plane("Numbers", 3, painted("numbers", "Attribute", "n")), "n", "FLOAT", "POINT", "value", lambda n: n)
+    paint(plane("Vectors", 4, painted("vectors", "Attribute", "v")), "v", "FLOAT_VECTOR", "POINT", "vector",
+          lambda n: (n, 0.2, 0.9))
+    paint(plane("Edges", 30, named), "B", "FLOAT_COLOR", "EDGE", "color", rainbow)
+    paint(plane("Whole", 32, painted("whole", "Attribute", "B")), "B", "INT", "FACE", "value", lambda n: int(n > 0.4))
+    plane("Missing", 5, painted("missing", "Attribute", "nowhere"))
+    render = plane("Unnamed", 6, painted("unnamed", "VertexColor", ""))
+    two = plane("Both", 7, named)
+    two.data.materials.append(painted("other", "VertexColor", "A"))
+    two.data.materials.append(diffuse("plain", (0.2, 0.3, 0.9)))
+    for polygon in two.data.polygons:
+        polygon.material_index = polygon.index % 3
+    for thing in (render, two):
+        paint(thing, "A", "FLOAT_COLOR", "POINT", "color", lambda n: (1, n, 0, 1))
+        paint(thing, "B", "FLOAT_COLOR", "CORNER", "color", rainbow)
+        thing.data.color_attributes.active_color_index = 0
+        thing.data.color_attributes.render_color_index = 1
+
+
+def maps():
+    image = picture("Cells")
+    shared = textured("shared", image, ("UVMap", {"uv_map": "paint"}))
+    for cell, order in ((8, ("paint", "light")), (9, ("light", "more", "paint")), (10, ("light",))):
+        thing = plane("Order " + " ".join(order), cell, shared)
+        layers = thing.data.uv_layers
+        layers[0].name = order[0]
+        for name in order[1:]:
+            layers.new(name=name)
+        for name in order:
+            fill_map(thing.data, name, 1.0 if name == "paint" else 0.3)
+    plane("EmptySlots", 11).data.materials.append(None)
+    turned = ("Mapping", {"Rotation": (0, 0, 0.5)})
+    plane("TwoMappings", 12, textured("mapped twice", image, turned, ("Mapping", {"Scale": (2, 3, 1),
+                                      "Location": (0.1, 0.2, 0)}), ("TexCoord", {})))
+    plane("Straight", 13, textured("straight alpha", picture("Glass", 0.3)))
+
+
+def tilted():
+    return textured("tilted", picture("Cells"), ("Mapping", {"Rotation": (1, 0, 0)}), ("TexCoord", {}))
+
+
+def muted():
+    image = picture("Muted")
+    plane("MutedMapping", 14, textured("muted mapping", image, ("Mapping", {"Scale": (4, 4, 4), "mute": True}),
+                                       ("TexCoord", {})))
+    hue = textured("muted hue", image)
+    tree = hue.node_tree
+    node = tree.nodes.new("ShaderNodeHueSaturation")
+    node.mute = True
+    surface = tree.nodes["Diffuse BSDF"]
+    tree.links.new(tree.nodes["Image Texture"].outputs["Color"], node.inputs["Color"])
+    tree.links.new(node.outputs["Color"], surface.inputs["Color"])
+    plane("MutedHue", 15, hue)
+    mix, tree, surface = shader("muted mix")
+    surface.inputs["Color"].default_value = (1, 0, 0, 1)
+    node = tree.nodes.new("ShaderNodeMixShader")
+    node.mute = True
+    tree.links.new(surface.outputs[0], node.inputs[1])
+    tree.links.new(node.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
+    plane("MutedMix", 16, mix)
+    blank, tree, surface = shader("muted, unfed")
+    surface.inputs["Color"].default_value = (1, 0, 0, 1)
+    node = tree.nodes.new("ShaderNodeHueSaturation")
+    node.inputs["Color"].default_value, node.mute = (0, 1, 0, 1), True
+    tree.links.new(node.outputs["Color"], surface.inputs["Color"])
+    plane("MutedUnfed", 17, blank)
+
+
+def numbers():
+    glow, tree, surface = shader("glow", "ShaderNodeEmission")
+    strength = tree.nodes.new("ShaderNodeRGB")
+    strength.outputs[0].default_value = (0, 1, 0, 1)
+    tree.links.new(strength.outputs[0], surface.inputs["Strength"])
+    plane("Glow", 18, glow)
+
+
+def build():
+    for cells in (attributes, maps, muted, numbers):
+        cells()

@@ -1,0 +1,100 @@
+#!/usr/bin/python3
+"""What few files do is exported as Cycles renders it: odd materials, curves with geometry nodes, settings of the
+viewport, and view layers other than the window's.
+
+    oddities_test.py PROGRAM [BLENDER]
+"""
+
+import json
+import struct
+import sys
+import tempfile
+from pathlib import Path
+
+from everything_test import expect, run
+
+SOURCE = Path(__file__).resolve().parents[2]
+DATA = {"A", "normal", "depth", "object", "position", "albedo"}
+QUADS = 16
+TRIANGLES = {  # of objects whose viewport shows another mesh, or none
+    "DrivenAway": 2 * QUADS, "StripAway": 2 * QUADS, "KeyedArray": 6 * QUADS, "DrivenLevels": 2 * QUADS * 16,
+    "Screw": 2 * 24, "RenderAlone": 2 * QUADS, "Body": 2 * QUADS, "Child": 2 * QUADS * 16,
+    "Instancer/Body": 2 * QUADS, "Instancer/Child": 2 * QUADS * 16, "Path/Path": 2 * QUADS, "Path/Path#5": 2 * QUADS}
+
+
+def blender_run(blender, *arguments):
+    done = run([blender, "-b", "-noaudio", "--factory-startup", "-Y", *arguments])
+    expect(done.returncode == 0, arguments, done.stdout[-2000:], done.stderr)
+    return done.stderr
+
+
+def exported(blender, folder, name, *arguments):
+    """The document of the exported scene; what is not expressed."""
+    output = folder / (name + ".glb")
+    blender_run(blender, folder / (name + ".blend"), "-P", SOURCE / "blender_scripts/export_scene.py", "--", "--output",
+                output, *arguments)
+    data = output.read_bytes()
+    document = json.loads(data[20:20 + struct.unpack_from("<I", data, 12)[0]])
+    return document, document["scenes"][document["scene"]]["extras"]["scumble"]
+
+
+def check_odd(document, extras):
+    nodes = {node["name"]: node for node in document["nodes"]}
+    materials = {material["name"]: material["extras"]["scumble"]["bsdf"] for material in document["materials"]}
+
+    def primitives(name):
+        return document["meshes"][nodes[name]["mesh"]]["primitives"]
+
+    for name, triangles in TRIANGLES.items():
+        expect(name in nodes, name, sorted(nodes))
+        found = sum(document["accessors"][primitive["indices"]]["count"] // 3 for primitive in primitives(name))
+        expect(found == triangles, name, found, triangles)
+    expect("Path" not in nodes and "Stone" not in nodes, "what renders do not show", sorted(nodes))
+    expect(all("Word" != name.split("/")[0] or name == "Word" for name in nodes), "a text once", sorted(nodes))
+    painted = [document["materials"][primitive["material"]]["name"] for primitive in primitives("Tube")]
+    expect(painted == ["tube"], painted)
+    shared = {primitives(name)[0]["material"] for name in nodes if name.startswith("Order ")}
+    expect(len(shared) == 1, "one material for all orders of UV maps", shared)
+    expect(abs(materials["glow"]["strength"] - 0.7152) < 1e-6, materials["glow"])
+    expect(max(abs(value - 0.7152) for value in extras["world"]) < 1e-6, extras["world"])
+    expect(not extras["unsupported"], extras["unsupported"])
+
+
+def check_against_cycles(program, blender, scene):
+    done = run([program, "crosscheck", scene, "--blender", blender, "--size", "320x200", "--samples", "1", "-q",
+                "--json"])
+    expect(done.stdout, done.stderr)
+    report = json.loads(done.stdout)
+    report = report[0] if isinstance(report, list) else report
+    figures = {figure["layer"]: figure for figure in report["figures"] if figure["layer"] in DATA}
+    expect(set(figures) == DATA, sorted(figures))
+    for figure in report["figures"]:
+        if figure["layer"] in DATA:
+            expect(figure["kept"], figure)
+
+
+def check_layered(document, extras):
+    names = {node["name"] for node in document["nodes"]}
+    expect({"Comes", "Sun"} <= names and "Goes" not in names, extras, sorted(names))
+    lamp = next(node["extras"]["scumble"]["lamp"] for node in document["nodes"] if node["name"] == "Sun")
+    expect(lamp["energy"] == 5, lamp)
+    colors = [material["extras"]["scumble"]["bsdf"]["color"] for material in document["materials"]
+              if material["name"] == "painted"]
+    expect(colors == [[0, 0, 1]], colors)
+    heights = [node["matrix"][13] for node in document["nodes"] if node["name"].startswith("Emitter/Leaf")]
+    expect(heights and abs(max(heights) - 9 / 24) < 0.05, "particles keep their way", heights)
+    lost = extras["unsupported"]
+    expect(len(lost) == 1 and "material 'tilted': node 'Mapping'" in lost[0], lost)
+
+
+def main():
+    program, blender = Path(sys.argv[1]).resolve(), (sys.argv[2:] or ["blender"])[0]
+    with tempfile.TemporaryDirectory() as work:
+        folder = Path(work)
+        blender_run(blender, "-P", SOURCE / "tests/blender/make_oddities.py", "--", "--output", folder)
+        check_odd(*exported(blender, folder, "odd"))
+        check_layered(*exported(blender, folder, "layered", "--frame", "10", "--view-layer", "Second"))
+        check_against_cycles(program, blender, folder / "odd.blend")
+
+
+main()
