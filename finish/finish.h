@@ -64,6 +64,8 @@ struct FinishFrame {
   // Where `guides` were upsampled: what they were made of, a whole number of times smaller, with their layers. Strokes
   // are traced on these, which have no blocks.
   const GuideSet* small_guides = nullptr;
+  // Pixels of `guides` from one sample to the next.
+  int Apart() const { return small_guides ? guides->width() / small_guides->width() : 1; }
 };
 
 // kInput where a pass is to show a ramp of colours, and has none.

@@ -32,39 +32,41 @@ HWY_BEFORE_NAMESPACE();
 namespace scumble::internal {
 namespace HWY_NAMESPACE {
 
-// A value that stands out by more than a quarter of `range` from all eight around it that are of its object: the
-// nearest of them.
+// A value that stands out by more than a quarter of `range` from all around it that are of its object: the nearest of
+// them, if they are three or more.
 template <class Values>
 Values WithoutSpeckHere(const RowsAround& light, const RowsAround& object, std::size_t i, Values own, Values own_object,
-                        float range) {
+                        std::ptrdiff_t step, float range) {
   const Floats d;
+  auto count = hn::Zero(d);
   auto least = hn::Set(d, std::numeric_limits<float>::infinity()), most = hn::Neg(least);
   const auto look = [&](const float* row, const float* objects, std::ptrdiff_t shift) HWY_ATTR {
     const auto value = hn::LoadU(d, row + i + shift);
     const auto is_its = hn::Eq(hn::LoadU(d, objects + i + shift), own_object);
     least = hn::IfThenElse(hn::And(is_its, hn::Lt(value, least)), value, least);
     most = hn::IfThenElse(hn::And(is_its, hn::Gt(value, most)), value, most);
+    count = hn::Add(count, hn::IfThenElseZero(is_its, hn::Set(d, 1.0f)));
   };
-  for (const std::ptrdiff_t shift : {-1, 0, 1}) {
+  for (const std::ptrdiff_t shift : {-step, std::ptrdiff_t(0), step}) {
     look(light.above, object.above, shift);
     look(light.below, object.below, shift);
     if (shift != 0) look(light.here, object.here, shift);
   }
   const auto slack = hn::Set(d, 0.25f * range), low = hn::Sub(least, slack), high = hn::Add(most, slack);
-  const auto has_any = hn::Le(least, most);
-  own = hn::IfThenElse(hn::And(has_any, hn::Lt(own, low)), least, own);
-  return hn::IfThenElse(hn::And(has_any, hn::Gt(own, high)), most, own);
+  const auto has_some = hn::Ge(count, hn::Set(d, 3.0f));
+  own = hn::IfThenElse(hn::And(has_some, hn::Lt(own, low)), least, own);
+  return hn::IfThenElse(hn::And(has_some, hn::Gt(own, high)), most, own);
 }
 
 // Sums of two pairs at a time, so that a picture that is turned or mirrored gets the same.
-void EvenRowHere(const RowsAround& light, const RowsAround& object, std::ptrdiff_t step, float range, std::size_t count,
-                 float* out) {
+void EvenRowHere(const RowsAround& light, const RowsAround& object, std::ptrdiff_t step, bool is_first, float range,
+                 std::size_t count, float* out) {
   const Floats d;
   const auto half = hn::Set(d, 0.5f), one = hn::Set(d, 1.0f), most = hn::Set(d, range);
   for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
     auto own = hn::LoadU(d, light.here + i);
     const auto own_object = hn::LoadU(d, object.here + i);
-    if (step == 1) own = WithoutSpeckHere(light, object, i, own, own_object, range);
+    if (is_first) own = WithoutSpeckHere(light, object, i, own, own_object, step, range);
     auto sum = own, weight = one;
     // Of a row and the one opposite, from `shift` pixels to the right of the place and to its left.
     struct Share {
@@ -103,46 +105,46 @@ namespace {
 HWY_EXPORT(EvenRowHere);
 
 constexpr std::array<int, 3> kSteps = {1, 2, 4};
-constexpr int kPad = kSteps.back();
-
 constexpr int kVector = 16;  // values of a vector, which may reach so far beyond a row
 
-// A plane with kPad pixels more on all sides.
+// A plane with `pad` pixels more on all sides.
 class PaddedPlane {
  public:
-  PaddedPlane(std::span<const float> values, int width, int height, float outside)
-      : stride_(kPad + width + kPad + kVector), values_(std::size_t(stride_) * std::size_t(height + 2 * kPad)) {
-    tbb::parallel_for(tbb::blocked_range<int>(-kPad, height + kPad, 16), [&](const auto& rows) {
+  PaddedPlane(std::span<const float> values, int width, int height, int pad, float outside)
+      : pad_(pad), stride_(pad + width + pad + kVector), values_(std::size_t(stride_) * std::size_t(height + 2 * pad)) {
+    tbb::parallel_for(tbb::blocked_range<int>(-pad, height + pad, 16), [&](const auto& rows) {
       for (int y = rows.begin(); y != rows.end(); ++y) {
-        std::fill_n(Row(y) - kPad, stride_, outside);
+        std::fill_n(Row(y) - pad_, stride_, outside);
         if (y >= 0 && y < height) std::copy_n(values.begin() + std::ptrdiff_t(width) * y, width, Row(y));
       }
     });
   }
-  float* Row(int y) { return values_.data() + std::ptrdiff_t(stride_) * (y + kPad) + kPad; }
-  const float* Row(int y) const { return values_.data() + std::ptrdiff_t(stride_) * (y + kPad) + kPad; }
+  float* Row(int y) { return values_.data() + std::ptrdiff_t(stride_) * (y + pad_) + pad_; }
+  const float* Row(int y) const { return values_.data() + std::ptrdiff_t(stride_) * (y + pad_) + pad_; }
 
  private:
-  int stride_;
+  int pad_, stride_;
   FloatPlane values_;
 };
 
 }  // namespace
 
-FloatPlane EvenedLight(std::span<const float> light, std::span<const float> object, int width, int height,
-                       float range) {
-  const PaddedPlane objects(object, width, height, std::numeric_limits<float>::quiet_NaN());
-  PaddedPlane from(light, width, height, 0.0f), to = from;
+FloatPlane EvenedLight(std::span<const float> light, std::span<const float> object, int width, int height, float range,
+                       int apart) {
+  const int pad = kSteps.back() * apart;
+  const PaddedPlane objects(object, width, height, pad, std::numeric_limits<float>::quiet_NaN());
+  PaddedPlane from(light, width, height, pad, 0.0f), to = from;
   FloatPlane result(light.size());
-  for (const int step : kSteps) {
+  for (const int of_samples : kSteps) {
+    const int step = of_samples * apart;
     tbb::parallel_for(tbb::blocked_range<int>(0, height, 16), [&](const auto& rows) {
       for (int y = rows.begin(); y != rows.end(); ++y) {
         const auto around = [&](const PaddedPlane& plane) {
           return RowsAround{plane.Row(y - step), plane.Row(y), plane.Row(y + step)};
         };
         HWY_DYNAMIC_DISPATCH(EvenRowHere)
-        (around(from), around(objects), step, range, std::size_t(width), to.Row(y));
-        if (step == kPad) std::copy_n(to.Row(y), width, result.begin() + std::ptrdiff_t(width) * y);
+        (around(from), around(objects), step, of_samples == 1, range, std::size_t(width), to.Row(y));
+        if (step == pad) std::copy_n(to.Row(y), width, result.begin() + std::ptrdiff_t(width) * y);
       }
     });
     std::swap(from, to);

@@ -16,8 +16,10 @@ inline constexpr float kLightNoise = 0.05f;
 // so slopes keep their values up to the object's border, and steps of more than twice `range` stay sharp (after the
 // symmetric neighbours of Harwood, Subbarao, Hakalahti, Davis, "A new class of edge-preserving smoothing filters",
 // 1987). Three times, with pairs at 1, 2 and 4 pixels: noise of single pixels falls to a twelfth. Before that, what
-// stands out by a quarter of `range` from all pixels around it takes the nearest of their values. What is no number
-// stays. O(pixels).
-FloatPlane EvenedLight(std::span<const float> light, std::span<const float> object, int width, int height, float range);
+// stands out by a quarter of `range` from three or more around it, all that are of its object, takes the nearest of
+// their values. What is no number stays. `apart`: pixels from one sample to the next, where planes were made larger.
+// O(pixels).
+FloatPlane EvenedLight(std::span<const float> light, std::span<const float> object, int width, int height, float range,
+                       int apart = 1);
 
 }  // namespace scumble::internal

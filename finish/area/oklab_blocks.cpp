@@ -62,8 +62,10 @@ FloatPlane ToneOf(EdgesPass::Tone of, const FinishFrame& frame, const Picture& p
   if (of_light) light = guides.Plane(Layer::kLuminance);
   FloatPlane even;
   if (of_light && !HasExactLight(guides)) {
-    even = EvenedLight(light, coverage, guides.width(), guides.height(),
-                       kLightNoise * static_cast<float>(frame.measures.bright));
+    FloatPlane covered(pixels);
+    for (std::size_t i = 0; i < pixels; ++i) covered[i] = coverage[i] > 0.0f ? 1.0f : 0.0f;
+    even = EvenedLight(light, covered, guides.width(), guides.height(),
+                       kLightNoise * static_cast<float>(frame.measures.bright), frame.Apart());
     light = even;
   }
   ForEachOklabBlock(pixels, [&](std::size_t first, std::size_t count) {

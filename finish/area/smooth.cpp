@@ -91,6 +91,7 @@ FloatPlane LaidOut(std::span<const float> plane, const SmoothPlanes& planes) {
 
 // Whoever weighs by difference leaves a pixel alone that is unlike all of its neighbours, pass after pass. Such a one
 // takes their mean.
+constexpr float kLeastAround = 3.0f;  // of two pixels by themselves neither is a speck
 void FillLonePixels(double range, SmoothPlanes& planes) {
   const float per_square = BiweightPerSquare(range);
   const auto stride = static_cast<std::ptrdiff_t>(planes.stride);
@@ -117,7 +118,7 @@ void FillLonePixels(double range, SmoothPlanes& planes) {
       const glm::vec3 straight = pair(1) + pair(stride);
       if (is_alone) {
         const glm::vec3 sum = straight + (pair(stride - 1) + pair(stride + 1));
-        if (is_alone && found > 0.0f) color = sum / found;
+        if (is_alone && found >= kLeastAround) color = sum / found;
       }
       planes.next_lightness[p] = color.x, planes.next_a[p] = color.y, planes.next_b[p] = color.z;
     }

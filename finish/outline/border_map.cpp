@@ -186,7 +186,8 @@ bool BorderOwner::Meet(std::size_t p, std::size_t q) const {
 bool BorderOwner::IsSecond(std::size_t p, std::size_t q) const {
   if (!(coverage_[q] > 0.0f)) return false;
   if (!(coverage_[p] > 0.0f)) return true;
-  return Meet(p, q) ? facing_[q] > facing_[p] : depth_[q] < depth_[p];
+  if (!Meet(p, q)) return depth_[q] < depth_[p];
+  return facing_[q] == facing_[p] ? object_[q] < object_[p] : facing_[q] > facing_[p];
 }
 
 BorderMap FindBorders(const OutlinePass& pass, const GuideSet& guides, double scale, std::span<const std::uint8_t> only,

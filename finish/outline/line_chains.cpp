@@ -35,7 +35,8 @@ class Tracer {
     Prune(shortest);
     std::vector<LineChain> chains;
     const auto add = [&](LineChain chain) {
-      const bool is_noise = chain.closed && double(chain.points.size()) < 2.0 * shortest;
+      const bool is_alone = chain.begin != LineEnd::kJunction && chain.end != LineEnd::kJunction;
+      const bool is_noise = double(chain.points.size()) < (chain.closed ? 2.0 * shortest : is_alone ? shortest : 0.0);
       if (!is_noise) chains.push_back(std::move(chain));
     };
     // From ends and junctions first; what is left then are rings.
@@ -53,10 +54,10 @@ class Tracer {
  private:
   // Takes short lines with a free end out of the map, so that they do not part the lines that they branch from.
   void Prune(double shortest) {
-    std::vector<Border> line;
+    std::vector<Border> pruned, line;
     ForEachBorder([&](const Border& first) {
       for (const Corner& start : Corners(first)) {
-        if (!At(first) || EndAt(start) != LineEnd::kFree) continue;
+        if (EndAt(start) != LineEnd::kFree) continue;
         line.clear();
         Corner corner = start;
         for (Border border = first; double(line.size()) < shortest;) {
@@ -69,10 +70,10 @@ class Tracer {
             if (!(one == last)) border = one;
           });
         }
-        if (double(line.size()) >= shortest) continue;
-        for (const Border& border : line) At(border) = 0;
+        if (double(line.size()) < shortest) pruned.insert(pruned.end(), line.begin(), line.end());
       }
     });
+    for (const Border& border : pruned) At(border) = 0;
   }
 
   std::uint8_t& At(const Border& border) {

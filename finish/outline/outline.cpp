@@ -21,7 +21,7 @@
 namespace scumble::internal {
 namespace {
 
-// Lines of fewer borders that meet no other are noise of the guides, at the reference height.
+// Lines of fewer borders with a free end are noise of the guides, at the reference height.
 constexpr double kShortest = 4.0;
 
 // Ink from the paint beside a line: a third as light and half as colourful, of its own or of the opposite hue. `texel`
@@ -59,6 +59,16 @@ StrokeCover CoverByStrokes(const OutlinePass& pass, const FinishFrame& frame, in
   return CoverOf(pieces, frame.guides->width() * factor, frame.guides->height() * factor, with_owner);
 }
 
+// A field has one line for each pixel, so that one that the mask hides must not stand before another.
+void DropHidden(const GuideSet& guides, std::span<const std::uint16_t> shares, BorderMap& borders) {
+  const BorderOwner owner(guides);
+  const auto width = static_cast<std::size_t>(borders.width);
+  for (std::size_t p = 0; p < shares.size(); ++p) {
+    if (borders.right[p] && shares[owner.Of(p, p + 1)] == 0) borders.right[p] = 0;
+    if (borders.below[p] && shares[owner.Of(p, p + width)] == 0) borders.below[p] = 0;
+  }
+}
+
 // The pixel in the middle of a block of factor × factor, which a pixel of a smaller picture stands for.
 class BlockMiddle {
  public:
@@ -89,20 +99,15 @@ void DrawOutline(const OutlinePass& pass, double strength, std::span<const std::
     for (std::size_t i = 0; i < small_only.size(); ++i) small_only[i] = only[middle(i)];
     only = small_only;
   }
-  // A field has one line for each pixel, so that one that the mask hides must not stand before another.
-  std::vector<std::uint8_t> shown;
-  if (is_field && !shares.empty()) {
-    shown.resize(guides.pixel_count());
-    for (std::size_t i = 0; i < shown.size(); ++i) shown[i] = (only.empty() || only[i] != 0) && shares[i] != 0;
-    only = shown;
-  }
   FloatPlane shadow;
   if (pass.of_class[std::size_t(LineClass::kShadow)] > 0.0 && !HasExactLight(guides)) {
-    shadow = EvenedLight(guides.Plane(Layer::kShadow), guides.Plane(Layer::kObject), width, height, kLightNoise);
+    shadow = EvenedLight(guides.Plane(Layer::kShadow), guides.Plane(Layer::kObject), width, height, kLightNoise,
+                         is_field ? frame.Apart() : 1);
   }
   std::span<const float> shade = shadow;
   if (shade.empty() && guides.Has(Layer::kShadow)) shade = guides.Plane(Layer::kShadow);
   BorderMap borders = FindBorders(pass, guides, scale, only, shade);
+  if (is_field && !shares.empty()) DropHidden(guides, shares, borders);
   std::optional<SurfaceScale> surface;
   std::optional<NoiseField> across, down, gaps;
   if (pass.stick && (strays || pass.gaps > 0.0)) surface.emplace(guides);

@@ -171,8 +171,7 @@ Expected<GuidegenResult> CastInArena(LazyScene& objects, const View& view, const
   if (options.raw_normals) result.guides.attributes["scumble:raw_normals"] = "true";
   if (!options.robust) result.guides.attributes["scumble:robust"] = "false";
   if (result.samples > 0) result.guides.attributes["scumble:samples"] = std::to_string(result.samples);
-  if (needs.emitters && !(view.supply.light && view.supply.may_be_met))
-    result.guides.attributes[kLightKey] = kExactLight;
+  if (needs.emitters && !view.supply.may_be_met) result.guides.attributes[kLightKey] = kExactLight;
   if (options.seed != 0) result.guides.attributes["scumble:seed"] = std::to_string(options.seed);
   result.guides.attributes["scumble:normal_frame"] = options.normal_frame == NormalFrame::kEye ? "eye" : "camera";
   return result;

@@ -73,14 +73,14 @@ std::string JoinName(std::string::iterator begin, std::string::iterator end, std
   return WithBlanks({name, last});
 }
 
-// A line that ends with a backslash goes on in the next one; comments do not.
+// A line that ends with a backslash goes on in the next one; comments do not. Lines after it count less.
 void JoinLines(std::string& text) {
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
     std::size_t last = end;
     if (last > begin && text[last - 1] == '\r') --last;
-    const bool is_comment = text.find_first_not_of(" \t", begin) == text.find('#', begin);
-    if (last > begin && text[last - 1] == '\\' && !is_comment && end < text.size()) {
+    const bool goes_on = last > begin && text[last - 1] == '\\' && end < text.size();
+    if (goes_on && text[text.find_first_not_of(" \t", begin)] != '#') {
       std::fill(text.begin() + std::ptrdiff_t(last) - 1, text.begin() + std::ptrdiff_t(end) + 1, ' ');
     }
     begin = end + 1;

@@ -180,6 +180,8 @@ class PlyLoader {
     SCUMBLE_RETURN_IF_ERROR(ParseHeader(bytes));
     Values values(bytes.subspan(header_.body), header_.format);
     for (const Element& element : header_.elements) {
+      if (element.properties.empty() && element.name == "vertex" && element.count > 0)
+        return Bad("its vertices have no properties; expected x, y and z");
       if (element.properties.empty()) continue;
       SCUMBLE_RETURN_IF_ERROR(CheckRoom(element, values));
       if (element.name == "vertex") {

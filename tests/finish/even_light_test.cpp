@@ -62,6 +62,30 @@ TEST(EvenLight, NoiseFallsToATwelfth) {
   EXPECT_LT(std::sqrt(squares / count), 0.012 / 8.0) << "samples of pixels that overlap, and some beyond the range";
 }
 
+// Islands of two pixels do not change their places.
+TEST(EvenLight, FewPixelsByThemselvesStay) {
+  FloatPlane object = kOneObject, light = PlaneOf([](int, int) { return 0.5f; });
+  const std::size_t at = 20 * kWide + 20;
+  object[at] = object[at + 1] = 2.0f, light[at] = 0.9f, light[at + 1] = 0.1f;
+  EXPECT_EQ(EvenedLight(light, object, kWide, kHigh, kLightNoise), light);
+}
+
+// Samples that lie three pixels apart, between which light was interpolated.
+TEST(EvenLight, ReachesAsFarAsSamplesLieApart) {
+  std::mt19937 random(3);
+  std::normal_distribution<float> noise(0.0f, 0.012f);
+  FloatPlane small(std::size_t(kWide) * kHigh);
+  for (float& value : small) value = 0.5f + noise(random);
+  const FloatPlane light =
+      PlaneOf([&](int x, int y) { return small[std::size_t(y / 3) * kWide + std::size_t(x / 3)]; });
+  const auto spread = [](const FloatPlane& plane) {
+    double squares = 0.0;
+    for (const float value : plane) squares += (value - 0.5) * (value - 0.5);
+    return std::sqrt(squares / double(plane.size()));
+  };
+  EXPECT_LT(spread(EvenedLight(light, kOneObject, kWide, kHigh, kLightNoise, 3)), 0.5 * spread(light));
+}
+
 TEST(EvenLight, WhatIsNoNumberStaysAlone) {
   FloatPlane light = PlaneOf([](int, int) { return 0.5f; });
   const std::size_t at = 20 * kWide + 20;

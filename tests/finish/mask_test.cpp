@@ -120,7 +120,7 @@ TEST(Mask, HiddenLinesStandBeforeNoOther) {
   const auto seen = [](glm::vec2 at) {
     if (std::fabs(at.y - 40.0f) >= 30.0f || at.x < 20.0f || at.x >= 60.0f) return SeenPoint{};
     const bool is_left = at.x < 40.0f;
-    return SeenPoint{true, {0.0f, 0.0f, 1.0f}, is_left ? 5.0f : 5.2f, is_left ? 1.0f : 2.0f};
+    return SeenPoint{true, {0.0f, 0.0f, 1.0f}, 5.0f, is_left ? 1.0f : 2.0f};
   };
   const GuideSet guides = GuidesOf(80, 80, seen);
   OutlinePass pass;

@@ -209,6 +209,11 @@ TEST_F(Misread, FacesOfAPlyBeforeItsVertices) {
   const auto wrong = LoadScene(Write("b.ply", header + "3 0 1 3\n0 0 0\n1 0 0\n0 1 0\n"));
   ASSERT_FALSE(wrong.ok());
   EXPECT_THAT(wrong.error().message, HasSubstr("uses vertex 3, but there are 3"));
+  const auto none =
+      LoadScene(Write("c.ply", std::string("ply\nformat ascii 1.0\nelement vertex 4\nelement face 1\n"
+                                           "property list uchar int vertex_indices\nend_header\n4 0 1 2 3\n")));
+  ASSERT_FALSE(none.ok());
+  EXPECT_THAT(none.error().message, HasSubstr("no properties"));
 }
 
 // tinyobjloader would lose the first line: here the library, whose own first line is the material's name.
