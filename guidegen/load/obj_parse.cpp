@@ -73,15 +73,23 @@ std::string JoinName(std::string::iterator begin, std::string::iterator end, std
   return WithBlanks({name, last});
 }
 
-// A line that ends with a backslash goes on in the next one; comments do not. Lines after it count less.
+// A line that ends with a backslash goes on in the next one; comments do not. Lines keep their numbers: what was joined
+// is followed by as many empty ones.
 void JoinLines(std::string& text) {
   for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    std::size_t last = end;
-    if (last > begin && text[last - 1] == '\r') --last;
-    const bool goes_on = last > begin && text[last - 1] == '\\' && end < text.size();
-    if (goes_on && text[text.find_first_not_of(" \t", begin)] != '#') {
-      std::fill(text.begin() + std::ptrdiff_t(last) - 1, text.begin() + std::ptrdiff_t(end) + 1, ' ');
+    std::size_t end = begin, joined = 0;
+    for (;; ++end) {
+      end = std::min(text.find('\n', end), text.size());
+      std::size_t last = end;
+      if (last > begin && text[last - 1] == '\r') --last;
+      const bool goes_on = last > begin && text[last - 1] == '\\' && end < text.size();
+      if (!goes_on || text[text.find_first_not_of(" \t", begin)] == '#') break;
+      std::fill(text.begin() + std::ptrdiff_t(last) - 1, text.begin() + std::ptrdiff_t(end), ' ');
+      ++joined;
+    }
+    if (joined > 0) {
+      const auto first = text.begin() + std::ptrdiff_t(begin), behind = text.begin() + std::ptrdiff_t(end);
+      std::fill(std::remove(first, behind, '\n'), behind, '\n');
     }
     begin = end + 1;
   }

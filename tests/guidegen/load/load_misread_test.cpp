@@ -186,6 +186,9 @@ TEST_F(Misread, ALineOfAnObjGoesOnBehindABackslash) {
   const Scene scene = Load(Write("a.obj", std::string("# C:\\\nv 0 0 0\nv 1 \\\n 0 0\nv 0 1 \\\r\n0\nf 1 2 \\\n3\n")));
   ASSERT_EQ(scene.meshes.size(), 1u);
   EXPECT_THAT(scene.meshes[0].positions, ElementsAre(glm::vec3(0, 0, 0), glm::vec3(1, 0, 0), glm::vec3(0, 1, 0)));
+  const auto wrong = LoadScene(Write("b.obj", std::string("v 0 0 \\\n0\nv 1 0 0\nv 0 1 0\nf a b c\n")));
+  ASSERT_FALSE(wrong.ok());
+  EXPECT_THAT(wrong.error().message, HasSubstr("line 5 is 'f a b c'"));
 }
 
 // A leaf's picture cuts it out by its alpha; other pictures of what is opaque are told.
