@@ -116,7 +116,8 @@ inline constexpr std::int64_t kMaxPicturePixels = std::int64_t(1) << 28;  // 163
 // the next free id. Adding a name does not change the others' ids, save in a collision. Equal names share an id.
 std::vector<std::uint32_t> IdsForNames(std::span<const std::string> names);
 
-// The attribute of guides whose luminance and shadow took no chance, as no light has an extent, and its value.
+// The attribute of guides whose luminance and shadow needed no random samples, as no light has an extent, and its
+// value.
 inline constexpr const char* kLightKey = "scumble:light";
 inline constexpr const char* kExactLight = "exact";
 // Whether luminance and shadow are known to be without noise.

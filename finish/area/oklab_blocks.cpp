@@ -63,7 +63,9 @@ FloatPlane ToneOf(EdgesPass::Tone of, const FinishFrame& frame, const Picture& p
   FloatPlane even;
   if (of_light && !HasExactLight(guides)) {
     FloatPlane covered(pixels);
-    for (std::size_t i = 0; i < pixels; ++i) covered[i] = coverage[i] > 0.0f ? 1.0f : 0.0f;
+    ForEachOklabBlock(pixels, [&](std::size_t first, std::size_t count) {
+      for (std::size_t i = first; i < first + count; ++i) covered[i] = coverage[i] > 0.0f ? 1.0f : 0.0f;
+    });
     even = EvenedLight(light, covered, guides.width(), guides.height(),
                        kLightNoise * static_cast<float>(frame.measures.bright), frame.Apart());
     light = even;

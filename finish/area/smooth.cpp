@@ -89,9 +89,11 @@ FloatPlane LaidOut(std::span<const float> plane, const SmoothPlanes& planes) {
   return out;
 }
 
-// Whoever weighs by difference leaves a pixel alone that is unlike all of its neighbours, pass after pass. Such a one
-// takes their mean.
-constexpr float kLeastAround = 3.0f;  // of two pixels by themselves neither is a speck
+// Neighbours that a speck must be unlike: of two pixels by themselves neither is one.
+constexpr float kLeastAround = 3.0f;
+
+// Filters that weigh by difference leave a pixel that is unlike all of its neighbours as it is, pass after pass. Here
+// it takes their mean.
 void FillLonePixels(double range, SmoothPlanes& planes) {
   const float per_square = BiweightPerSquare(range);
   const auto stride = static_cast<std::ptrdiff_t>(planes.stride);
@@ -116,7 +118,7 @@ void FillLonePixels(double range, SmoothPlanes& planes) {
         return sum;
       };
       const glm::vec3 straight = pair(1) + pair(stride);
-      if (is_alone) {
+      if (is_alone) {  // as most are not, the other neighbours need not be looked at
         const glm::vec3 sum = straight + (pair(stride - 1) + pair(stride + 1));
         if (is_alone && found >= kLeastAround) color = sum / found;
       }

@@ -31,7 +31,7 @@ class BorderOwner {
   bool Meet(std::size_t p, std::size_t q) const;
 
  private:
-  // Of the pixel's surface in its border with the next one, which is `step` further; `before` is the one beyond it.
+  // Of the pixel's surface in its border, half a pixel further; `before`: the pixel on its other side.
   float DepthTowards(std::size_t pixel, std::optional<std::size_t> before) const;
 
   std::span<const float> coverage_, depth_, object_, facing_;

@@ -89,7 +89,7 @@ std::vector<float> SidesOf(const LineChain& chain, const std::vector<float>& wid
                                                  : std::clamp<std::ptrdiff_t>(i, 0, count - 1));
   };
   const bool all_meet = std::ranges::all_of(points, [](const LinePoint& point) { return point.meets; });
-  std::vector<float> own(points.size());  // 0: it has no say
+  std::vector<float> own(points.size());
   float most = 0.0f;
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     if (points[std::size_t(i)].meets && !all_meet) continue;
@@ -97,15 +97,14 @@ std::vector<float> SidesOf(const LineChain& chain, const std::vector<float>& wid
     own[std::size_t(i)] = Dot(glm::vec2(-along.y, along.x), points[std::size_t(i)].to_owner) < 0.0f ? -1.0f : 1.0f;
     most += own[std::size_t(i)];
   }
-  const float side_of_most = most < 0.0f ? -1.0f : 1.0f;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (points[i].meets) own[i] = most < 0.0f ? -1.0f : 1.0f;
+  }
   constexpr std::ptrdiff_t kStretch = 8;
   std::vector<float> sides(points.size());
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     float sum = 0.0f;
-    for (std::ptrdiff_t k = -kStretch; k <= kStretch; ++k) {
-      const float one = all_meet ? side_of_most : own[at(i + k)];
-      sum += one == 0.0f ? side_of_most : one;
-    }
+    for (std::ptrdiff_t k = -kStretch; k <= kStretch; ++k) sum += own[at(i + k)];
     sides[std::size_t(i)] = std::clamp(2.0f * sum / (2 * kStretch + 1), -1.0f, 1.0f);
   }
   if (chain.closed) return sides;

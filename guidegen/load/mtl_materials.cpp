@@ -96,7 +96,7 @@ void WarnOfLeftOut(const tinyobj::material_t& from, WarningCounter& warnings) {
   if (!from.alpha_texname.empty() && from.alpha_texname != from.diffuse_texname)
     warnings.Add("a map_d other than map_Kd is left out, its surface is opaque: put it into map_Kd's alpha", name);
   if (!from.bump_texname.empty() && from.normal_texname.empty())
-    warnings.Add("map_Bump is left out: name a normal map norm", name);
+    warnings.Add("map_Bump is left out: a normal map is read under the keyword norm", name);
 }
 
 }  // namespace scumble
