@@ -132,7 +132,7 @@ def place_mesh(thing, expected, unsupported):
     if difference(expected, thing.matrix_world) <= 1e-5:
         return
     if any(modifier.type == "ARMATURE" for modifier in thing.modifiers):
-        unsupported.add(f"object '{thing.name}': is moved by a skeleton, which guidegen ignores")
+        unsupported.add(f"object '{thing.name}': is moved by a skeleton, and the importer places it in its own way")
         return
     anchor = bpy.data.objects.new("scumble.shear", None)
     bpy.context.scene.collection.objects.link(anchor)

@@ -21,6 +21,7 @@
 #include "finish/jitter.h"
 #include "finish/outline/outline.h"
 #include "finish/tone/point_effect.h"
+#include "finish/tone/surface_share.h"
 
 namespace scumble {
 namespace {
@@ -31,13 +32,16 @@ using internal::OklabBlock, internal::PointEffect;
 struct PointStep {
   PointEffect apply;
   const FinishStep* step = nullptr;
-  std::span<const float> coverage;  // where it is 0 the step changes nothing; empty: it is not looked at
+  std::span<const float> coverage;  // the step changes only surfaces, as far as they cover; empty: it changes all
+  PointEffect behind = {};          // what it does to background, where that is another thing; `coverage` parts the two
 };
 
-// Background has no light and no colour of its own: what looks at them leaves it as it is, a renderer's sky too.
+// Background has no light and no colour of its own: what looks at them leaves it as it is, a renderer's sky too. It is
+// infinitely far.
 std::span<const float> CoverageFor(const FinishPass& pass, const FinishFrame& frame) {
   const bool looks = std::holds_alternative<ShadowsPass>(pass.effect) ||
-                     std::holds_alternative<ToonPass>(pass.effect) || std::holds_alternative<RenderPass>(pass.effect);
+                     std::holds_alternative<ToonPass>(pass.effect) || std::holds_alternative<RenderPass>(pass.effect) ||
+                     std::holds_alternative<DepthPass>(pass.effect);
   return looks ? frame.guides->Plane(Layer::kCoverage) : std::span<const float>();
 }
 
@@ -127,8 +131,29 @@ SCUMBLE_WIDE_LOOPS void Mix(const float* shares, const float* from, std::size_t 
   }
 }
 
+void MixColors(const float* shares, std::size_t count, const OklabBlock& from, OklabBlock& to) {
+  Mix(shares, from.lightness.data(), count, to.lightness.data());
+  Mix(shares, from.a.data(), count, to.a.data());
+  Mix(shares, from.b.data(), count, to.b.data());
+}
+
+// `count` pixels of a picture, from `first` on. `of_guides`: the picture is of the guides themselves, and knows no
+// half-covered pixels.
+struct Pixels {
+  std::size_t first, count;
+  const std::uint16_t* texels;
+  bool of_guides;
+
+  // Of each, how much of it is the surface in it.
+  void SurfaceShares(std::span<const float> coverage, float* shares) const {
+    if (!of_guides) return internal::SurfaceShares(coverage.data() + first, texels, count, shares);
+    for (std::size_t i = 0; i < count; ++i) shares[i] = coverage[first + i] > 0.0f ? 1.0f : 0.0f;
+  }
+};
+
 // Where the step changes nothing or only part of it, puts back what was before.
-void Weigh(const PointStep& one, std::size_t first, std::size_t count, const OklabBlock& before, OklabBlock& block) {
+void Weigh(const PointStep& one, const Pixels& pixels, const OklabBlock& before, OklabBlock& block) {
+  const auto [first, count, texels, of_guides] = pixels;
   const FinishStep& step = *one.step;
   const auto strength = static_cast<float>(step.pass.strength);
   std::array<float, internal::kOklabBlock> shares;
@@ -136,15 +161,27 @@ void Weigh(const PointStep& one, std::size_t first, std::size_t count, const Okl
   for (std::size_t i = 0; i < count && !step.share.empty(); ++i)
     shares[i] = strength * (static_cast<float>(step.share[first + i]) / 65535.0f);
   for (std::size_t i = 0; i < count && !step.only.empty(); ++i) shares[i] = step.only[first + i] ? shares[i] : 0.0f;
-  const float* const coverage = one.coverage.empty() ? nullptr : one.coverage.data() + first;
-  for (std::size_t i = 0; i < count && coverage; ++i) shares[i] = coverage[i] > 0.0f ? shares[i] : 0.0f;
-  Mix(shares.data(), before.lightness.data(), count, block.lightness.data());
-  Mix(shares.data(), before.a.data(), count, block.a.data());
-  Mix(shares.data(), before.b.data(), count, block.b.data());
+  if (!one.coverage.empty()) {
+    std::array<float, internal::kOklabBlock> surface;
+    pixels.SurfaceShares(one.coverage, surface.data());
+    if (one.behind) {
+      const auto is_mixed = [](float share) { return share > 0.0f && share < 1.0f; };
+      if (std::any_of(surface.begin(), surface.begin() + std::ptrdiff_t(count), is_mixed)) {
+        OklabBlock behind = before;
+        one.behind(first, count, behind);
+        for (std::size_t i = 0; i < count; ++i) surface[i] = is_mixed(surface[i]) ? surface[i] : 1.0f;
+        MixColors(surface.data(), count, behind, block);
+      }
+    } else {
+      for (std::size_t i = 0; i < count; ++i) shares[i] *= surface[i];
+    }
+  }
+  MixColors(shares.data(), count, before, block);
 }
 
 // Texels whose colour no step changes keep their bits, those of alpha 0 too.
 void PaintBlock(std::span<const PointStep> steps, std::size_t first, std::size_t count, std::uint16_t* texels) {
+  const bool of_guides = steps.front().step->pass.at == FinishPass::Stage::kGuides;
   OklabBlock given, block, before;
   internal::OklabFromTexels(texels, count, given);
   block = given;
@@ -152,7 +189,7 @@ void PaintBlock(std::span<const PointStep> steps, std::size_t first, std::size_t
     const bool is_weighed = IsWeighed(one);
     if (is_weighed) before = block;
     one.apply(first, count, block);
-    if (is_weighed) Weigh(one, first, count, before, block);
+    if (is_weighed) Weigh(one, {first, count, texels, of_guides}, before, block);
   }
   internal::PutBlock(given, 1.0f, nullptr, count, block, texels);
 }
@@ -220,6 +257,8 @@ Status Apply(std::span<const FinishStep* const> steps, const FinishFrame& frame,
       std::optional<PointEffect> effect = PointEffectOf(*steps[i], FrameOf(*steps[i], frame), picture);
       if (!effect) break;
       points.push_back({*std::move(effect), steps[i], CoverageFor(steps[i]->pass, frame)});
+      if (const auto* depth = std::get_if<DepthPass>(&steps[i]->pass.effect))
+        points.back().behind = internal::MakeDepthOfBackground(*depth, frame);
     }
     if (!points.empty()) {
       internal::RowProgress rows(progress, share * double(begin), share * double(i), std::max(1, picture.height));

@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
 #include <vector>
 
 #include "core/image/color.h"
@@ -41,6 +43,13 @@ bool Looks(const GradePass&) { return false; }
 bool Looks(const PigmentPass&) { return false; }
 bool Looks(const FillPass&) { return false; }
 
+// To six digits: as they are printed, so that a run that is given them gives the same bytes.
+double Rounded(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return std::strtod(text, nullptr);
+}
+
 }  // namespace
 
 bool LooksAtMeasures(std::span<const FinishPass> passes) {
@@ -72,6 +81,8 @@ FinishMeasures MeasureFinish(const GuideSet& guides) {
     const double bright = full.empty() ? 0.0 : Percentile(full, 0.9);
     if (bright > 0.0) measures.full = bright;
   }
+  for (double* value : {&measures.near, &measures.middle, &measures.far, &measures.bright, &measures.full})
+    *value = Rounded(*value);
   return measures;
 }
 

@@ -45,8 +45,11 @@ std::map<std::string, std::string> Parts(const std::string& settings) {
 
 // Values of settings that older versions did not record; kAnySetting where the value is unknown.
 const std::map<std::string, std::string>& UnrecordedSettings() {
-  static const std::map<std::string, std::string> kValues = {
-      {"upsample", "1"}, {"fps", kAnySetting}, {"measured", kAnySetting}, {"samples", kAnySetting}};
+  static const std::map<std::string, std::string> kValues = {{"upsample", "1"},
+                                                             {"fps", kAnySetting},
+                                                             {"measured", kAnySetting},
+                                                             {"samples", kAnySetting},
+                                                             {"finish_measures", kAnySetting}};
   return kValues;
 }
 

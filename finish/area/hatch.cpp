@@ -16,6 +16,7 @@
 #include "finish/area/ink.h"
 #include "finish/area/noise.h"
 #include "finish/area/oklab_blocks.h"
+#include "finish/tone/surface_share.h"
 
 namespace scumble::internal {
 namespace {
@@ -257,8 +258,15 @@ void DrawHatch(const HatchPass& pass, double strength, std::span<const std::uint
     shifts[std::size_t(k)] = glm::vec2(UnitFloat(hash), UnitFloat(Mix64(hash))) * (kSpacingsOfTexture * spacing);
   }
   const auto width = static_cast<std::size_t>(picture.width);
+  const bool of_light = pass.tone == HatchPass::Tone::kLight;
   tbb::parallel_for(tbb::blocked_range<int>(0, picture.height, 8), [&](const auto& rows) {
+    std::vector<float> surface(of_light ? width : 0);  // light is the surface's, paint the whole pixel's
     for (int y = rows.begin(); y != rows.end(); ++y) {
+      const std::size_t row = std::size_t(y) * width;
+      if (of_light) {
+        const auto coverage = frame.guides->Plane(Layer::kCoverage);
+        SurfaceShares(coverage.data() + row, picture.rgba.data() + 4 * row, width, surface.data());
+      }
       for (std::size_t x = 0; x < width; ++x) {
         const std::size_t p = std::size_t(y) * width + x;
         std::uint16_t* const pixel = picture.rgba.data() + 4 * p;
@@ -279,7 +287,8 @@ void DrawHatch(const HatchPass& pass, double strength, std::span<const std::uint
           left = share < 1.0f ? left / (1.0f - share) : 1.0f;
         }
         std::uint16_t ink[4] = {pass.ink[0], pass.ink[1], pass.ink[2], 0};
-        ink[3] = static_cast<std::uint16_t>((1.0f - bare) * static_cast<float>(strength) * 65535.0f + 0.5f);
+        const float share = static_cast<float>(strength) * (of_light ? surface[x] : 1.0f);
+        ink[3] = static_cast<std::uint16_t>((1.0f - bare) * share * 65535.0f + 0.5f);
         if (ink[3] == 0) continue;
         const std::uint16_t kept = pixel[3];
         LayInk(ink, pixel);

@@ -22,6 +22,12 @@ constexpr double kDepthTolerance = 0.002;
 // the distance to its rim: the last step is up to 1 + √2 times the one before.
 constexpr float kSlopeGive = 1.0f, kSlopeGiveAtEnd = 1.5f;
 
+// A crease goes on where the angle is no smaller than this share of `crease_angle`: a fold whose angle is about that
+// would be dashed otherwise. Two thresholds, as Canny's edges have them (1986, section VIII).
+constexpr double kCreaseGoesOn = 2.0 / 3.0;
+// In a map that is not finished: an angle that is enough for a crease to go on, not for one to begin.
+constexpr std::uint8_t kWeakCrease = 0xff;
+
 std::vector<glm::vec3> OklabOf(const GuideSet& guides) {
   std::vector<glm::vec3> colors(guides.pixel_count());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, colors.size(), 1 << 14), [&](const auto& part) {
@@ -58,6 +64,8 @@ SCUMBLE_WIDE_LOOPS void FindDoubts(const PairPlanes& of, std::size_t first, std:
   }
 }
 
+constexpr std::uint8_t CodeOf(LineClass line) { return static_cast<std::uint8_t>(1 + int(line)); }
+
 class Classifier {
  public:
   Classifier(const OutlinePass& pass, const GuideSet& guides, double scale, std::span<const std::uint8_t> only,
@@ -67,6 +75,7 @@ class Classifier {
         guides_(guides),
         give_(guides, kDepthTolerance),
         crease_(EdgeRules::CreaseCosine(pass.crease_angle)),
+        weak_crease_(EdgeRules::CreaseCosine(pass.crease_angle * (IsOn(LineClass::kCrease) ? kCreaseGoesOn : 1.0))),
         owner_(guides),
         coverage_(guides.Plane(Layer::kCoverage)),
         depth_(guides.Plane(Layer::kDepth)),
@@ -85,7 +94,7 @@ class Classifier {
     // Where a layer is not looked at, the object's values stand in, which are compared anyway.
     const auto or_object = [&](std::span<const float> plane) { return (plane.empty() ? object_ : plane).data(); };
     FindDoubts({coverage_.data(), depth_.data(), object_.data(), or_object(material_), or_object(shadow_), normal(0),
-                normal(1), normal(2), give_.share, give_.fixed, crease_},
+                normal(1), normal(2), give_.share, give_.fixed, weak_crease_},
                first, step, count, doubts);
   }
 
@@ -97,7 +106,8 @@ class Classifier {
     if (!covers_p && !covers_q) return 0;
     if (!only_.empty() && !IsWanted(p, q)) return 0;
     const std::optional<LineClass> line = covers_p == covers_q ? Inside(before, p, q, after) : LineClass::kSilhouette;
-    return line && IsOn(*line) ? static_cast<std::uint8_t>(1 + int(*line)) : 0;
+    if (line) return IsOn(*line) ? CodeOf(*line) : 0;
+    return IsOn(LineClass::kCrease) && !(CosineBetween(p, q) > weak_crease_) ? kWeakCrease : 0;
   }
 
  private:
@@ -124,9 +134,9 @@ class Classifier {
            (has_after && fits(depth_[*after] - depth_[q], !has_before));
   }
 
-  bool IsCrease(std::size_t p, std::size_t q) const {
+  float CosineBetween(std::size_t p, std::size_t q) const {
     const glm::vec3 a = guides_.Vec3(Layer::kNormal, p), b = guides_.Vec3(Layer::kNormal, q);
-    return !(a.x * b.x + a.y * b.y + a.z * b.z > crease_);
+    return a.x * b.x + a.y * b.y + a.z * b.z;
   }
 
   // Both pixels are covered.
@@ -134,7 +144,7 @@ class Classifier {
                                   std::optional<std::size_t> after) const {
     if (object_[p] != object_[q]) return LineClass::kObject;
     if (!DepthGoesOn(before, p, q, after)) return LineClass::kOcclusion;
-    if (IsCrease(p, q)) return LineClass::kCrease;
+    if (!(CosineBetween(p, q) > crease_)) return LineClass::kCrease;
     if (!material_.empty() && material_[p] != material_[q]) return LineClass::kMaterial;
     if (!shadow_.empty() && (shadow_[p] >= 0.5f) != (shadow_[q] >= 0.5f)) return LineClass::kShadow;
     if (!colors_.empty()) {
@@ -149,12 +159,60 @@ class Classifier {
   std::span<const std::uint8_t> only_;
   const GuideSet& guides_;
   DepthTolerance give_;
-  float crease_;
+  float crease_, weak_crease_;
   BorderOwner owner_;
   std::span<const float> coverage_, depth_, object_, material_, shadow_;
   std::vector<glm::vec3> colors_;
   float texture_step_;
   std::optional<Valleys> valleys_;
+};
+
+// Makes creases of the weak ones that lie end to end with one, and drops the others.
+class CreaseJoiner {
+ public:
+  explicit CreaseJoiner(BorderMap& map) : map_(map) {}
+
+  void Run() {
+    const auto count = static_cast<std::int64_t>(map_.right.size());
+    for (std::int64_t p = 0; p < count; ++p) {
+      for (const bool is_below : {false, true}) {
+        if (At({p, is_below}) == kCrease) Follow({p, is_below});
+      }
+    }
+    for (auto* borders : {&map_.right, &map_.below}) std::replace(borders->begin(), borders->end(), kWeakCrease, kNone);
+  }
+
+ private:
+  struct Border {
+    std::int64_t pixel;
+    bool is_below;
+  };
+  static constexpr std::uint8_t kNone = 0, kCrease = CodeOf(LineClass::kCrease);
+
+  std::uint8_t& At(Border of) { return (of.is_below ? map_.below : map_.right)[static_cast<std::size_t>(of.pixel)]; }
+
+  void Follow(Border from) {
+    todo_.assign(1, from);
+    while (!todo_.empty()) {
+      const Border at = todo_.back();
+      todo_.pop_back();
+      // The six that share an end with it: two in its own direction, four in the other.
+      const std::int64_t p = at.pixel, on = at.is_below ? 1 : map_.width, aside = at.is_below ? map_.width : 1;
+      const bool other = !at.is_below;
+      const bool is_first = at.is_below && p % map_.width == 0, is_last = at.is_below && (p + 1) % map_.width == 0;
+      if (!is_first) Take({p - on, at.is_below}), Take({p - on, other}), Take({p - on + aside, other});
+      if (!is_last) Take({p + on, at.is_below}), Take({p, other}), Take({p + aside, other});
+    }
+  }
+
+  void Take(Border next) {
+    if (next.pixel < 0 || next.pixel >= static_cast<std::int64_t>(map_.right.size()) || At(next) != kWeakCrease) return;
+    At(next) = kCrease;
+    todo_.push_back(next);
+  }
+
+  BorderMap& map_;
+  std::vector<Border> todo_;
 };
 
 }  // namespace
@@ -215,6 +273,7 @@ BorderMap FindBorders(const OutlinePass& pass, const GuideSet& guides, double sc
       }
     }
   });
+  CreaseJoiner(map).Run();
   return map;
 }
 

@@ -45,26 +45,39 @@ SCUMBLE_WIDE_LOOPS void Fade(const Haze& haze, const float* shares, std::size_t 
   }
 }
 
-}  // namespace
-
-PointEffect MakeDepth(const DepthPass& pass, const FinishFrame& frame) {
+// `depth_of`: of the pixels from `first` on, kOklabBlock at most.
+template <typename DepthOf>
+PointEffect Make(const DepthPass& pass, const FinishFrame& frame, DepthOf depth_of) {
   // Copies of the effect share their tables.
   const auto scale = std::make_shared<const DepthScale>(pass, frame.measures);
   const auto air = std::make_shared<const Air>(pass.air);
-  const std::span<const float> depth = frame.guides->Plane(Layer::kDepth);
   const LabColor color = ToOklab(pass.color);
   const bool has_air = pass.air > 0.0;
   const Haze haze{static_cast<float>(pass.desaturate), static_cast<float>(pass.tint), color};
   return [=](std::size_t first, std::size_t count, OklabBlock& block) {
     std::array<float, kOklabBlock> shares;
-    scale->Shares(depth.data() + first, count, shares.data());
+    const float* const depth = depth_of(first);
+    scale->Shares(depth, count, shares.data());
     Fade(haze, shares.data(), count, block.a.data(), block.b.data());
     for (std::size_t i = 0; i < count && has_air; ++i) {
-      const auto share = static_cast<float>(air->Share(scale->Distance(depth[first + i])));
+      const auto share = static_cast<float>(air->Share(scale->Distance(depth[i])));
       block.lightness[i] += (color.lightness - block.lightness[i]) * share;
       block.a[i] += (color.a - block.a[i]) * share, block.b[i] += (color.b - block.b[i]) * share;
     }
   };
+}
+
+}  // namespace
+
+PointEffect MakeDepth(const DepthPass& pass, const FinishFrame& frame) {
+  const std::span<const float> depth = frame.guides->Plane(Layer::kDepth);
+  return Make(pass, frame, [depth](std::size_t first) { return depth.data() + first; });
+}
+
+PointEffect MakeDepthOfBackground(const DepthPass& pass, const FinishFrame& frame) {
+  std::array<float, kOklabBlock> depth;
+  depth.fill(BackgroundValue(Layer::kDepth));
+  return Make(pass, frame, [depth](std::size_t) { return depth.data(); });
 }
 
 }  // namespace scumble::internal

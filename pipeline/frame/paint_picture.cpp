@@ -350,8 +350,9 @@ Expected<PaintedPicture> PaintInMemory(StyleSet& styles, const GuideSet& given, 
 
   made.write = {request.bits, request.png_level};
   made.write.fast = request.fast_io;
-  made.write.settings = SettingsText(
-      styles, SettingsOf(request, settings.fps, settings.exposure, SamplesAsked(given.attributes)), state.hashes);
+  PictureSettings made_with = SettingsOf(request, settings.fps, settings.exposure, SamplesAsked(given.attributes));
+  if (state.finish_measures) made_with.finish_measures = MeasuresText(*state.finish_measures);
+  made.write.settings = SettingsText(styles, made_with, state.hashes);
   PictureReport report{request.output,
                        picture.width,
                        picture.height,

@@ -84,13 +84,12 @@ std::uint64_t HashOfStyles(const StyleSet& styles, std::size_t count, ExemplarHa
     for (const FinishPass& pass : style.finish) hash = Hash(hash, HashText(FinishText(pass)));
   }
   for (const FinishPass& pass : styles.finish.passes) hash = Hash(hash, HashText(FinishText(pass)));
-  if (styles.options.finish_measures) hash = Hash(hash, HashText(MeasuresText(*styles.options.finish_measures)));
   for (const StyleSet::Assigned& one : styles.assigned) hash = Hash(hash, HashText(one.pattern), one.style);
   return hash;
 }
 
 std::string SettingsText(const StyleSet& styles, const PictureSettings& settings, ExemplarHashes& known) {
-  const auto& [seed, over, show, upsample, upscale, fps, exposure, measured, samples, show_finish] =
+  const auto& [seed, over, show, upsample, upscale, fps, exposure, measured, samples, show_finish, finish_measures] =
       settings;  // all: each makes another picture
   std::string text = fmt::format("scumble {}; style {:016x}; seed {}; over {}; show {}; upsample {}", SCUMBLE_VERSION,
                                  HashOfStyles(styles, styles.chosen, known), seed, over ? "a picture" : "nothing",
@@ -102,6 +101,8 @@ std::string SettingsText(const StyleSet& styles, const PictureSettings& settings
   const auto chosen = std::span(styles.styles).first(styles.chosen);
   if (!samples.empty() && std::any_of(chosen.begin(), chosen.end(), AsksForLight)) text += "; samples " + samples;
   text += "; fps " + (fps ? fmt::format("{}", double(fps->numerator) / double(fps->denominator)) : kAnySetting);
+  if (EverLooksAtMeasures(styles))
+    text += "; finish_measures " + (finish_measures.empty() ? std::string(kAnySetting) : finish_measures);
   if (std::none_of(chosen.begin(), chosen.end(), LooksAtLight)) return text;
   text += "; exposure " + (exposure ? fmt::format("{}", *exposure) : kAnySetting);
   return text + "; measured " + (measured ? *measured ? "yes" : "no" : kAnySetting);

@@ -29,6 +29,8 @@ struct PictureSettings {
   // Of a pixel of light in the guides, as SamplesText has it; empty: unknown. Counts for styles that ask for any.
   std::string samples;
   std::string show_finish = {};  // of one finishing pass
+  // What finishing effects measured or were given, as MeasuresText has it; empty: unknown. Counts where any looks.
+  std::string finish_measures = {};
 };
 
 // All settings of the transfer, as text: equal texts, equal settings.

@@ -55,14 +55,16 @@ FrameRate RateFor(const FinishRequest& request, const std::string& guides) {
   return info ? RateOf({}, info->header) : FrameRate();
 }
 
-std::string SettingsText(const FinishRequest& request, const std::vector<FinishPass>& passes, FrameRate fps) {
+// `measures`: those that were given or measured; empty: not known yet.
+std::string SettingsText(const FinishRequest& request, const FinishChain& chain,
+                         const std::optional<FinishMeasures>& measures, FrameRate fps) {
   std::string text;
-  for (const FinishPass& pass : passes) text += (text.empty() ? "" : ", ") + FinishText(pass);
-  return fmt::format("scumble {}; finish {}; seed {}; height {}", SCUMBLE_VERSION, text, request.seed,
-                     request.reference_height) +
-         (std::any_of(passes.begin(), passes.end(), Jitters) ? "; fps " + FrameRateToText(fps) : "") +
-         (request.measures ? "; measures " + MeasuresText(*request.measures) : "") +
-         (request.show_finish.empty() ? "" : "; show " + (kShowFinish + request.show_finish));
+  for (const FinishPass& pass : chain.passes) text += (text.empty() ? "" : ", ") + FinishText(pass);
+  text = fmt::format("scumble {}; finish {}; seed {}; height {}", SCUMBLE_VERSION, text, request.seed,
+                     request.reference_height);
+  if (std::any_of(chain.passes.begin(), chain.passes.end(), Jitters)) text += "; fps " + FrameRateToText(fps);
+  if (EverLooksAtMeasures(chain)) text += "; finish_measures " + (measures ? MeasuresText(*measures) : kAnySetting);
+  return text + (request.show_finish.empty() ? "" : "; show " + (kShowFinish + request.show_finish));
 }
 
 void Measure(const GuideSet& guides, const RunContext& context, FinishState& state) {
@@ -144,7 +146,7 @@ Expected<FrameWrite> Finish(const FinishRequest& request, const FrameFiles& file
   times.emplace_back("finish", watch.Lap());
   context.EndStage("finish");
   PictureWriteOptions write{request.bits, request.png_level};
-  write.fast = request.fast_io, write.settings = SettingsText(request, state.chain.passes, fps);
+  write.fast = request.fast_io, write.settings = SettingsText(request, state.chain, state.measures, fps);
   PictureReport report{files.output, picture->width, picture->height, 1, false, 1, request.seed, {}, {}, {}, {}};
   for (const auto& [name, ms] : times) report.steps.push_back({name, ms, ms, ms});
   report.layers_output = files.layers;
@@ -231,7 +233,7 @@ Expected<RunReport> RunFinish(FinishRequest request, const SequenceListener& lis
     if (!header) return header.error();
     SCUMBLE_RETURN_IF_ERROR(SetFinishFrame(state.chain, frame));
     PictureWriteOptions write{request.bits, request.png_level};
-    const std::string settings = SettingsText(request, state.chain.passes, RateFor(request, guides.At(frame)));
+    const std::string settings = SettingsText(request, state.chain, state.measures, RateFor(request, guides.At(frame)));
     SCUMBLE_RETURN_IF_ERROR(CheckWholePicture(
         output, {header->width, header->height, PictureChannels(output), PictureBits(output, write), settings}));
     if (request.layers_out.empty()) return Ok();

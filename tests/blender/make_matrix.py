@@ -25,7 +25,8 @@ import matrix_bends  # noqa: E402  (Blender does not put a script's own folder o
 import matrix_hair  # noqa: E402
 import matrix_shapes  # noqa: E402
 
-LANDSCAPE, PORTRAIT = "160x90", "90x160"
+LANDSCAPE, PORTRAIT = "112x63", "63x112"
+LARGER = "160x90"  # where the noise of the smaller one would leave it open whether the two agree
 
 
 # ---- Shapes: dense enough that interpolation of normals does not matter, all with UV coordinates ---------------------
@@ -397,16 +398,16 @@ def hair(shape):
 
 DIFFUSE_LAYERS = ["full", "LDE", "LDDE", "LD12E"]
 SCENES = {  # builder, layers, size, samples, bounces
-    "emissive": (emissive, DIFFUSE_LAYERS, LANDSCAPE, 256, 8),
+    "emissive": (emissive, DIFFUSE_LAYERS, LARGER, 256, 8),
     "rough": (rough, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 128, 8),
-    "coarse": (coarse, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 64, 8),
+    "coarse": (coarse, DIFFUSE_LAYERS + ["LSE"], LARGER, 64, 8),
     "bent": (bent, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 64, 8),
     "world": (world_only, DIFFUSE_LAYERS, LANDSCAPE, 64, 8),
-    "mixed": (mixed, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 128, 8),
-    "stretched": (stretched, DIFFUSE_LAYERS, LANDSCAPE, 32, 8),
+    "mixed": (mixed, DIFFUSE_LAYERS + ["LSE"], LARGER, 128, 8),
+    "stretched": (stretched, DIFFUSE_LAYERS, LARGER, 32, 8),
     "instances": (instances, DIFFUSE_LAYERS, LANDSCAPE, 32, 8),
-    "principled": (principled, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 128, 8),
-    "orthographic": (camera_scene(type="ORTHO", ortho_scale=6.0), DIFFUSE_LAYERS, LANDSCAPE, 32, 8),
+    "principled": (principled, DIFFUSE_LAYERS + ["LSE"], LARGER, 128, 8),
+    "orthographic": (camera_scene(type="ORTHO", ortho_scale=6.0), DIFFUSE_LAYERS, LARGER, 32, 8),
     "shapes": (shapes, [], "240x135", 0, 0),
 }
 # AUTO is HORIZONTAL in a landscape and VERTICAL in a portrait, but for the sensor's side that it reads.
@@ -421,7 +422,7 @@ for lamp_name, add_lamp in LAMPS.items():
         room(make_set())
         add_lamp()
     bounced = lamp_name in BOUNCED_LAMPS
-    SCENES[lamp_name] = (build, ["full", "LDE", "LD12E", "LSE"] + ["LDDE"] * bounced, LANDSCAPE,
+    SCENES[lamp_name] = (build, ["full", "LDE", "LD12E", "LSE"] + ["LDDE"] * bounced, LARGER if bounced else LANDSCAPE,
                          32 if lamp_name in SHARP_LAMPS else 128, 8 if bounced else 0)
 
 

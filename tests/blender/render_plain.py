@@ -4,8 +4,8 @@
 
 Writes FOLDER/NAME.exr, multilayer, and FOLDER/NAME.camera with the camera that Blender had. A shot's name lists its
 special settings: one of the cameras (landscape, portrait, shifted, ortho, far), the film (opaque, clear), the filter
-(filtered, sharp), lens, dof, slightdof or nopos, and lit (a hard sun, and the passes of its light) or catcher (lit, and the
-floor is a shadow catcher): "shifted-opaque-filtered".
+(filtered, sharp), lens, dof, slightdof or nopos, and lit (a hard sun, and the passes of its light), catcher (lit, and the
+floor is a shadow catcher) or painted (everything has one colour and one point of a texture): "shifted-opaque-filtered".
 """
 
 import argparse
@@ -24,6 +24,7 @@ def build(words):
     scene = bpy.context.scene
     offset = 2000.0 if "far" in words else 0.0
     material = bpy.data.materials.new('Red "paint"')
+    material.diffuse_color = (0.4, 0.2, 0.1, 1.0)
     for name, place, add in (
             ("Floor", (0, 0, -0.1), lambda: bpy.ops.mesh.primitive_cube_add(scale=(4, 3, 0.1))),
             ("Ball", (0.4, 0.2, 1), lambda: bpy.ops.mesh.primitive_uv_sphere_add(segments=48, ring_count=24)),
@@ -34,6 +35,8 @@ def build(words):
         thing.data.materials.append(material)
         for polygon in thing.data.polygons:
             polygon.use_smooth = name != "Floor"
+        for corner in thing.data.uv_layers.active.data if "painted" in words else ():
+            corner.uv = (0.3, 0.7)
     data = bpy.data.cameras.new("Eye")
     eye = bpy.data.objects.new("Eye", data)
     scene.collection.objects.link(eye)
@@ -74,6 +77,7 @@ def set_up(scene, words, path):
     layer.use_pass_normal = layer.use_pass_z = layer.use_pass_cryptomatte_object = True
     layer.use_pass_position = "nopos" not in words
     layer.use_pass_diffuse_direct = layer.use_pass_shadow = "lit" in words
+    layer.use_pass_diffuse_color = layer.use_pass_uv = "painted" in words
     layer.cycles.use_pass_shadow_catcher = "catcher" in words
     layer.use_pass_cryptomatte_material = layer.use_pass_object_index = "sharp" in words
 

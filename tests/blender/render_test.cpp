@@ -27,7 +27,8 @@ class Shots : public testing::Environment {
         " --shot landscape-opaque-filtered landscape-clear-filtered landscape-clear-sharp "
         "portrait-shifted-clear-filtered "
         "shifted-clear-sharp ortho-shifted-clear-sharp ortho-opaque-filtered far-clear-sharp landscape-slightdof "
-        "landscape-lens landscape-dof landscape-nopos landscape-clear-sharp-lit landscape-clear-sharp-catcher > " +
+        "landscape-lens landscape-dof landscape-nopos landscape-clear-sharp-lit landscape-clear-sharp-catcher "
+        "landscape-clear-filtered-painted landscape-opaque-filtered-painted > " +
         log + " 2>&1";
     std::string text;
     if (std::system(command.c_str()) != 0) {
@@ -45,8 +46,9 @@ class Shots : public testing::Environment {
 
 const auto* const kShots = testing::AddGlobalTestEnvironment(new Shots);
 
-GuideSet Read(const std::string& shot, bool with_camera) {
+GuideSet Read(const std::string& shot, bool with_camera, const LayerSet& more = {}) {
   GuideReadOptions options;
+  options.required.Add(more);
   options.required.Add(Layer::kPosition).Remove(Layer::kMaterial);
   options.optional = {Layer::kMaterial};
   if (with_camera) options.blender_camera = Shots::File(shot + ".camera");
@@ -196,6 +198,28 @@ TEST(BlenderRender, CoverageIsThatOfATransparentFilm) {
     ASSERT_EQ(a > 0.0f, opaque.Plane(Layer::kDepth)[i] < 100.0f) << "an edge has the depth of what it is the edge of";
   }
   EXPECT_GT(partial, 100u);
+}
+
+// Cycles averages base colours and UV over a pixel with zeros where it sees nothing; a silhouette is no darker for
+// that.
+TEST(BlenderRender, ColoursOfSilhouettesAreThoseOfTheirSurfaces) {
+  for (const char* shot : {"landscape-clear-filtered-painted", "landscape-opaque-filtered-painted"}) {
+    SCOPED_TRACE(shot);
+    const GuideSet guides = Read(shot, false, {Layer::kAlbedo, Layer::kUv});
+    std::size_t partial = 0;
+    for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
+      const float coverage = guides.Plane(Layer::kCoverage)[i];
+      if (!(coverage > 0.01f)) continue;
+      partial += coverage < 0.99f;
+      const glm::vec3 albedo = guides.Vec3(Layer::kAlbedo, i);
+      ASSERT_NEAR(albedo.r, 0.4f, 1e-3f) << coverage;
+      ASSERT_NEAR(albedo.g, 0.2f, 1e-3f) << coverage;
+      ASSERT_NEAR(albedo.b, 0.1f, 1e-3f) << coverage;
+      ASSERT_NEAR(guides.Plane(Layer::kUv, 0)[i], 0.3f, 1e-3f) << coverage;
+      ASSERT_NEAR(guides.Plane(Layer::kUv, 1)[i], 0.7f, 1e-3f) << coverage;
+    }
+    EXPECT_GT(partial, 100u);
+  }
 }
 
 // Blender's compositor shows our guides under their names, ids as numbers and as Cryptomatte.

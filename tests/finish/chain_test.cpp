@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/image/color.h"
+#include "core/image/oklab.h"
 #include "core/style/finish_keys.h"
 #include "tests/finish/finish_fixtures.h"
 
@@ -148,6 +150,61 @@ TEST(Chain, LinesStopAndStartTheLoopOverPixels) {
   const Picture made = Finished(steps, &guides, PlainPicture(60, 60, 0, 0, 0));
   EXPECT_GT(made.At(30, 10)[0], 5000) << "the line was lifted, too";
   EXPECT_LT(made.At(30, 10)[0], made.At(30, 30)[0]);
+}
+
+// A pixel that a surface covers by a quarter: where the picture is as transparent the effect is whole, on an opaque one
+// it changes a quarter. `changed`: of all that the effect changes on a covered pixel.
+double ShareChanged(const FinishPass::Effect& effect, std::uint16_t alpha) {
+  GuideSet guides = AllGuides(8);
+  for (const LayerInfo& info : AllLayers()) {
+    for (int c = 0; guides.Has(info.layer) && c < ChannelCount(info.layer); ++c) {
+      const auto plane = guides.Plane(info.layer, c);
+      std::fill(plane.begin(), plane.end(), guides.Plane(info.layer, c)[guides.Index(4, 4)]);
+    }
+  }
+  std::fill(guides.Plane(Layer::kShadow).begin(), guides.Plane(Layer::kShadow).end(), 1.0f);
+  const auto lightness = [&](float coverage) {
+    const auto plane = guides.Plane(Layer::kCoverage);
+    std::fill(plane.begin(), plane.end(), coverage);
+    Picture picture = PlainPicture(8, 8, 40000, 30000, 20000);
+    for (std::size_t i = 3; i < picture.rgba.size(); i += 4) picture.rgba[i] = alpha;
+    const Picture made = Finished(StepOf(effect), &guides, picture, {1.0, 2.0, 3.0, 1.0, 1.0});
+    const std::uint16_t* const texel = made.At(4, 4);
+    return double(OklabFromLinear({Srgb16ToLinear(texel[0]), Srgb16ToLinear(texel[1]), Srgb16ToLinear(texel[2])}).x);
+  };
+  const double none = double(OklabFromLinear({Srgb16ToLinear(40000), Srgb16ToLinear(30000), Srgb16ToLinear(20000)}).x);
+  const double whole = lightness(1.0f) - none;
+  EXPECT_GT(std::fabs(whole), 0.02);
+  return (lightness(0.25f) - none) / whole;
+}
+
+TEST(Chain, ASurfacesEffectIsOnItsShareOfAPixel) {
+  ToonPass toon;
+  toon.bands = 1;
+  ShadowsPass shadows;
+  shadows.mode = ShadowsPass::Mode::kBlack, shadows.source = ShadowsPass::Source::kCast;
+  for (const FinishPass::Effect& effect : {FinishPass::Effect(toon), FinishPass::Effect(shadows)}) {
+    EXPECT_NEAR(ShareChanged(effect, 16384), 1.0, 1e-6) << effect.index();
+    EXPECT_NEAR(ShareChanged(effect, 16448), 1.0, 1e-6) << "alpha of 8 bits; " << effect.index();
+    EXPECT_NEAR(ShareChanged(effect, 65535), 0.25, 2e-3) << effect.index();
+  }
+}
+
+// A renderer has mixed the background, which is infinitely far, into it.
+TEST(Chain, DepthTakesTheBackgroundsShareOfAPixelAsFar) {
+  DepthPass haze;
+  haze.air = 1.0, haze.near = 1.0, haze.far = 1000.0, haze.color = {65535, 65535, 65535};
+  GuideSet guides = GuidesOf(8, 8, [](glm::vec2) { return SeenPoint{true, {0, 0, 1}, 1.0f, 1.0f}; });
+  const auto red = [&](float coverage, std::uint16_t alpha) {
+    std::fill(guides.Plane(Layer::kCoverage).begin(), guides.Plane(Layer::kCoverage).end(), coverage);
+    Picture picture = PlainPicture(8, 8, 10000, 10000, 10000);
+    for (std::size_t i = 3; i < picture.rgba.size(); i += 4) picture.rgba[i] = alpha;
+    return int(Finished(StepOf(haze), &guides, picture, {1.0, 2.0, 3.0, 1.0, 1.0}).At(4, 4)[0]);
+  };
+  EXPECT_NEAR(red(1.0f, 65535), 10000, 20) << "near";
+  EXPECT_EQ(red(0.5f, 32768), red(1.0f, 65535)) << "as transparent as its surface";
+  EXPECT_GT(red(0.5f, 65535), 25000) << "half of it is far";
+  EXPECT_LT(red(0.5f, 65535), 45000);
 }
 
 TEST(Chain, StagesAreApart) {

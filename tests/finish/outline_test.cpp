@@ -207,6 +207,37 @@ TEST(Outline, CreaseIsOneLine) {
   EXPECT_EQ(Sum(InkOf(pass, CreaseGuides())), 0.0);
 }
 
+// A fold whose angle falls from 50 degrees at the left to 20 at the right, and one of 30 degrees by itself: the crease
+// goes on from where it reaches 40 to where it falls below two thirds of that, and does not begin without.
+TEST(Outline, ACreaseGoesOnToTwoThirdsOfItsAngle) {
+  OutlinePass pass;
+  pass.width = 1.0;
+  pass.of_class[std::size_t(LineClass::kCrease)] = 1.0;
+  const auto folded = [](auto angle_at) {
+    return GuidesOf(120, 80, [&](glm::vec2 at) {
+      const double half = 0.5 * angle_at(at.x) * std::numbers::pi / 180.0;
+      const auto up = static_cast<float>(std::sin(half)), out = static_cast<float>(std::cos(half));
+      return SeenPoint{true, {0.0f, at.y < 40.0f ? up : -up, out}, 5.0f, 1.0f};
+    });
+  };
+  const std::vector<double> ink = InkOf(pass, folded([](float x) { return 50.0 - 0.25 * x; }));
+  const auto column = [&](int x) {
+    double sum = 0.0;
+    for (std::size_t y = 0; y < 80; ++y) sum += ink[y * 120 + std::size_t(x)];
+    return sum;
+  };
+  for (int x = 2; x < 90; ++x) EXPECT_NEAR(column(x), 1.0, 0.01) << x;
+  for (int x = 96; x < 120; ++x) EXPECT_EQ(column(x), 0.0) << x;
+  EXPECT_EQ(Sum(InkOf(pass, folded([](float) { return 30.0; }))), 0.0);
+  // A crease that leaves at the right does not go on at the left, one row below.
+  const GuideSet leaves = GuidesOf(120, 80, [&](glm::vec2 at) {
+    const double half = (at.x > 60.0f ? 25.0 : at.x < 20.0f ? 15.0 : 0.0) * std::numbers::pi / 180.0;
+    const auto up = static_cast<float>(std::sin(half)), out = static_cast<float>(std::cos(half));
+    return SeenPoint{true, {0.0f, at.y < (at.x > 60.0f ? 40.0f : 41.0f) ? up : -up, out}, 5.0f, 1.0f};
+  });
+  EXPECT_NEAR(Sum(InkOf(pass, leaves)), 60.0, 2.0);
+}
+
 // The nearer of two overlapping things has the line, whatever lies behind.
 TEST(Outline, StepInDepthIsALineOfTheNearerSide) {
   GuideSet guides = GuidesOf(120, 80, [](glm::vec2 at) {

@@ -45,8 +45,11 @@ inline GuideSet RandomGuides(int width, int height) {
     const bool covered = i % 5 != 3;
     guides.Plane(Layer::kCoverage)[i] = covered ? 0.5f + 0.5f * UnitFloat(Hash(i)) : 0.0f;
     guides.Plane(Layer::kDepth)[i] = covered ? 0.1f + UnitFloat(Hash(i, 1)) : std::numeric_limits<float>::infinity();
-    guides.Plane(Layer::kObject)[i] = static_cast<float>(Hash(i, 2) >> 40);
-    guides.Plane(Layer::kMaterial)[i] = static_cast<float>(Hash(i, 3) >> 40);
+    guides.Plane(Layer::kObject)[i] = covered ? static_cast<float>(Hash(i, 2) >> 40) : 0.0f;
+    guides.Plane(Layer::kMaterial)[i] = covered ? static_cast<float>(Hash(i, 3) >> 40) : 0.0f;
+    for (const Layer layer : {Layer::kPosition, Layer::kUv}) {
+      for (int c = 0; c < ChannelCount(layer) && !covered; ++c) guides.Plane(layer, c)[i] = BackgroundValue(layer);
+    }
     const glm::vec3 n = covered ? glm::normalize(guides.Vec3(Layer::kNormal, i)) : glm::vec3(0.0f);
     for (int c = 0; c < 3; ++c) guides.Plane(Layer::kNormal, c)[i] = n[c];
   }

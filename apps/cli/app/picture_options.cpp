@@ -29,9 +29,9 @@ void AddShowOptions(CLI::App& verb, std::string& show, std::string& layers_out, 
                : fmt::format("{}: expected {}{}finish:NAME", text, fmt::join(names, ", "), names.empty() ? "" : " or ");
   };
   verb.add_option("--show", show,
-                  explanations ? "write a picture that explains the result instead of it: where the paint comes from, "
-                                 "the chunks and their borders, their size, the guide error, which exemplar, which "
-                                 "style; or " +
+                  explanations ? "write a picture that explains the result instead of it: where the paint comes from "
+                                 "(sources), the chunks and their borders (chunks, borders), their size (levels), the "
+                                 "guide error (error), which exemplar (exemplar), which style (styles); or " +
                                      of_finish
                                : "write another picture instead of the result: " + of_finish)
       ->type_name("WHAT")

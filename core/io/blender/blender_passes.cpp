@@ -190,18 +190,23 @@ void FillEdges(GuideSet& guides) {
   }
 }
 
-// Clears the background, whatever the passes hold there.
-void ClearBackground(GuideSet& guides) {
+// Blender's Z is 10^10 where there is nothing.
+void ClearDistance(GuideSet& guides) {
+  if (!guides.Has(Layer::kDepth)) return;
+  for (float& depth : guides.Plane(Layer::kDepth)) {
+    if (depth >= kBackgroundDepth) depth = BackgroundValue(Layer::kDepth);
+  }
+}
+
+// What Cycles averages over a pixel with nothing where nothing is hit: divided by the coverage it is the surface's.
+// Shadow catchers are not in these passes.
+void UndoCoverage(Layer layer, std::span<const float> catchers, GuideSet& guides) {
   const auto coverage = guides.Plane(Layer::kCoverage);
-  for (const Layer layer :
-       {Layer::kNormal, Layer::kPosition, Layer::kDepth, Layer::kObject, Layer::kMaterial, Layer::kUv}) {
-    if (!guides.Has(layer)) continue;
-    for (int c = 0; c < ChannelCount(layer); ++c) {
-      const auto plane = guides.Plane(layer, c);
-      for (std::size_t i = 0; i < plane.size(); ++i) {
-        if (!(coverage[i] > 0.0f) || (layer == Layer::kDepth && plane[i] >= kBackgroundDepth))
-          plane[i] = BackgroundValue(layer);
-      }
+  for (int c = 0; guides.Has(layer) && c < ChannelCount(layer); ++c) {
+    const auto plane = guides.Plane(layer, c);
+    for (std::size_t i = 0; i < plane.size(); ++i) {
+      const bool catches = !catchers.empty() && catchers[i] > 0.0f;
+      if (coverage[i] > 0.0f && coverage[i] < 1.0f && !catches) plane[i] /= coverage[i];
     }
   }
 }
@@ -221,7 +226,9 @@ Status ConvertBlenderPasses(const std::optional<GuideCamera>& camera, const Blen
   ConvertNormals(*guides.camera, guides);
   SCUMBLE_RETURN_IF_ERROR(NameIds(mattes, name, guides));
   FillEdges(guides);
-  ClearBackground(guides);
+  ClearDistance(guides);
+  UndoCoverage(Layer::kAlbedo, catchers, guides);
+  UndoCoverage(Layer::kUv, catchers, guides);
   ConvertBlenderLight(light, catchers, guides);
   return Ok();
 }

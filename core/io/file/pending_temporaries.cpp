@@ -19,8 +19,8 @@
 namespace scumble {
 namespace {
 
-// State that a signal handler may touch. Each slot holds a file's name, or null. Whoever takes the name out of its
-// slot, the writer or the handler, owns the file.
+// State that a signal handler may touch. Each slot holds the name of a file, or null. Whoever takes the name out of its
+// slot, the writer or the handler, may end its life; the file is gone or renamed before the writer does so.
 constexpr std::size_t kMostFiles = 64;  // written at once; any beyond are not registered here
 std::array<std::atomic<const char*>, kMostFiles> names{};
 std::atomic<int> being_made{0};
@@ -120,15 +120,17 @@ bool PendingTemporary::Hold() {
 }
 
 void PendingTemporary::Forget() {
+  // While the name has its slot: a signal after the name is taken out would leave the file behind.
+  if (is_there_) ::unlink(name_.c_str());
+  is_there_ = false;
   const char* name = name_.c_str();
   if (place_ && !place_->compare_exchange_strong(name, nullptr)) WaitForTheEnd();  // the handler is reading the name
   place_ = nullptr;
-  if (is_there_) ::unlink(name_.c_str());
-  is_there_ = false;
   if (lock_ >= 0) ::close(std::exchange(lock_, -1));
 }
 
 PendingTemporary::~PendingTemporary() { Forget(); }
+
 int PendingTemporary::Finish(const std::filesystem::path& target) {
   if (::rename(name_.c_str(), target.c_str()) == 0) {
     is_there_ = false;

@@ -41,8 +41,8 @@ class PendingTemporary {
   std::string name_;
   int descriptor_ = -1;
   int lock_ = -1;  // the same file: this lock lasts after the caller has closed the other descriptor
-  std::atomic<const char*>* place_ =
-      nullptr;  // nullptr; // the slot in which RemovePendingTemporaries finds the name; null where all are taken
+  // The slot in which RemovePendingTemporaries finds the name; null where all are taken.
+  std::atomic<const char*>* place_ = nullptr;
   bool is_there_ = false;
 };
 

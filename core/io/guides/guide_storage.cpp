@@ -48,6 +48,19 @@ void NormalizeNormals(GuideSet& guides) {
   }
 }
 
+void ClearBackground(GuideSet& guides) {
+  if (!guides.Has(Layer::kCoverage)) return;
+  const auto coverage = guides.Plane(Layer::kCoverage);
+  for (const Layer layer :
+       {Layer::kNormal, Layer::kPosition, Layer::kDepth, Layer::kObject, Layer::kMaterial, Layer::kUv}) {
+    for (int c = 0; guides.Has(layer) && c < ChannelCount(layer); ++c) {
+      const auto plane = guides.Plane(layer, c);
+      const float background = BackgroundValue(layer);
+      for (std::size_t i = 0; i < plane.size(); ++i) plane[i] = coverage[i] > 0.0f ? plane[i] : background;
+    }
+  }
+}
+
 void LimitDepths(GuideSet& guides) {
   if (!guides.Has(Layer::kDepth) || !guides.Has(Layer::kCoverage)) return;
   const auto coverage = guides.Plane(Layer::kCoverage), depth = guides.Plane(Layer::kDepth);

@@ -20,6 +20,10 @@ bool LookPacked(const GuideSet& guides);
 // rounding or filter explains stay too, and Validate refuses them.
 void NormalizeNormals(GuideSet& guides);
 
+// Gives the pixels that nothing covers the values of background in the layers of surfaces, whatever a renderer left
+// there: zeros, -1, NaN. Light and colours stay, which may be a sky's. Nothing without coverage.
+void ClearBackground(GuideSet& guides);
+
 // Depths of covered pixels that are infinite, because half floats cannot hold them, become 10^30 m: all equally far.
 void LimitDepths(GuideSet& guides);
 

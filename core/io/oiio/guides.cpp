@@ -417,6 +417,7 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
       if (!wanted.Has(layer)) guides.Remove(layer);
     }
   }
+  internal::ClearBackground(guides);
   if (guides.Has(Layer::kNormal)) {
     if (guides.Has(Layer::kCoverage) && internal::LookPacked(guides)) {
       return InputError(name + ": its normals look packed into 0 to 1; write them as they are, in -1 to 1");

@@ -414,6 +414,34 @@ TEST(GuideFile, ADataWindowLandsWhereItBelongs) {
   }
 }
 
+// What a renderer leaves in its background is not looked at: it is infinitely far, and of no object.
+TEST(GuideFile, BackgroundIsBackgroundWhateverItHolds) {
+  const TemporaryFolder folder;
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const OIIO::ImageSpec spec(3, 1, 1, OIIO::TypeDesc::FLOAT);
+  for (const char* compression : {"zip", "dwaa"}) {  // the plain reader's, and the library's
+    OIIO::ImageSpec one = spec;
+    one.attribute("compression", compression);
+    for (const float left : {0.0f, -1.0f, nan}) {
+      WriteExr(folder / "sky.exr", one, {"A", "depth.Z", "normal.X", "normal.Y", "normal.Z", "object.ID", "albedo.R"},
+               [&](std::size_t c, std::size_t i) {
+                 const bool is_covered = i > 0;
+                 if (c == 0) return is_covered ? 1.0f : 0.0f;
+                 if (c == 6) return 0.5f;
+                 return !is_covered ? left : c == 2 || c == 3 ? 0.0f : 1.0f;
+               });
+      GuideReadOptions options = OnlyNormals();
+      options.required.Add(Layer::kDepth).Add(Layer::kObject);
+      const auto read = ReadGuides(folder / "sky.exr", options);
+      ASSERT_TRUE(read) << read.error().message;
+      EXPECT_EQ(read->Plane(Layer::kDepth)[0], BackgroundValue(Layer::kDepth)) << compression << " " << left;
+      EXPECT_EQ(read->Plane(Layer::kObject)[0], 0.0f) << compression << " " << left;
+      EXPECT_EQ(read->Vec3(Layer::kNormal, 0), glm::vec3(0.0f)) << compression << " " << left;
+      EXPECT_NEAR(read->Plane(Layer::kDepth)[1], 1.0f, 1e-3f);
+    }
+  }
+}
+
 TEST(GuideFile, OverscanIsCutOff) {
   const TemporaryFolder folder;
   OIIO::ImageSpec spec(7, 6, 1, OIIO::TypeDesc::FLOAT);

@@ -58,6 +58,35 @@ TEST_F(CliFinishInTime, MeasuresCanBeGiven) {
               {"--finish-measures"});
 }
 
+// A frame is kept by what it was measured with, whether that was given or not.
+TEST_F(CliFinishInTime, ResumeKnowsTheMeasures) {
+  WriteStyle("plain");
+  RunOk({"guidegen", kToys, "--frames", "1-2", "--size", "64x48", "--layers", "luminance,shadow", "-o", "g.####.exr"});
+  const Arguments paint{"transfer", "g.####.exr", "--style",   "plain", "--frames",
+                        "1-2",      "--finish",   "storybook", "-o",    "p.####.png"};
+  const auto kept = [&](Arguments arguments, const std::string& measures) {
+    arguments.insert(arguments.end(), {"--resume", "--json"});
+    if (!measures.empty()) arguments.insert(arguments.end(), {"--finish-measures", measures});
+    return RunOk(arguments).Json()["kept"].get<int>();
+  };
+  const auto told = [&](const Arguments& arguments) {
+    const std::string text = RunOk(arguments).err, option = "--finish-measures ";
+    const std::size_t begin = text.find(option) + option.size();
+    return text.substr(begin, text.find(' ', begin) - begin);
+  };
+  const std::string measures = told(paint);
+  RunOk({"transfer", "g.####.exr", "--style", "plain", "--frames", "1-2", "-o", "q.####.png"});
+  const Arguments finish{"finish",   "q.####.png", "g.####.exr", "--frames",  "1-2",
+                         "--finish", "storybook",  "-o",         "f.####.png"};
+  EXPECT_EQ(told(finish), measures);
+  for (const Arguments& run : {paint, finish}) {
+    EXPECT_EQ(kept(run, ""), 2) << run[0];
+    EXPECT_EQ(kept(run, measures), 2) << run[0];
+    EXPECT_EQ(kept(run, "1,2,30,1,1"), 0) << run[0];
+    EXPECT_EQ(kept(run, measures), 0) << run[0];
+  }
+}
+
 // Frames that are made later look as those that were made at once.
 TEST_F(CliFinishInTime, ResumedTransfersGoOnAsTheyBegan) {
   WriteStyle("plain");
