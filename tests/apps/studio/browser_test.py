@@ -115,9 +115,13 @@ class Page(unittest.TestCase):
 
     def settled(self):
         """Waits for the final of the server's newest state on the screen."""
-        self.until(lambda: self.js("return document.documentElement.dataset.drawn") == "final" and
-                   int(self.js("return document.documentElement.dataset.revision")) >= self.state()["revision"],
-                   "the final")
+        def is_there():
+            # In one look: between two, a draft of the newest state may take the place of the final of the one before.
+            drawn, revision = self.js("const {drawn, revision} = document.documentElement.dataset;"
+                                      "return [drawn, Number(revision)]")
+            return drawn == "final" and revision >= self.state()["revision"]
+
+        self.until(is_there, "the final")
 
     def find(self, selector):
         return self.browser.find_element(By.CSS_SELECTOR, selector)
