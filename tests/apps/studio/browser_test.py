@@ -364,6 +364,10 @@ class Changing(Page):
         self.assertEqual(typed("#budget", "30"), "30")
         self.until(lambda: self.state()["budget_ms"] == 30, "another budget")
 
+    def test_every_press_of_a_key_moves_a_slider_of_a_wide_range(self):
+        self.find("[data-key='transfer.scale'] [data-slider]").send_keys(Keys.ARROW_RIGHT * 10)
+        self.until(lambda: self.state()["keys"].get("transfer.scale") == 1.5, "ten steps")
+
     def test_a_number_that_is_being_typed_is_saved(self):
         field = self.find("[id='key-transfer.threshold']")
         field.send_keys(Keys.CONTROL + "a")
