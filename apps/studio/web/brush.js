@@ -241,9 +241,10 @@ export class BrushPanel {
   }
 
   async save() {
-    const exemplar = this.exemplar.current;
     this.strokes.end();
-    if (!this.canPaint || this.strokes.isSaved || !exemplar) return;
+    await this.exemplar.store.rested();  // another style may be on its way, whose file may have the same bytes
+    const exemplar = this.exemplar.current, isOwn = this.belongsTo === this.exemplar.shown;
+    if (!this.canPaint || this.strokes.isSaved || !exemplar || !isOwn) return;
     this.saving = true;
     this.showUndo();
     try {

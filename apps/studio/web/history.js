@@ -8,7 +8,8 @@ import {settingsOf} from './store.js';
 /** @typedef {import('./api.js').State} State */
 /** @typedef {import('./api.js').Changes} Changes */
 /** @typedef {import('./memory.js').SeenPicture & {item: HTMLLIElement, name: string,
- *   picture: (signal: AbortSignal) => Promise<Blob>}} Entry name: the label, as the page shows it */
+ *   mayBeOld: boolean, picture: (signal: AbortSignal) => Promise<Blob>}} Entry
+ *   name: the label, as the page shows it; mayBeOld: files have changed since it was on the screen */
 
 const kMost = 30;
 const kThumbHeight = 152;
@@ -30,6 +31,20 @@ export function describe(state) {
   return words.join(' · ');
 }
 
+/**
+ * A number that changes with the pixels.
+ * @param {CanvasRenderingContext2D} from
+ */
+function hashOf(from) {
+  const {width, height} = from.canvas;
+  let hash = width;
+  for (const pixel of new Int32Array(from.getImageData(0, 0, width, height).data.buffer)) {
+    hash = Math.imul(hash ^ pixel, 0x01000193);
+    hash ^= hash >>> 15;
+  }
+  return hash;
+}
+
 export class History {
   /** @param {import('./store.js').Store} store */
   constructor(store) {
@@ -39,7 +54,6 @@ export class History {
     this.entries = [];
     this.next = 1;
     this.timer = 0;
-    this.filesChanged = false;
     /** @type {(side: 'a' | 'b', entry: Entry) => void} */
     this.onMark = () => {};
     /** @type {() => void} */
@@ -59,20 +73,30 @@ export class History {
     this.timer = setTimeout(() => this.keep(canvas, state), kRestMs);
   }
 
+  /** The same settings may be another picture now. */
+  filesChanged() {
+    for (const entry of this.entries) entry.mayBeOld = true;
+  }
+
   /** Something moves: what is on the screen is a draft. */
   leave() { clearTimeout(this.timer); }
 
   /** @param {HTMLCanvasElement} canvas @param {State} state */
   keep(canvas, state) {
     const settings = settingsOf(state), signature = JSON.stringify(settings);
-    const same = this.entries.find((entry) => entry.signature === signature);
-    if (same && !this.filesChanged) {
+    const same = [...this.entries].reverse().find((entry) => entry.signature === signature);
+    if (same && !same.mayBeOld) {
       this.markNow(same);
       return;
     }
-    this.filesChanged = false;
     const copy = scratch(canvas.width, canvas.height);
     copy.to.drawImage(canvas, 0, 0);
+    const pixels = hashOf(copy.to);
+    if (same?.pixels === pixels) {
+      same.mayBeOld = false;
+      this.markNow(same);
+      return;
+    }
     const picture = pngOf(copy.canvas);
     const thumb = make(
         'canvas', {height: kThumbHeight, width: Math.max(1, Math.round(kThumbHeight * canvas.width / canvas.height))});
@@ -82,15 +106,15 @@ export class History {
     to.fillRect(0, 0, thumb.width, thumb.height);
     to.drawImage(canvas, 0, 0, thumb.width, thumb.height);
     const thumbnail = thumb.toDataURL('image/jpeg', 0.9);
-    const label = describe(state), seen = {id: this.next++, settings, signature, label, thumbnail};
+    const label = describe(state), seen = {id: this.next++, settings, signature, label, thumbnail, pixels};
     this.markNow(this.add(seen, label, () => picture));
     this.write();
     this.onChange();
   }
 
   write() {
-    keepSeen(this.entries.map(({id, settings, signature, label, thumbnail}) =>
-        ({id, settings, signature, label, thumbnail})));
+    keepSeen(this.entries.map(({id, settings, signature, label, thumbnail, pixels}) =>
+        ({id, settings, signature, label, thumbnail, pixels})));
   }
 
   /**
@@ -120,6 +144,7 @@ export class History {
         const json = {changes, quality: 'final', format: 'png', show: ''};
         return (await call('POST', '/api/frame', {json, signal})).blob();
       });
+      entry.mayBeOld = true;
       this.next = Math.max(this.next, seen.id + 1);
     }
     this.onChange();
@@ -150,7 +175,7 @@ export class History {
     }
     item.append(restore, marks);
     /** @type {Entry} */
-    const entry = {...seen, item, name, picture};
+    const entry = {...seen, item, name, picture, mayBeOld: false};
     this.entries.push(entry);
     this.list.append(item);
     if (this.entries.length > kMost) this.entries.shift()?.item.remove();

@@ -83,7 +83,7 @@ export class Keeper {
   /** @param {string} [why] */
   askName(why = '') {
     byId('save-as-error', HTMLElement).textContent = why;
-    if (!this.name.value) this.name.value = `my-${this.store.state.style}`;
+    this.name.value = `my-${this.store.state.style}`;
     this.dialog.showModal();
     this.name.select();
   }
@@ -95,7 +95,6 @@ export class Keeper {
     try {
       const {saved} = await (await call('POST', '/api/save-as', {json: {name: this.name.value}})).json();
       this.dialog.close();
-      this.name.value = '';
       this.page.announce(`saved ${saved ?? 'the style'}`);
       this.store.moveTo((await this.store.refresh()).style, keys, before);
     } catch (failed) {

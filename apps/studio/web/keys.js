@@ -120,7 +120,8 @@ export class KeysPanel {
       const direction = {ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1}[event.key];
       if (isLinear || !direction) return;
       event.preventDefault();
-      const now = Number(number.value) + direction * step;
+      // The number beside it follows a little later, while keys repeat.
+      const {state} = this.store, now = Number(state.keys[key.name] ?? fileValue(key, state)) + direction * step;
       this.change(key, clamp(Number(now.toFixed(6)), key.least ?? 0, key.most ?? 1), true);
     });
     number.addEventListener('change', () => {

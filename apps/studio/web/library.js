@@ -4,16 +4,32 @@ import {byId, make} from './dom.js';
 
 /** @typedef {import('./api.js').State} State */
 
+let version = 0;  // of the styles' files: browsers ask again for another address alone
+
 /** @param {'style' | 'scene'} kind @param {string} id */
 export function thumbnailOf(kind, id) {
-  return withQuery('/api/thumbnail', {[kind]: id});
+  return withQuery('/api/thumbnail', {[kind]: id, ...(kind === 'style' && version && {version})});
 }
 
-/**
- * @param {import('./store.js').Store} store
- */
-export function showLibrary(store) {
-  for (const kind of /** @type {const} */ (['style', 'scene'])) {
+export class Library {
+  /** @param {import('./store.js').Store} store */
+  constructor(store) {
+    this.store = store;
+    for (const kind of /** @type {const} */ (['style', 'scene'])) this.show(kind);
+  }
+
+  /** Files changed on the disk: styles that are not bundled may look different. */
+  renew() {
+    version++;
+    for (const {id, bundled} of this.store.state.styles) {
+      const image = bundled ? null : document.querySelector(`[data-style="${CSS.escape(id)}"] img`);
+      if (image instanceof HTMLImageElement) image.src = thumbnailOf('style', id);
+    }
+  }
+
+  /** @param {'style' | 'scene'} kind */
+  show(kind) {
+    const {store} = this;
     const box = byId(`${kind}s`, HTMLElement);
     let built = '';
     box.addEventListener('change', (event) => {

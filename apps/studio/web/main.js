@@ -25,7 +25,7 @@ import {keepInHash, lostSettings, readHash, touchHash} from './hash.js';
 import {History} from './history.js';
 import {Keeper} from './keep.js';
 import {KeysPanel} from './keys.js';
-import {showLibrary} from './library.js';
+import {Library} from './library.js';
 import {FinishPanel} from './finish.js';
 import {LightPanel} from './light.js';
 import {keepSteps, keptSteps} from './memory.js';
@@ -81,11 +81,16 @@ function show(picture) {
   else requestAnimationFrame(tell);
   if (picture.quality !== 'final') return;
   announceSoon(`drawn in ${Math.round(picture.ms)} ms`);
-  // While a change is on its way, the state is already another one than the picture's.
-  const isNow = picture.revision === store.state.revision && !store.sending;
-  if (picture.show === 'picture' && isNow) seen.see(view.picture, store.state);
-  else seen.leave();
+  see();
   compare.now(picture.show);
+}
+
+/** The strip keeps a final that is the state's. While a change is on its way, the state is already another one. */
+function see() {
+  const {drawn} = frames;
+  const isNow = drawn?.quality === 'final' && drawn.revision === store.state.revision && !store.sending;
+  if (isNow && drawn.show === 'picture') seen.see(view.picture, store.state);
+  else seen.leave();
 }
 
 frames.onPicture = show;
@@ -116,7 +121,7 @@ exemplar.onShown = () => void brush.follow();
 new OutputPanel(store);
 new LightPanel(store);
 new FinishPanel(store);
-showLibrary(store);
+const library = new Library(store);
 followTheme();
 
 /** @param {string} what */
@@ -162,12 +167,15 @@ async function onEvent(name, data) {
   }
   if (name !== 'state') return;
   const isFiles = data.why === 'files';
-  if (isFiles) seen.filesChanged = true;
   if (isFiles) {
+    seen.filesChanged();
     // The picture is ready on the server; all else waits until it is on the screen.
     frames.renew();
     await frames.rested();
-    await store.refresh();
+    const state = await store.refresh();
+    if (!state.problem && frames.drawn) showProblem(null);  // the state that it stood in was read before
+    see();
+    library.renew();
     await exemplar.renew();
     return;
   }

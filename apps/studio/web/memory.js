@@ -3,8 +3,9 @@
 
 /** @typedef {import('./api.js').Changes} Changes */
 /** @typedef {import('./store.js').Step} Step */
-/** @typedef {{id: number, settings: Changes, signature: string, label: string, thumbnail: string}} SeenPicture
- *   thumbnail: a data URL */
+/** @typedef {{id: number, settings: Changes, signature: string, label: string, thumbnail: string,
+ *   pixels: number}} SeenPicture
+ *   thumbnail: a data URL; pixels: a hash of them */
 
 const kSeen = 'scumble-seen', kUndo = 'scumble-undo';
 

@@ -18,6 +18,9 @@ export class OutputPanel {
     this.budget = byId('budget', HTMLInputElement);
     this.seed = byId('seed', HTMLInputElement);
     for (const input of [this.width, this.height]) input.addEventListener('change', () => this.resize());
+    // What was refused gives way to what is.
+    for (const input of [this.width, this.height, this.budget, this.seed])
+      input.addEventListener('blur', () => this.update(store.state));
     this.preset.addEventListener('change', () => {
       const [width, height] = this.preset.value.split('×').map(Number);
       if (height) void store.patch({size: [width, height]});
@@ -39,9 +42,10 @@ export class OutputPanel {
   }
 
   resize() {
+    if (!this.width.value || !this.height.value) return;
     const width = clamp(Math.round(Number(this.width.value)), 1, 16384);
     const height = clamp(Math.round(Number(this.height.value)), 1, 16384);
-    if (width && height) void this.store.patch({size: [width, height]});
+    void this.store.patch({size: [width, height]});
   }
 
   /** @param {State} state */

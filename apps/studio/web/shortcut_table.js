@@ -110,13 +110,15 @@ export function shortcutTable({view, orbit, compare, timeline, keeper, brush, as
       release: () => compare.flip(false)
     },
 
-    {group: 'Work', keys: 'Ctrl + Z', does: 'undo', ctrl: true, shift: false, key: ['z'], run: () => step(true)},
+    {group: 'Work', keys: 'Ctrl + Z', does: 'undo', ctrl: true, shift: false, isUndo: true,
+     key: ['z'], run: () => step(true)},
     {
       group: 'Work',
       keys: 'Ctrl + Shift + Z / Ctrl + Y',
       does: 'redo',
       ctrl: true,
       shift: true,
+      isUndo: true,
       key: ['z'],
       run: () => step(false)
     },
@@ -180,7 +182,7 @@ export function shortcutTable({view, orbit, compare, timeline, keeper, brush, as
       {code: ['Numpad3'], run: () => orbit.from(90, 0)},
       {code: ['Numpad7'], run: () => orbit.from(0, 90)},
       {single: true, key: ['-', '−'], run: () => view.step(-1)},
-      {ctrl: true, shift: false, key: ['y'], run: () => step(false)},
+      {ctrl: true, shift: false, isUndo: true, key: ['y'], run: () => step(false)},
       {single: true, key: [']'], run: () => brush.resize(1.2)},
     ]),
   ];

@@ -3,8 +3,9 @@ import {byId, isField, make} from './dom.js';
 
 /**
  * @typedef {{group: string, keys: string, does: string, key?: string[], code?: string[], ctrl?: boolean,
- *   shift?: boolean, single?: boolean, run?: (event: KeyboardEvent) => boolean | void, release?: () => void}} Shortcut
- * `single`: a key that types a character, which can be switched off. `run` answers false where the key is not its.
+ *   shift?: boolean, single?: boolean, isUndo?: boolean, run?: (event: KeyboardEvent) => boolean | void, release?: () => void}} Shortcut
+ * `single`: a key that types a character, which can be switched off; `isUndo`: text
+ * fields have their own. `run` answers false where the key is not its.
  * Without `run` the row is for the help alone.
  */
 
@@ -38,10 +39,19 @@ function fits(row, event, letters) {
   if (event.altKey || (event.ctrlKey || event.metaKey) !== !!row.ctrl) return false;
   if (row.single && (!letters || isField(event.target))) return false;
   if (!row.ctrl && isField(event.target)) return false;
+  if (row.isUndo && isText(event.target)) return false;
   if (row.shift !== undefined && row.shift !== event.shiftKey) return false;
   if (row.code) return row.code.includes(event.code);
   return !event.code.startsWith('Numpad') &&
       !!row.key?.includes(event.key.length === 1 ? event.key.toLowerCase() : event.key);
+}
+
+/**
+ * Whether it undoes what was typed by itself.
+ * @param {EventTarget | null} target
+ */
+function isText(target) {
+  return target instanceof HTMLInputElement && ['text', 'search'].includes(target.type);
 }
 
 /** @param {Shortcut[]} table */

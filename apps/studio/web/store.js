@@ -102,6 +102,7 @@ export class Store {
     /** @type {{changes: Changes, moving: boolean, step: Step | null}[]} */
     this.queue = [];
     this.sending = false;
+    this.sent = 0;  // changes that were answered
     this.following = 0;  // a timer
     this.told = 0;  // the newest revision that an event has named
     /** @type {Step[]} */
@@ -257,6 +258,7 @@ export class Store {
       for (; next; next = this.queue.shift()) {
         /** @type {State} */
         const answer = await (await call('PATCH', '/api/state', {json: next.changes})).json();
+        this.sent++;
         this.set(this.queue.reduce((state, waiting) => applied(state, waiting.changes), answer), next.moving);
         this.onSent(next.moving);
       }
@@ -288,10 +290,12 @@ export class Store {
 
   /** Reads the state anew. */
   async refresh() {
+    const {sent} = this;
     /** @type {State} */
     const answer = await getJson('/api/state');
-    // A change that is on its way is not in this answer, but will be in its own.
-    if (!this.sending) this.set(answer);
+    // A change that is on its way is not in this answer, but will be in its own; one that overtook it is not in it.
+    const isOld = sent !== this.sent && answer.revision < this.state.revision;
+    if (!this.sending && !isOld) this.set(answer);
     return answer;
   }
 }

@@ -13,7 +13,10 @@ export class Timeline {
     this.playing = false;
     this.from = {frame: 0, time: 0};
     this.slider.addEventListener('input', () => this.go(Number(this.slider.value)));
-    this.number.addEventListener('change', () => this.go(Math.round(Number(this.number.value)), false));
+    this.number.addEventListener('change', () => {
+      if (this.number.value) this.go(Math.round(Number(this.number.value)), false);
+    });
+    this.number.addEventListener('blur', () => this.update(store.state));
     byId('play', HTMLElement).addEventListener('click', () => this.toggle());
     store.listen((state) => this.update(state));
   }
