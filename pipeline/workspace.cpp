@@ -222,7 +222,7 @@ Status Workspace::State::LoadStyles(StyleRequest request, const std::string& cho
   SCUMBLE_ASSIGN(choice, choose(loaded));
   if (!replaced) replaced = std::move(styles);
   styles = std::move(loaded), style_text = text, style_stamps = StampsAsRead(*styles, before, begun);
-  picture.exposure.reset(), picture.hashes.clear(), picture.warned = false;
+  picture.exposure.reset(), picture.finish_measures.reset(), picture.hashes.clear(), picture.warned = false;
   return Ok();
 }
 
@@ -349,7 +349,7 @@ Status Workspace::State::Cast(SceneRequest request, std::optional<int> frame, co
   SCUMBLE_RETURN_IF_ERROR(made.guides.Validate(request.scene));
   guides = std::make_shared<const SceneGuides>(std::move(made));
   guides_key = key;
-  picture.exposure.reset();  // it is measured on the guides
+  picture.exposure.reset(), picture.finish_measures.reset();  // they are measured on the guides
   return Ok();
 }
 

@@ -81,6 +81,20 @@ TEST(Workspace, PaintsWhatTheProgramPaints) {
                 .rgba);
 }
 
+// What finishing effects measure is measured on the guides that are there.
+TEST(Workspace, FinishingEffectsAreMeasuredAnewOnNewGuides) {
+  Workspace workspace(Context());
+  StyleRequest style = StyleOf("oil");
+  style.finishes = {"storybook"};
+  SceneRequest scene = SceneOf("suzanne");
+  Painted(workspace, scene, style);
+  const std::string options = kSource + "/scenes/suzanne.glb --style oil --finish storybook --size 96x54 ";
+  scene.light = LightAngles{-60.0, 20.0};
+  EXPECT_EQ(Painted(workspace, scene, style).rgba, Stylized(options + "--light -60,20").rgba);
+  scene.view = ViewAngles{70.0, 10.0, 0.0};
+  EXPECT_EQ(Painted(workspace, scene, style).rgba, Stylized(options + "--light -60,20 --view 70,10").rgba);
+}
+
 TEST(Workspace, AChangedKeyCastsNoRay) {
   Workspace workspace(Context());
   const Picture before = Painted(workspace, SceneOf("suzanne"), StyleOf("oil"));

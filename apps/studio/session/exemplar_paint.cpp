@@ -14,9 +14,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Expected<std::string> StampOfBytes(const fs::path& file) {
+// Of the file's name, too: copies have the same bytes.
+Expected<std::string> StampOf(const fs::path& file) {
   SCUMBLE_ASSIGN(const std::vector<std::byte> bytes, ReadWholeFile(file));
-  return fmt::format("{:016x}", HashText({reinterpret_cast<const char*>(bytes.data()), bytes.size()}));
+  return fmt::format("{:016x}", Hash(HashText(file.string()), HashBytes(std::span(bytes))));
 }
 
 }  // namespace
@@ -33,7 +34,7 @@ Expected<PaintTarget> FindPaintTarget(const fs::path& file) {
   if (::access(file.c_str(), W_OK) != 0 || ::access(folder.c_str(), W_OK) != 0) {
     return UsageError(file.string() + " cannot be written: save the style as a new one");
   }
-  SCUMBLE_ASSIGN(target.stamp, StampOfBytes(file));
+  SCUMBLE_ASSIGN(target.stamp, StampOf(file));
   SCUMBLE_ASSIGN(const PictureHeader header, InspectPicture(file));
   target.width = header.width, target.height = header.height;
   return target;
@@ -57,7 +58,7 @@ Status PutStrokes(const fs::path& file, const std::string& stamp, std::span<cons
   }
   if (target.layer) {
     SCUMBLE_ASSIGN(const std::vector<std::byte> bytes, WithStrokes(file, "Scumble", layer));
-    SCUMBLE_ASSIGN(const std::string now, StampOfBytes(file));
+    SCUMBLE_ASSIGN(const std::string now, StampOf(file));
     if (now != stamp) return changed;
     return WriteFileAtomically(file, bytes);
   }
@@ -67,7 +68,7 @@ Status PutStrokes(const fs::path& file, const std::string& stamp, std::span<cons
   PictureWriteOptions options;
   options.bits = header.bits > 8 ? 16 : 8;
   options.dpi = int(header.dpi + 0.5);
-  SCUMBLE_ASSIGN(const std::string now, StampOfBytes(file));
+  SCUMBLE_ASSIGN(const std::string now, StampOf(file));
   if (now != stamp) return changed;
   return WritePicture(file, picture, options);
 }

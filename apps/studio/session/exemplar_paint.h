@@ -12,7 +12,7 @@ namespace scumble {
 
 struct PaintTarget {
   std::filesystem::path file;
-  std::string stamp;  // of the bytes that were read: "the file as I know it"
+  std::string stamp;  // of the file and the bytes that were read: "the file as I know it"
   int width = 0, height = 0;
   bool layer = false;  // strokes become a layer of an OpenRaster file, instead of part of the only one
 };

@@ -100,7 +100,7 @@ HttpResponse Session::State::Frame(const Moment& moment, const HttpRequest& requ
     job.picture.leave_small = *format == FrameFormat::kJpeg;  // browsers scale it as they draw it
     job.key += job.picture.leave_small ? " small draft" : " draft";
   }
-  const std::string etag = EtagOf(run_id + job.key + format_name);
+  const std::string etag = EtagOf(run_id + " " + job.key + format_name);
   const std::vector<std::pair<std::string, std::string>> known = {
       {"ETag", etag}, {"X-Scumble-Revision", std::to_string(moment.revision)}};
   if (request.if_none_match == etag) return {304, "", "", known};
@@ -146,8 +146,19 @@ HttpResponse Session::State::PostFrame(const HttpRequest& request) {
   const nlohmann::json changes = body->contains("changes") ? (*body)["changes"] : nlohmann::json::object();
   const Expected<StudioState> changed = Patched(moment.state, changes, KnownCatalogue());
   if (!changed) return ErrorAnswer(changed.error(), changed.error().kind == ErrorKind::kInput ? 404 : 400);
+  const Moment main = moment;
+  const auto begun = std::chrono::system_clock::now();
   moment.state = *changed;
-  return Frame(moment, request, text("quality", "final"), text("format", "jpeg"), text("show", ""), others);
+  HttpResponse answer =
+      Frame(moment, request, text("quality", "final"), text("format", "jpeg"), text("show", ""), others);
+  if (answer.status != 200 || main.state.scene.empty() || main.state.style.empty()) return answer;
+  std::vector<StyleEntry> styles = StylesOf(moment.state);
+  {
+    const std::lock_guard lock(mutex);
+    compared = std::move(styles);
+  }
+  WatchFilesOf(main, begun, true);
+  return answer;
 }
 
 Expected<Lane::Painted> Session::State::PaintedWithField() {

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "apps/studio/session/session_state.h"
+#include "core/image/hash.h"
 #include "core/io/picture_file.h"
 #include "core/style/style_file.h"
 #include "pipeline/file_stamp.h"
@@ -80,13 +81,15 @@ Expected<std::shared_ptr<const StyleFacts>> ReadFacts(const StyleEntry& style) {
   return std::make_shared<const StyleFacts>(std::move(facts));
 }
 
+std::string HashOf(const StudioState& state) { return fmt::format("{:016x}", HashText(ToJson(state).dump())); }
+
 }  // namespace
 
 Session::State::State(const StudioOptions& given, const RunContext& run, EventHub& hub)
     : options(given),
       context(ContextOf(run, hub)),
       events(hub),
-      run_id(fmt::format("{} ", std::chrono::system_clock::now().time_since_epoch().count())),
+      run_id(fmt::format("{}", std::chrono::system_clock::now().time_since_epoch().count())),
       finals(context),
       drafts(context),
       others(context),
@@ -177,7 +180,7 @@ nlohmann::json Session::State::StateJson() {
   const Moment moment = Now();
   nlohmann::json json = ToJson(moment.state);
   json["revision"] = moment.revision;
-  json["first"] = {{"scene", first_scene}, {"style", first_style}};
+  json["run"] = run_id, json["first"] = first, json["as_started"] = HashOf(moment.state) == first["options"];
   const Catalogue known = KnownCatalogue();
   json["scenes"] = json["styles"] = json["finishes"] = json["exemplars"] = nlohmann::json::array();
   for (const SceneEntry& scene : known.scenes) {
@@ -271,10 +274,12 @@ void Session::State::Tell(const std::string& why) {
 // After a picture: what it was made of.
 void Session::State::WatchFilesOf(const Moment& moment, std::chrono::system_clock::time_point begun, bool is_painted) {
   const PictureJob job = JobAt(moment, std::nullopt);
-  const std::string belongs = fmt::format("{}\n{}\n{}\n{} {}", job.scene.scene, job.style.style,
-                                          fmt::join(job.style.assigned, "\n"), moment.generation, is_painted);
+  std::string belongs = fmt::format("{}\n{}\n{}\n{} {}", job.scene.scene, job.style.style,
+                                    fmt::join(job.style.assigned, "\n"), moment.generation, is_painted);
+  std::vector<StyleEntry> styles = StylesOf(moment.state);
   {
     const std::lock_guard lock(mutex);
+    for (const StyleEntry& style : compared) belongs += "\n" + style.id, styles.push_back(style);
     if (watched == belongs) return;
     watched = belongs;
   }
@@ -289,7 +294,7 @@ void Session::State::WatchFilesOf(const Moment& moment, std::chrono::system_cloc
       return std::filesystem::is_directory(file, failed);
     });
   }
-  for (const StyleEntry& style : StylesOf(moment.state)) AddFilesAround(style, !is_painted, files);
+  for (const StyleEntry& style : styles) AddFilesAround(style, !is_painted, files);
   watch->Watch(files, begun);
 }
 
@@ -361,9 +366,10 @@ Expected<std::unique_ptr<Session>> Session::Open(const StudioOptions& options, c
   };
   first.scene = choose(catalogue.scenes, "suzanne", !options.scene.scene.empty());
   first.style = choose(catalogue.styles, "oil", !options.styles.empty());
-  state->first_scene = first.scene, state->first_style = first.style;
   first.camera = options.scene.camera, first.view = options.scene.view, first.light = options.scene.light;
   first.size = options.scene.size, first.seed = options.seed, first.frame = options.scene.blender.frame;
+  state->first = {{"scene", first.scene}, {"style", first.style}};
+  state->first["options"] = HashOf(first);
   state->catalogue = std::move(catalogue);
   return std::unique_ptr<Session>(new Session(std::move(state)));
 }

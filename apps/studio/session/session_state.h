@@ -49,7 +49,7 @@ struct Session::State {
   EventHub& events;
   // Of this run: the same settings may be another picture in another one.
   const std::string run_id;
-  std::string first_scene, first_style;  // that it began with; set before others see the session
+  nlohmann::json first;  // what it began with; set before others see the session
   std::atomic<bool> stopped = false;
 
   std::mutex mutex;  // of what follows
@@ -58,7 +58,8 @@ struct Session::State {
   std::uint64_t revision = 1;
   std::uint64_t generation = 1;  // raised when a file has changed
   std::optional<Error> problem;
-  std::string watched;                                             // what the files that are watched belong to
+  std::string watched;               // what the files that are watched belong to
+  std::vector<StyleEntry> compared;  // the styles of the last picture that was asked for beside the main one
   std::map<std::string, std::shared_ptr<const StyleFacts>> facts;  // by style id
   std::map<std::string, SceneDescription> descriptions;            // by what they depend on
   std::map<std::string, std::string> thumbnails;                   // by kind and id

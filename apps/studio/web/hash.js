@@ -4,7 +4,7 @@ import {settingsOf} from './store.js';
 
 /** @typedef {import('./api.js').State} State */
 /** @typedef {import('./api.js').Changes} Changes */
-/** @typedef {{revision: number, first?: State['first'], settings: Changes, page: Record<string, any>}} Kept */
+/** @typedef {{revision: number, run?: string, first?: State['first'], settings: Changes, page: Record<string, any>}} Kept */
 
 /** @type {Record<string, () => unknown>} */
 const parts = {};
@@ -48,20 +48,20 @@ function write() {
     const now = value();
     if (now !== undefined) page[name] = now;
   }
-  const kept = {revision: state.revision, first: state.first, settings: settingsOf(state), page};
+  const kept = {revision: state.revision, run: state.run, first: state.first, settings: settingsOf(state), page};
   history.replaceState(null, '', `#${encodeURIComponent(JSON.stringify(kept))}`);
 }
 
 addEventListener('pagehide', write);
 
 /**
- * Settings that a server which was started anew lacks, as far as it can have them. Its revision is lower then. One that
- * was started with another scene or style is meant to show that.
- * @param {State} now @param {{revision: number, first?: State['first'], settings: Changes}} kept
+ * Settings that a server which was started anew lacks, as far as it can have them. One that was started with another
+ * scene, style or option is meant to show that, and so is one that another page has changed since.
+ * @param {State} now @param {{run?: string, first?: State['first'], settings: Changes}} kept
  * @returns {Changes | null}
  */
 export function lostSettings(now, kept) {
-  if (now.revision >= kept.revision || JSON.stringify(now.first) !== JSON.stringify(kept.first)) return null;
+  if (now.run === kept.run || !now.as_started || JSON.stringify(now.first) !== JSON.stringify(kept.first)) return null;
   const settings = {...kept.settings};
   if (!now.scenes.some((scene) => scene.id === settings.scene)) {
     for (const field of /** @type {const} */ (['scene', 'camera', 'view', 'frame', 'assignments']))

@@ -186,7 +186,7 @@ async function onEvent(name, data) {
 /** The server is there: at the beginning, again, or the page is looked at again. */
 async function onFound() {
   const before = store.known, wasGone = root.hasAttribute('data-gone');
-  const known = before ? {revision: before.revision, first: before.first, settings: settingsOf(before)} : kept;
+  const known = before ? {run: before.run, first: before.first, settings: settingsOf(before)} : kept;
   const state = await store.refresh();
   showGone(null);
   showProblem(state.problem);
