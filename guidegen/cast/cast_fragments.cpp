@@ -14,7 +14,7 @@ bool IsLight(Layer layer) {
 }
 
 // The pixel whose light a fragment takes, as core/image/fragments.h says.
-std::size_t LightOf(const FoundFragments::Found& found, float object, float material, const GuideSet& guides) {
+std::size_t PlaceOfLight(const FoundFragments::Found& found, float object, float material, const GuideSet& guides) {
   const int width = guides.width(), height = guides.height();
   const int x = int(found.pixel) % width, y = int(found.pixel) / width;
   const auto objects = guides.Plane(Layer::kObject), materials = guides.Plane(Layer::kMaterial);
@@ -134,7 +134,7 @@ std::shared_ptr<const Fragments> GatherFragments(std::span<const FoundFragments*
       if (!IsLight(info.layer)) continue;
       const auto light = guides.Plane(info.layer, c);
       for (std::size_t i = 0; i < all.size(); ++i) {
-        plane[i] = light[LightOf(*all[i].second, value(all[i], object), value(all[i], material), guides)];
+        plane[i] = light[PlaceOfLight(*all[i].second, value(all[i], object), value(all[i], material), guides)];
       }
     }
   }

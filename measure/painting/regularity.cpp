@@ -4,9 +4,11 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <numbers>
 
 #include "core/filter/gaussian_blur.h"
+#include "core/filter/wide_loops.h"
 #include "core/image/check.h"
 
 namespace scumble {
@@ -40,7 +42,11 @@ struct Texture {
   double spread = 0.0;
 };
 
-// The window without its slow changes, as integers of 1/100: sums of them are exact, and fast.
+// Steps of lightness 1, and the row of pixels whose products add up to 32 bits: 128 · (100 · 40)² < 2³¹.
+constexpr float kSteps = 40.0f, kMost = 100.0f * kSteps;
+constexpr int kRun = 128;
+
+// The window without its slow changes, as integers of 1/40: sums of them are exact, and fast.
 Texture HighPassed(const std::vector<float>& plane, int width, const PictureRegion& region) {
   std::vector<float> tones;
   for (int y = 0; y < region.height; ++y) {
@@ -55,25 +61,35 @@ Texture HighPassed(const std::vector<float>& plane, int width, const PictureRegi
   for (const float tone : tones) {
     const double value = tone - mean;
     squares += value * value;
-    texture.values.push_back(static_cast<std::int16_t>(std::lround(std::clamp(100.0 * value, -10000.0, 10000.0))));
+    texture.values.push_back(
+        static_cast<std::int16_t>(std::lround(std::clamp(double(kSteps) * value, -double(kMost), double(kMost)))));
   }
   texture.spread = std::sqrt(squares / static_cast<double>(tones.size()));
   return texture;
 }
 
+// Σ a[x, y] · b[x, y] over `columns` × `rows` pixels of rows of `side`.
+SCUMBLE_WIDE_LOOPS std::int64_t SumOfProducts(const std::int16_t* a, const std::int16_t* b, int columns, int rows,
+                                              int side) {
+  std::int64_t sum = 0;
+  for (int y = 0; y < rows; ++y, a += side, b += side) {
+    for (int from = 0; from < columns; from += kRun) {
+      const int to = std::min(columns, from + kRun);
+      std::int32_t run = 0;
+      for (int x = from; x < to; ++x) run += std::int32_t(a[x]) * b[x];
+      sum += run;
+    }
+  }
+  return sum;
+}
+
 Autocorrelation Correlate(const std::vector<std::int16_t>& values, int side, int reach) {
   Autocorrelation result(reach);
   const auto sum_at = [&](int dx, int dy) {
-    std::int64_t sum = 0;
-    const int from = std::max(0, -dx), to = std::min(side, side - dx);
-    for (int y = 0; y + dy < side; ++y) {
-      const std::int16_t* a = values.data() + std::size_t(y) * side;
-      const std::int16_t* b = values.data() + std::size_t(y + dy) * side + dx;
-      std::int64_t row = 0;
-      for (int x = from; x < to; ++x) row += std::int32_t(a[x]) * b[x];
-      sum += row;
-    }
-    return static_cast<double>(sum) / ((to - from) * static_cast<double>(side - dy));
+    const int from = std::max(0, -dx), columns = side - std::abs(dx), rows = side - dy;
+    const std::int16_t* const a = values.data() + from;
+    const std::int16_t* const b = a + std::ptrdiff_t(dy) * side + dx;
+    return static_cast<double>(SumOfProducts(a, b, columns, rows, side)) / (static_cast<double>(columns) * rows);
   };
   const double power = sum_at(0, 0);
   for (int dy = 0; dy <= reach; ++dy) {

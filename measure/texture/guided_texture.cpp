@@ -20,13 +20,13 @@
 namespace scumble {
 namespace internal {
 
-using Weights = std::vector<float>;  // of a group's features
+using FeatureWeights = std::vector<float>;  // of a group's features
 inline constexpr std::size_t kQuantiles = 64, kCells = 52;
 using Quantiles = std::array<float, kQuantiles>;
 
 // The distributions of one group of an exemplar's features.
 struct Distributions {
-  std::vector<Weights> slices;
+  std::vector<FeatureWeights> slices;
   std::array<std::vector<Quantiles>, kCells> cells;  // by slice; empty: too few pixels
 };
 
@@ -42,6 +42,7 @@ namespace {
 using internal::Distributions;
 using internal::FeatureGroup;
 using internal::FeaturesOf;
+using internal::FeatureWeights;
 using internal::kCells;
 using internal::kNoSurface;
 using internal::kOctaves;
@@ -52,7 +53,6 @@ using internal::PaintFeatures;
 using internal::Quantiles;
 using internal::Surface;
 using internal::SurfaceOf;
-using internal::Weights;
 
 // Rings of equal area on the disc of normals, from the middle out, and the cells of each.
 constexpr std::size_t kRings = 5;
@@ -109,8 +109,8 @@ std::vector<double> DeviationsOf(const FeatureGroup& group, const CellPixels& ce
 }
 
 // The axes and some random directions, over features that are divided by their deviations.
-std::vector<Weights> SlicesOf(const std::vector<double>& deviations, std::size_t group) {
-  std::vector<Weights> slices;
+std::vector<FeatureWeights> SlicesOf(const std::vector<double>& deviations, std::size_t group) {
+  std::vector<FeatureWeights> slices;
   for (std::size_t f = 0; f < deviations.size(); ++f) {
     slices.emplace_back(deviations.size(), 0.0f)[f] = float(1.0 / deviations[f]);
   }
@@ -122,7 +122,7 @@ std::vector<Weights> SlicesOf(const std::vector<double>& deviations, std::size_t
       for (int k = 0; k < 4; ++k) sum += UnitFloat(Hash(int(group), d, f, k));
       direction.push_back(sum), squared += sum * sum;
     }
-    Weights& weights = slices.emplace_back();
+    FeatureWeights& weights = slices.emplace_back();
     for (std::size_t f = 0; f < deviations.size(); ++f) {
       weights.push_back(float(direction[f] / (std::sqrt(squared) * deviations[f])));
     }
@@ -141,7 +141,7 @@ std::vector<std::vector<float>> SampledFeatures(const FeatureGroup& group, const
   return features;
 }
 
-Quantiles QuantilesOf(const std::vector<std::vector<float>>& features, const Weights& weights) {
+Quantiles QuantilesOf(const std::vector<std::vector<float>>& features, const FeatureWeights& weights) {
   const std::size_t count = features[0].size();
   std::vector<float> values(count);
   for (std::size_t f = 0; f < weights.size(); ++f) {
@@ -160,14 +160,14 @@ Distributions DistributionsOf(const FeatureGroup& group, std::size_t number, con
   tbb::parallel_for(std::size_t{0}, kCells, [&](std::size_t cell) {
     if (cells[cell].size() < kLeastPixels) return;
     const auto features = SampledFeatures(group, cells[cell]);
-    for (const Weights& weights : result.slices) result.cells[cell].push_back(QuantilesOf(features, weights));
+    for (const FeatureWeights& weights : result.slices) result.cells[cell].push_back(QuantilesOf(features, weights));
   });
   return result;
 }
 
 // The sum over the cells of a picture of their distances. A cell weighs what the root of its area does: a wall has one
 // normal however large it is, and round things have few pixels for each of theirs.
-struct Sum {
+struct GroupSum {
   double distance = 0.0, weight = 0.0;
   std::size_t blocks = 0;
 
@@ -191,11 +191,11 @@ struct Sum {
   double Mean() const { return weight > 0.0 ? distance / weight : 0.0; }
 };
 
-using Sums = std::array<Sum, kGroups>;
+using GroupSums = std::array<GroupSum, kGroups>;
 
-double MeanOf(const Sums& sums) {
-  Sum all;
-  for (const Sum& one : sums) all.distance += one.distance, all.weight += one.weight;
+double MeanOf(const GroupSums& sums) {
+  GroupSum all;
+  for (const GroupSum& one : sums) all.distance += one.distance, all.weight += one.weight;
   return all.Mean();
 }
 
@@ -230,7 +230,7 @@ Expected<GuidedTexture> GuidedTexture::Of(std::span<const EnergyExemplar> exempl
   auto impl = std::make_unique<Impl>();
   tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
   arena.execute([&] {
-    Sums halves;
+    GroupSums halves;
     for (const EnergyExemplar& exemplar : exemplars) {
       std::vector<Surface> surface(exemplar.usable.size());
       for (std::size_t i = 0; i < surface.size(); ++i) surface[i] = exemplar.usable[i] ? SurfaceOf(0, 0) : kNoSurface;
@@ -270,7 +270,7 @@ Expected<GuidedTextureReport> GuidedTexture::Measure(const EnergyTarget& target,
     return InputError("a texture distance: the picture has " + std::to_string(pixels) +
                       " pixels, and its guides have another number of values");
   }
-  Sums sums;
+  GroupSums sums;
   tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
   arena.execute([&] {
     const std::vector<OneExemplar>& exemplars = impl_->exemplars;

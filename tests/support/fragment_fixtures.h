@@ -67,7 +67,7 @@ inline Picture MustPaint(const std::vector<const PreparedStyle*>& styles, const 
   return out;
 }
 
-inline PreparedStyle MustPrepare(const Style& style, int height = kPictureHeight) {
+inline PreparedStyle MustPrepareStyle(const Style& style, int height = kPictureHeight) {
   auto prepared = Prepare(style, height);
   EXPECT_TRUE(prepared.ok());
   return *std::move(prepared);

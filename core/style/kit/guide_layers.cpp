@@ -37,7 +37,7 @@ void Draw(Picture& picture, int x, int y, const Color& color, double opacity) {
   pixel[3] = alpha;
 }
 
-struct Line {
+struct ContourLine {
   std::function<double(glm::dvec3)> value;  // of a point on the unit sphere; the line is where it is 0
   Color color;
   double width;
@@ -46,7 +46,7 @@ struct Line {
 
 // Draws lines on the front of the sphere. A pixel's distance from a line follows from the value there and in the pixels
 // around.
-void DrawOnSphere(Picture& picture, int size, const std::vector<Line>& lines) {
+void DrawOnSphere(Picture& picture, int size, const std::vector<ContourLine>& lines) {
   const int margin = TemplateMargin(size);
   const double step = 2.0 / size;
   const auto on_sphere = [](double u, double v) {
@@ -57,7 +57,7 @@ void DrawOnSphere(Picture& picture, int size, const std::vector<Line>& lines) {
       const double u = (x + 0.5) * step - 1.0, v = 1.0 - (y + 0.5) * step;
       if (u * u + v * v >= 1.0) continue;
       const glm::dvec3 here = on_sphere(u, v);
-      for (const Line& line : lines) {
+      for (const ContourLine& line : lines) {
         if (line.where && !line.where(here)) continue;
         const double value = line.value(here);
         const double du = line.value(on_sphere(u + step / 2, v)) - line.value(on_sphere(u - step / 2, v));
@@ -107,7 +107,7 @@ Picture DrawEdgeLine(int size) {
 Picture DrawLightLines(int size, double azimuth, double elevation) {
   const glm::dvec3 light = DirectionFromAngles(azimuth, elevation), half = light + glm::dvec3(0, 0, 1);
   const double thin = LineWidth(size);
-  std::vector<Line> lines;
+  std::vector<ContourLine> lines;
   for (const double level : {0.25, 0.5, 0.75}) {
     lines.push_back({[=](glm::dvec3 n) { return glm::dot(n, light) - level; }, kOrange, thin});
   }

@@ -8,7 +8,7 @@ namespace {
 
 constexpr float kStreakWidth = 3.6f;     // units across
 constexpr float kStreakLength = 130.0f;  // and along
-constexpr float kLift = 0.03f;           // pressures below it leave no mark
+constexpr float kLeastMark = 0.03f;      // pressures below it leave no mark
 
 // A path with the values that a hair needs at each of its points.
 struct TuftPath {
@@ -54,7 +54,7 @@ std::vector<Stroke> PartIntoHairs(Chance& chance, const Stroke& path, const Tuft
       const float touch = SmoothNoise(glm::vec2(place / kStreakWidth, tuft_path.walked[i] / kStreakLength), streaks);
       const float parted = tuft.dryness * (0.48f + 0.60f * u);
       const float pressure = ink * (1.0f - tuft.spent * u) * Ramp(parted - 0.06f, parted + 0.06f, touch);
-      if (u < begin || u > end || pressure < kLift) {
+      if (u < begin || u > end || pressure < kLeastMark) {
         lift();
       } else {
         hair.push_back({path[i].at + tuft_path.aside[i] * place * fan, std::min(pressure, 1.0f)});

@@ -181,21 +181,21 @@ Difference AgainstMany(const Scene& scene, const GuidegenOptions& options) {
 // middle of a penumbra are below a tenth.
 TEST(AreaLightTile, ErrorsStayBelowTheAllowedOne) {
   for (const double lamp : {0.1, 0.8, 3.0}) {
-    const Difference found = AgainstMany(Stage(lamp), Chosen(160, 120));
+    const Difference found = AgainstMany(Stage(lamp), Chosen(96, 72));
     EXPECT_LT(found.rms, kUnseenLightError) << lamp;
     EXPECT_LT(found.worst, 0.1) << lamp;
     EXPECT_LT(2 * found.rays, found.most_rays) << lamp << ": less than half of 64 each";
   }
   // A coarser error is kept as well, with fewer rays.
-  const Difference coarse = AgainstMany(Stage(0.8), Chosen(160, 120, 0.08));
+  const Difference coarse = AgainstMany(Stage(0.8), Chosen(96, 72, 0.08));
   EXPECT_LT(coarse.rms, 0.08);
-  EXPECT_LT(coarse.rays, AgainstMany(Stage(0.8), Chosen(160, 120)).rays);
+  EXPECT_LT(coarse.rays, AgainstMany(Stage(0.8), Chosen(96, 72)).rays);
 }
 
 // Lamps that directions look for, emitters, a sky, and more lamps than are sampled individually.
 TEST(AreaLightTile, EveryKindOfLampKeepsTheError) {
   for (const int many : {0, 12}) {
-    const Difference found = AgainstMany(EveryLamp(many), Chosen(96, 72));
+    const Difference found = AgainstMany(EveryLamp(many), Chosen(64, 48));
     EXPECT_LT(found.rms, 1.5 * kUnseenLightError) << many << ": 64 samples are the most, and may be too few";
   }
 }

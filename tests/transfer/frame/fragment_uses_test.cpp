@@ -31,7 +31,7 @@ struct Still {
   Still() {
     Style style = PlainStyle(PlainColor(kDark));
     style.transfer.shadow = ShadowMode::kPaint;
-    shadow = MustPrepare(style), red = MustPrepare(PlainStyle(PlainColor(kRed)));
+    shadow = MustPrepareStyle(style), red = MustPrepareStyle(PlainStyle(PlainColor(kRed)));
     assignment.of_object = {{IdOfObject(guides, "near"), 1},
                             {IdOfObject(guides, "far"), StyleMap::kPassThrough},
                             {IdOfObject(guides, "thing"), StyleMap::kShadowCatcher}};
@@ -111,11 +111,11 @@ Style LineStyle() {
 // The line lies over the mixed border, as opaque as over a border in steps.
 TEST(FragmentUses, PaintedEdgesLieOverTheMixedBorder) {
   const GuideSet guides = GuidesAt(kPictureWidth, kPictureHeight, kAa);
-  const PreparedStyle grey = MustPrepare(PlainStyle(PlainColor({40000, 40000, 40000})));
+  const PreparedStyle grey = MustPrepareStyle(PlainStyle(PlainColor({40000, 40000, 40000})));
   Style style = LineStyle();
-  const PreparedStyle exact = MustPrepare(style);
+  const PreparedStyle exact = MustPrepareStyle(style);
   style.transfer.edge = EdgeMode::kExemplar;
-  const PreparedStyle lined = MustPrepare(style);
+  const PreparedStyle lined = MustPrepareStyle(style);
   ASSERT_FALSE(lined.rims.empty());
   const StyleMap map = MapStyles(guides, {{{IdOfObject(guides, "near"), 1}}, {}, 0});
   StyleMap of_steps = map;
@@ -147,7 +147,7 @@ TEST(FragmentUses, PaintedEdgesLieOverTheMixedBorder) {
 TEST(FragmentUses, SequencesHaveSmoothBordersInEveryFrame) {
   Style style = PlainStyle(BrushedPicture(160, 0.02));
   style.transfer.coherent = true, style.transfer.edge_aware = true;
-  const PreparedStyle prepared = MustPrepare(style);
+  const PreparedStyle prepared = MustPrepareStyle(style);
   TransferScratch kept;
   Picture kept_out;
   for (int frame = 0; frame < 3; ++frame) {

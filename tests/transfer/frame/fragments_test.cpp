@@ -18,7 +18,7 @@ TEST(FragmentPaint, ColoursAreMixedByCoverage) {
   const GuideSet fine = GuidesAt(kPictureWidth * kAa, kPictureHeight * kAa, 1);
   const std::array<std::uint16_t, 3> colors[] = {{60000, 2000, 30000}, {1000, 50000, 9000}, {20000, 20000, 65535}};
   std::vector<PreparedStyle> prepared;
-  for (const auto& color : colors) prepared.push_back(MustPrepare(PlainStyle(PlainColor(color))));
+  for (const auto& color : colors) prepared.push_back(MustPrepareStyle(PlainStyle(PlainColor(color))));
   const StyleAssignment assignment{{{IdOfObject(guides, "near"), 1}, {IdOfObject(guides, "far"), 2}}, {}, 0};
   const StyleMap map = MapStyles(guides, assignment), of_fine = MapStyles(fine, assignment);
   const Picture picture = MustPaint({&prepared[0], &prepared[1], &prepared[2]}, map, guides);
@@ -128,7 +128,7 @@ TEST(FragmentPaint, ThreadsRegionsAndBandsMakeOnePicture) {
   lit.exemplars[0].luminance = 0.2, lit.exemplars[1].luminance = 0.8;
   lit.transfer.blend_radius = 2, lit.transfer.edge_aware = true;
   tinted.transfer.colorize = 0.7, tinted.transfer.blend_radius = 3;
-  const PreparedStyle prepared[] = {MustPrepare(plain), MustPrepare(lit), MustPrepare(tinted)};
+  const PreparedStyle prepared[] = {MustPrepareStyle(plain), MustPrepareStyle(lit), MustPrepareStyle(tinted)};
   const std::vector<const PreparedStyle*> styles = {&prepared[0], &prepared[1], &prepared[2]};
   const StyleAssignment assignment{{{IdOfObject(guides, "near"), 1}, {IdOfObject(guides, "far"), 2}}, {}, 0};
   const StyleMap map = MapStyles(guides, assignment);
@@ -155,7 +155,7 @@ TEST(FragmentPaint, ThreadsRegionsAndBandsMakeOnePicture) {
 
 TEST(FragmentPaint, ObjectsThatAreLeftShowThePictureUnderneath) {
   const GuideSet guides = GuidesAt(kPictureWidth, kPictureHeight, kAa);
-  const PreparedStyle red = MustPrepare(PlainStyle(PlainColor({65535, 0, 0})));
+  const PreparedStyle red = MustPrepareStyle(PlainStyle(PlainColor({65535, 0, 0})));
   const StyleAssignment assignment{{{IdOfObject(guides, "near"), 0}}, {}, StyleMap::kPassThrough};
   const StyleMap map = MapStyles(guides, assignment);
   std::vector<float> share(guides.pixel_count());  // of the near ball

@@ -59,7 +59,7 @@ Style Base() {
   return style;
 }
 
-Picture Painted(const Style& style, const GuideSet& guides, bool mapped = false) {
+Picture PaintedMapped(const Style& style, const GuideSet& guides, bool mapped = false) {
   const auto prepared = Prepare(style, guides.height());
   EXPECT_TRUE(prepared.ok()) << (prepared.ok() ? "" : prepared.error().message);
   TransferOptions options;
@@ -77,7 +77,7 @@ TEST(Neutral, ThePlainEngineIsWhatThePaperSays) {
   for (const GuideSet& guides : {Hills(), Wall()}) {
     Style style = Base();
     style.transfer.edge_aware = false;
-    EXPECT_TRUE(Painted(style, guides).rgba == PlainEngine(style, guides).rgba);
+    EXPECT_TRUE(PaintedMapped(style, guides).rgba == PlainEngine(style, guides).rgba);
   }
 }
 
@@ -145,7 +145,8 @@ TEST(Neutral, ValuesThatMakeNoDifference) {
       neutral.from(before);
       Style after = before;
       neutral.change(after);
-      EXPECT_TRUE(Painted(after, guides, neutral.mapped).rgba == Painted(before, guides).rgba) << neutral.name;
+      EXPECT_TRUE(PaintedMapped(after, guides, neutral.mapped).rgba == PaintedMapped(before, guides).rgba)
+          << neutral.name;
     }
   }
 }
@@ -164,12 +165,12 @@ TEST(Neutral, TheWidestEdgesAreNone) {
     Style none = Base(), widest = Base();
     none.transfer.edge_aware = false;
     widest.transfer.crease = 180.0, widest.transfer.depth_tolerance = 1.0;
-    EXPECT_TRUE(Painted(widest, guides).rgba == Painted(none, guides).rgba);
+    EXPECT_TRUE(PaintedMapped(widest, guides).rgba == PaintedMapped(none, guides).rgba);
   }
   // And the table is not blind: with the default edges the hills' pictures differ.
   Style none = Base();
   none.transfer.edge_aware = false;
-  EXPECT_FALSE(Painted(Base(), Hills()).rgba == Painted(none, Hills()).rgba);
+  EXPECT_FALSE(PaintedMapped(Base(), Hills()).rgba == PaintedMapped(none, Hills()).rgba);
 }
 
 // Each extension does something as soon as it leaves its neutral value, so that the tests above compare what could
@@ -191,7 +192,7 @@ TEST(Neutral, BeyondItEveryExtensionShows) {
   for (const auto& [name, change] : changes) {
     Style style = Base();
     change(style);
-    EXPECT_FALSE(Painted(style, Wall()).rgba == Painted(Base(), Wall()).rgba) << name;
+    EXPECT_FALSE(PaintedMapped(style, Wall()).rgba == PaintedMapped(Base(), Wall()).rgba) << name;
   }
 }
 

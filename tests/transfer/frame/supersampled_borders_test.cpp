@@ -99,17 +99,18 @@ std::array<std::uint16_t, 4> PaintOf(const Matched& matched, int x, int y, int u
   return texel;
 }
 
-struct Reference {
+struct SubsampleReference {
   Picture picture;         // outside of the band that of the run
   std::vector<bool> band;  // pixels of two surfaces or more, all of which have a colour
   int unknown = 0;         // pixels of a part of a surface that no centre around shows
 };
 
-Reference ReferenceOf(const Matched& matched, const GuideSet& fine, const Picture& steps, const Picture& painted) {
+SubsampleReference ReferenceOf(const Matched& matched, const GuideSet& fine, const Picture& steps,
+                               const Picture& painted) {
   const GuideSet& guides = matched.guides;
   const bool has_window = matched.style.blend_radius > 0;
   const float crease = has_window ? float(std::cos(matched.style.settings.crease * kPi / 180.0)) : -2.0f;
-  Reference reference{painted, std::vector<bool>(guides.pixel_count()), 0};
+  SubsampleReference reference{painted, std::vector<bool>(guides.pixel_count()), 0};
   for (int y = 0; y < guides.height(); ++y) {
     for (int x = 0; x < guides.width(); ++x) {
       const Surface centre = SurfaceAt(guides, x, y);
@@ -143,7 +144,7 @@ Reference ReferenceOf(const Matched& matched, const GuideSet& fine, const Pictur
   return reference;
 }
 
-double MeanOfBand(const Picture& picture, const Reference& reference) {
+double MeanOfBand(const Picture& picture, const SubsampleReference& reference) {
   const auto report = MeasureFlip(reference.picture, picture);
   EXPECT_TRUE(report.ok());
   double sum = 0.0, count = 0.0;
@@ -163,14 +164,14 @@ TEST_P(SupersampledBorders, AreThoseOfThePicture) {
   LayerSet layers = RequiredLayers(*style);
   const GuideSet guides = StillLifeAt(1, kAa, layers), fine = StillLifeAt(kAa, 1, {});
   ASSERT_TRUE(guides.fragments);
-  const PreparedStyle prepared = MustPrepare(*style, kBordersHeight);
+  const PreparedStyle prepared = MustPrepareStyle(*style, kBordersHeight);
   TransferOptions options;
   options.keep_field = true;
   TransferScratch scratch;
   Picture painted, steps;
   ASSERT_TRUE(Transfer(prepared, guides, {}, scratch, painted).ok());
   ASSERT_TRUE(Transfer(prepared, WithoutFragments(guides), options, scratch, steps).ok());
-  const Reference reference = ReferenceOf({guides, prepared, scratch.field}, fine, steps, painted);
+  const SubsampleReference reference = ReferenceOf({guides, prepared, scratch.field}, fine, steps, painted);
   const auto pixels = std::count(reference.band.begin(), reference.band.end(), true);
   EXPECT_GT(pixels, 1000);
   EXPECT_LT(reference.unknown, pixels / 50);

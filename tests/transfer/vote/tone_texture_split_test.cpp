@@ -176,7 +176,7 @@ TEST(Hybrid, ASphereBecomesItsExemplar) {
 }
 
 // Hills under light that changes from left to right, for two exemplars.
-GuideSet LitHills(int width, int height) {
+GuideSet HillsLitFromTheLeft(int width, int height) {
   GuideSet guides = HillGuides(width, height);
   guides.Add(Layer::kLuminance);
   guides.Add(Layer::kAlbedo);
@@ -230,7 +230,7 @@ std::array<double, 4> ToneAt(const PreparedExemplar& exemplar, const Picture& to
 }
 
 TEST(Hybrid, IsTheOwnTonePlusTheMeanOfTheTexturesVotedFor) {
-  const GuideSet guides = LitHills(70, 60);
+  const GuideSet guides = HillsLitFromTheLeft(70, 60);
   for (const bool is_sphere : {true, false}) {
     Style style = TwoExemplars(90, is_sphere);
     style.transfer.edge_aware = false;
@@ -366,7 +366,7 @@ TEST(Hybrid, FollowsTheScale) {
 }
 
 TEST(Hybrid, ThreadsAndRegionsDoNotChangeAByte) {
-  const GuideSet guides = LitHills(131, 97);
+  const GuideSet guides = HillsLitFromTheLeft(131, 97);
   for (const bool is_sphere : {true, false}) {
     Style style = TwoExemplars(120, is_sphere);
     style.transfer.colorize = 0.7, style.transfer.colorize_mode = ColorizeMode::kOklab;
