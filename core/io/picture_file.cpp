@@ -67,14 +67,14 @@ Expected<std::vector<std::byte>> Exr(const std::string& name, const Picture& pic
 
 }  // namespace
 
-Expected<Picture> ReadPicture(const std::filesystem::path& path) {
+Expected<Picture> ReadPicture(const std::filesystem::path& path, const std::string& view_layer) {
   if (IsZip(path)) return ReadMergedLayers(path);
   if (internal::IsPngFile(path)) {
     SCUMBLE_ASSIGN(const auto bytes, ReadWholeFile(path));
     if (auto picture = ReadIfPlainPng(bytes, path.string())) return *std::move(picture);
   }
   SCUMBLE_ASSIGN(const Formats* const formats, LoadFormatsToRead(path));
-  return formats->read_picture(path);
+  return formats->read_picture(path, view_layer);
 }
 
 Expected<PictureHeader> InspectPicture(const std::filesystem::path& path) {

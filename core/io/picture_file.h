@@ -18,9 +18,10 @@ namespace scumble {
 // kept; float files (EXR, HDR) are taken as linear and associated, unpremultiplied, clamped to [0, 1] and encoded.
 // Grey is spread over the three colours; a missing alpha is opaque, a NaN one transparent. A photograph is
 // turned upright by its Exif orientation; colour profiles are not applied. A file that ends early is
-// an error, JPEG included. Of a file of layers (.ora, Krita's .kra) the picture of all that are visible is read.
+// an error, JPEG included. Of a file of layers (.ora, Krita's .kra) the picture of all that are visible is read, of an
+// EXR of several parts the one that holds R, G and B, and of a render of several view layers that of `view_layer`.
 // Thread-safe.
-Expected<Picture> ReadPicture(const std::filesystem::path& path);
+Expected<Picture> ReadPicture(const std::filesystem::path& path, const std::string& view_layer = {});
 
 // The header of a file, without its pixels. Of a file of layers, that of the merged picture. Thread-safe.
 struct PictureHeader {

@@ -93,9 +93,9 @@ Role RoleOf(const std::string& name) {
 }
 
 // Steps through the values of the body.
-class Values {
+class PlyValues {
  public:
-  Values(std::span<const unsigned char> bytes, PlyFormat format) : bytes_(bytes), format_(format) {}
+  PlyValues(std::span<const unsigned char> bytes, PlyFormat format) : bytes_(bytes), format_(format) {}
 
   std::size_t remaining() const { return bytes_.size() - at_; }
 
@@ -178,7 +178,7 @@ class PlyLoader {
     SCUMBLE_ASSIGN(const std::vector<std::byte> whole, ReadRegularFile(path_));
     const std::span<const unsigned char> bytes = AsChars(whole);
     SCUMBLE_RETURN_IF_ERROR(ParseHeader(bytes));
-    Values values(bytes.subspan(header_.body), header_.format);
+    PlyValues values(bytes.subspan(header_.body), header_.format);
     for (const Element& element : header_.elements) {
       if (element.properties.empty() && element.name == "vertex" && element.count > 0)
         return Bad("its vertices have no properties; expected x, y and z");
@@ -277,7 +277,7 @@ class PlyLoader {
   }
 
   // Refuses a count that the remaining file cannot hold, before anything is allocated for it.
-  Status CheckRoom(const Element& element, const Values& values) {
+  Status CheckRoom(const Element& element, const PlyValues& values) {
     std::size_t least = 0;
     for (const Property& property : element.properties) {
       least += values.LeastBytes(property.list_count ? *property.list_count : property.type);
@@ -296,7 +296,7 @@ class PlyLoader {
                " is missing or is no number; the file was cut short");
   }
 
-  Status SkipList(const Property& property, const Element& element, std::uint64_t index, Values& values) {
+  Status SkipList(const Property& property, const Element& element, std::uint64_t index, PlyValues& values) {
     double count = 0.0, ignored = 0.0;
     if (!values.Next(*property.list_count, count) || !(count >= 0.0)) return CutShort(element, index);
     for (double i = 0.0; i < count; ++i) {
@@ -305,7 +305,7 @@ class PlyLoader {
     return Ok();
   }
 
-  Status ReadVertices(const Element& element, Values& values) {
+  Status ReadVertices(const Element& element, PlyValues& values) {
     std::vector<Role> roles;
     bool has[kSkip + 1] = {};
     for (const Property& property : element.properties) {
@@ -364,7 +364,7 @@ class PlyLoader {
   }
 
   // Reads faces, and skips every other element.
-  Status ReadFaces(const Element& element, Values& values) {
+  Status ReadFaces(const Element& element, PlyValues& values) {
     const bool is_face = element.name == "face";
     if (!is_face && element.count > 0)
       warnings_.Add("elements other than vertices and faces are left out", element.name);
@@ -391,7 +391,7 @@ class PlyLoader {
     return found == header_.elements.end() ? 0 : found->count;
   }
 
-  Status ReadCorners(const Property& property, const Element& element, std::uint64_t face, Values& values) {
+  Status ReadCorners(const Property& property, const Element& element, std::uint64_t face, PlyValues& values) {
     double count = 0.0, value = 0.0;
     if (!values.Next(*property.list_count, count) || !(count >= 0.0)) return CutShort(element, face);
     std::vector<std::uint32_t> corners;

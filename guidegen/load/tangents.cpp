@@ -14,7 +14,7 @@
 namespace scumble {
 namespace {
 
-constexpr std::uint32_t kNone = ~0u;
+constexpr std::uint32_t kUnset = ~0u;
 
 glm::dvec3 DirectionOrZero(const glm::dvec3& v) {
   const double length = glm::length(v);
@@ -91,7 +91,7 @@ class TangentGroups {
     FindNeighbors();
     for (std::uint32_t face = 0; face < faces_.size(); ++face) {
       for (int i = 0; i < 3; ++i) {
-        if (!faces_[face].shapeless && faces_[face].group[i] == kNone) Gather(face, i);
+        if (!faces_[face].shapeless && faces_[face].group[i] == kUnset) Gather(face, i);
       }
     }
   }
@@ -130,8 +130,8 @@ class TangentGroups {
     bool upright = false;     // the texture is not mirrored
     bool shapeless = false;   // it has no area in the texture
     bool is_line = false;     // two corners are at one place: it has no neighbours
-    std::array<std::uint32_t, 3> neighbor = {kNone, kNone, kNone};  // across the edge from a corner to the next one
-    std::array<std::uint32_t, 3> group = {kNone, kNone, kNone};     // of each corner
+    std::array<std::uint32_t, 3> neighbor = {kUnset, kUnset, kUnset};  // across the edge from a corner to the next one
+    std::array<std::uint32_t, 3> group = {kUnset, kUnset, kUnset};     // of each corner
   };
   struct Group {
     std::uint32_t vertex;
@@ -177,7 +177,7 @@ class TangentGroups {
     std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
       return std::tie(a.low, a.high, a.face, a.corner) < std::tie(b.low, b.high, b.face, b.corner);
     });
-    const auto is_free = [&](const Edge& edge) { return faces_[edge.face].neighbor[edge.corner] == kNone; };
+    const auto is_free = [&](const Edge& edge) { return faces_[edge.face].neighbor[edge.corner] == kUnset; };
     const auto rises = [&](const Edge& edge) { return VertexOf(edge.face, edge.corner) == edge.low; };
     for (std::size_t i = 0; i < edges.size(); ++i) {
       if (!is_free(edges[i])) continue;
@@ -204,14 +204,14 @@ class TangentGroups {
       Face& face = faces_[index];
       int i = 0;
       while (i < 2 && VertexOf(index, i) != group.vertex) ++i;
-      if (face.group[i] != kNone) continue;
-      const bool is_new = face.group == std::array{kNone, kNone, kNone};
+      if (face.group[i] != kUnset) continue;
+      const bool is_new = face.group == std::array{kUnset, kUnset, kUnset};
       if (face.shapeless && is_new) face.upright = group.upright;
       if (face.upright != group.upright) continue;
       face.group[i] = number;
       if (!face.shapeless) group.sum += Share(index, i);
       for (const int edge : {i == 0 ? 2 : i - 1, i}) {  // the last one is the first to be visited
-        if (face.neighbor[edge] != kNone) pending_.push_back(face.neighbor[edge]);
+        if (face.neighbor[edge] != kUnset) pending_.push_back(face.neighbor[edge]);
       }
     }
   }

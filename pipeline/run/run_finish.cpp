@@ -110,7 +110,7 @@ Expected<FrameWrite> Finish(const FinishRequest& request, const FrameFiles& file
   StepTimes times;
   Stopwatch watch;
   const auto picture = std::make_shared<Picture>();
-  SCUMBLE_ASSIGN(*picture, ReadPicture(files.picture));
+  SCUMBLE_ASSIGN(*picture, ReadPicture(files.picture, request.view_layer));
   std::optional<GuideSet> guides;
   if (!files.guides.empty() && state.required.empty()) SCUMBLE_RETURN_IF_ERROR(InspectGuides(files.guides));
   if (!files.guides.empty() && !state.required.empty()) {

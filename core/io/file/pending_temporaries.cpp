@@ -22,7 +22,7 @@ namespace {
 // State that a signal handler may touch. Each slot holds the name of a file, or null. Whoever takes the name out of its
 // slot, the writer or the handler, may end its life; the file is gone or renamed before the writer does so.
 constexpr std::size_t kMostFiles = 64;  // written at once; any beyond are not registered here
-std::array<std::atomic<const char*>, kMostFiles> names{};
+std::array<std::atomic<const char*>, kMostFiles> pending_names{};
 std::atomic<int> being_made{0};
 std::atomic<bool> is_ending{false};
 static_assert(std::atomic<const char*>::is_always_lock_free && std::atomic<int>::is_always_lock_free &&
@@ -33,7 +33,7 @@ static_assert(std::atomic<const char*>::is_always_lock_free && std::atomic<int>:
 }
 
 std::atomic<const char*>* TakePlace(const char* name) {
-  for (auto& place : names) {
+  for (auto& place : pending_names) {
     const char* nothing = nullptr;
     if (place.compare_exchange_strong(nothing, name)) return &place;
   }
@@ -63,7 +63,7 @@ void RemovePendingTemporaries() {
   constexpr int kMostWaits = 1000;
   const timespec millisecond{0, 1000000};
   for (int wait = 0; wait < kMostWaits && being_made > 0; ++wait) ::nanosleep(&millisecond, nullptr);
-  for (auto& place : names) {
+  for (auto& place : pending_names) {
     if (const char* const name = place.exchange(nullptr)) ::unlink(name);
   }
 }

@@ -22,23 +22,22 @@ struct ColorChannels {
   int r = -1, g = -1, b = -1, a = -1;
 };
 
-// The whole picture of the only view layer of a render, "NAME.Combined."; empty where there is none, or several.
-std::string CombinedLayer(const OIIO::ImageSpec& spec) {
+// The view layers of a render whose whole pictures are there, "NAME.Combined.", as the file spells them.
+std::vector<std::string> CombinedLayers(const OIIO::ImageSpec& spec) {
   constexpr std::string_view kFirst = ".COMBINED.R";
-  std::string found;
+  std::vector<std::string> found;
   for (const std::string& channel : spec.channelnames) {
-    const std::string name = Upper(channel);
-    if (!name.ends_with(kFirst)) continue;
-    if (!found.empty()) return {};
-    found = name.substr(0, name.size() - 1);
+    if (Upper(channel).ends_with(kFirst)) found.push_back(channel.substr(0, channel.size() - 1));
   }
   return found;
 }
 
 // Finds colours by name first (OpenImageIO sorts EXR channels), and by position where no name fits. A dot in a name
 // separates its layer: guides are no colours, whatever their order.
-Expected<ColorChannels> FindColorChannels(const OIIO::ImageSpec& spec, const std::string& file) {
-  const std::string combined = CombinedLayer(spec);
+Expected<ColorChannels> FindColorChannels(const OIIO::ImageSpec& spec, const std::string& file,
+                                          const std::string& view_layer) {
+  const std::vector<std::string> layers = CombinedLayers(spec);
+  const std::string combined = layers.size() == 1 ? Upper(layers.front()) : "";
   const auto find = [&](std::initializer_list<std::string> names) {
     for (const std::string& name : names) {
       for (int c = 0; c < spec.nchannels; ++c) {
@@ -47,11 +46,20 @@ Expected<ColorChannels> FindColorChannels(const OIIO::ImageSpec& spec, const std
     }
     return -1;
   };
+  const std::string wanted = Upper(view_layer) + ".COMBINED.";
+  const ColorChannels chosen{find({wanted + "R"}), find({wanted + "G"}), find({wanted + "B"}), find({wanted + "A"})};
+  if (!view_layer.empty() && chosen.r >= 0 && chosen.g >= 0 && chosen.b >= 0) return chosen;
   ColorChannels found{find({"R", "RED", "COMPOSITE.COMBINED.R", "VIEWLAYER.COMBINED.R", combined + "R"}),
                       find({"G", "GREEN", "COMPOSITE.COMBINED.G", "VIEWLAYER.COMBINED.G", combined + "G"}),
                       find({"B", "BLUE", "COMPOSITE.COMBINED.B", "VIEWLAYER.COMBINED.B", combined + "B"}),
                       find({"A", "ALPHA", "COMPOSITE.COMBINED.A", "VIEWLAYER.COMBINED.A", combined + "A"})};
   if (found.r >= 0 && found.g >= 0 && found.b >= 0) return found;
+  if (layers.size() > 1) {
+    std::string names;
+    for (const std::string& layer : layers)
+      names += (names.empty() ? "" : ", ") + layer.substr(0, layer.size() - std::string_view(".COMBINED.").size());
+    return InputError(file + " holds the pictures of several view layers, " + names + ": choose one with --view-layer");
+  }
   if (const int grey = find({"Y", "I", "L"}); grey >= 0) return ColorChannels{grey, grey, grey, found.a};
   const auto& names = spec.channelnames;
   if (std::any_of(names.begin(), names.end(), [](const std::string& name) { return name.find('.') != name.npos; })) {
@@ -126,8 +134,9 @@ Expected<Picture> ReadPixels(OIIO::ImageInput& input, const std::string& name, O
   const OIIO::ImageSpec spec = input.spec();
   std::vector<T> pixels(std::size_t(range.count()) * std::size_t(spec.width) * std::size_t(spec.height));
   bool read = false;
-  SCUMBLE_RETURN_IF_ERROR(internal::WithoutExceptions(
-      name, [&] { read = input.read_image(0, 0, range.begin, range.end, type, pixels.data()); }));
+  SCUMBLE_RETURN_IF_ERROR(internal::WithoutExceptions(name, [&] {
+    read = input.read_image(input.current_subimage(), 0, range.begin, range.end, type, pixels.data());
+  }));
   if (!read || input.has_error()) return internal::ReadFailure(input, name);
   Picture picture(spec.full_width, spec.full_height);
   const T* pixel = pixels.data();
@@ -157,15 +166,38 @@ Picture Upright(Picture stored, int orientation) {
   return upright;
 }
 
+// Goes to the part that holds the picture, of an EXR of several: that of the usual names, else the first with R, G, B.
+void SeekPicture(OIIO::ImageInput& input) {
+  if (input.format_name() != std::string("openexr")) return;
+  if (!input.seek_subimage(1, 0)) return static_cast<void>(input.geterror());
+  int found = 0;
+  bool is_found = false;
+  for (int part = 0; input.seek_subimage(part, 0); ++part) {
+    const OIIO::ImageSpec spec = input.spec();
+    const auto has = [&](const std::string& name) {
+      return std::any_of(spec.channelnames.begin(), spec.channelnames.end(),
+                         [&](const std::string& channel) { return Upper(channel) == name; });
+    };
+    if (!(has("R") && has("G") && has("B")) && CombinedLayers(spec).empty()) continue;
+    const std::string name = Upper(std::string(spec.get_string_attribute("oiio:subimagename")));
+    const bool is_usual = name.empty() || name == "RGBA" || name == "RGB" || name == "BEAUTY" || name == "C";
+    if (is_usual || !is_found) found = part, is_found = true;
+    if (is_usual) break;
+  }
+  input.seek_subimage(found, 0);
+  static_cast<void>(input.geterror());  // of the search for one more
+}
+
 // Pixels of the display window outside an EXR's data window are transparent; those of the data window beyond the
 // display window are cut off.
-Expected<Picture> ReadFrom(OIIO::ImageInput& input, const std::string& name) {
+Expected<Picture> ReadFrom(OIIO::ImageInput& input, const std::string& name, const std::string& view_layer = {}) {
+  SeekPicture(input);
   const OIIO::ImageSpec spec = input.spec();
   SCUMBLE_RETURN_IF_ERROR(internal::CheckSize(spec, name));
   OIIO::ImageSpec display = spec;
   display.width = spec.full_width, display.height = spec.full_height;
   SCUMBLE_RETURN_IF_ERROR(internal::CheckSize(display, name));
-  SCUMBLE_ASSIGN(const ColorChannels channels, FindColorChannels(spec, name));
+  SCUMBLE_ASSIGN(const ColorChannels channels, FindColorChannels(spec, name, view_layer));
   const ChannelRange range = RangeOf(channels);
   // Read in one call, up to four channels of the largest picture.
   if (std::int64_t(range.count()) * spec.width * spec.height > 4 * kMaxPicturePixels) {
@@ -219,13 +251,13 @@ PictureHeader HeaderOf(const OIIO::ImageSpec& spec) {
 
 }  // namespace
 
-Expected<Picture> ReadPicture(const std::filesystem::path& path) {
+Expected<Picture> ReadPicture(const std::filesystem::path& path, const std::string& view_layer) {
   SCUMBLE_ASSIGN(auto input, internal::OpenInput(path));
   if (input->format_name() == std::string("jpeg")) {
     SCUMBLE_ASSIGN(const auto bytes, ReadWholeFile(path));
     SCUMBLE_RETURN_IF_ERROR(CheckJpegIntegrity(bytes, path.string()));
   }
-  SCUMBLE_ASSIGN(Picture stored, ReadFrom(*input, path.string()));
+  SCUMBLE_ASSIGN(Picture stored, ReadFrom(*input, path.string(), view_layer));
   return Upright(std::move(stored), input->spec().get_int_attribute("Orientation", 1));
 }
 

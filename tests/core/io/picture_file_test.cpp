@@ -218,6 +218,54 @@ TEST(PictureFile, ImpossibleAlphaInAnExrIsDefined) {
   EXPECT_EQ(picture.At(3, 0)[3], 65535);
 }
 
+// Each part of 2×1 pixels holds one value in all of its channels.
+void WriteParts(const fs::path& path, const std::vector<std::pair<std::string, std::vector<std::string>>>& parts) {
+  std::vector<OIIO::ImageSpec> specs;
+  for (const auto& [name, channels] : parts) {
+    specs.emplace_back(2, 1, static_cast<int>(channels.size()), OIIO::TypeDesc::FLOAT);
+    specs.back().channelnames = channels;
+    specs.back().alpha_channel = -1;
+    specs.back().attribute("oiio:subimagename", name);
+  }
+  auto output = OIIO::ImageOutput::create(path.string());
+  ASSERT_TRUE(output && output->open(path.string(), static_cast<int>(specs.size()), specs.data()));
+  for (std::size_t i = 0; i < specs.size(); ++i) {
+    if (i > 0) {
+      ASSERT_TRUE(output->open(path.string(), specs[i], OIIO::ImageOutput::AppendSubimage));
+    }
+    const std::vector<float> pixels(2 * parts[i].second.size(), 0.25f * static_cast<float>(i + 1));
+    ASSERT_TRUE(output->write_image(OIIO::TypeDesc::FLOAT, pixels.data())) << output->geterror();
+  }
+  ASSERT_TRUE(output->close()) << output->geterror();
+}
+
+TEST(PictureFile, AnExrOfPartsIsThePartThatIsAPicture) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> rgb = {"R", "G", "B"};
+  WriteParts(folder / "a.exr", {{"depth", {"depth.Z"}}, {"albedo", rgb}, {"beauty", rgb}});
+  WriteParts(folder / "b.exr", {{"mask", {"A"}}, {"any", rgb}, {"more", rgb}});
+  const auto usual = ReadPicture(folder / "a.exr"), first = ReadPicture(folder / "b.exr");
+  ASSERT_TRUE(usual && first) << (usual ? first.error().message : usual.error().message);
+  EXPECT_EQ(usual->At(1, 0)[0], Srgb16FromLinear(0.75f));
+  EXPECT_EQ(first->At(1, 0)[0], Srgb16FromLinear(0.5f));
+}
+
+TEST(PictureFile, OfSeveralViewLayersOneIsNamed) {
+  const TemporaryFolder folder;
+  OIIO::ImageSpec spec(1, 1, 6, OIIO::TypeDesc::FLOAT);
+  spec.channelnames = {"Back.Combined.R", "Back.Combined.G", "Back.Combined.B",
+                       "Fore.Combined.R", "Fore.Combined.G", "Fore.Combined.B"};
+  spec.alpha_channel = -1;
+  WriteWith<float>(folder / "two.exr", spec, {0.25f, 0.25f, 0.25f, 0.5f, 0.5f, 0.5f});
+  const auto none = ReadPicture(folder / "two.exr");
+  ASSERT_FALSE(none);
+  EXPECT_NE(none.error().message.find("several view layers, Back, Fore: choose one with --view-layer"),
+            std::string::npos)
+      << none.error().message;
+  EXPECT_EQ(ReadPicture(folder / "two.exr", "Back")->At(0, 0)[0], Srgb16FromLinear(0.25f));
+  EXPECT_EQ(ReadPicture(folder / "two.exr", "Fore")->At(0, 0)[0], Srgb16FromLinear(0.5f));
+}
+
 TEST(PictureFile, WritingExrDecodesAndAssociates) {
   const TemporaryFolder folder;
   Picture picture(2, 1);

@@ -109,13 +109,13 @@ TEST_F(StyleKeyframes, FramesDoNotDependOnTheOrderTheyAreAskedFor) {
 
 TEST_F(StyleKeyframes, OnlyWhatChangesIsNamed) {
   Style style = Loaded("threshold = [[1, 0.1], [5, 0.3]]\nlevels = [[1, 2], [4, 6]]");
-  using Names = std::vector<std::string>;
-  EXPECT_EQ(*SetStyleFrame(style, 1), Names());
-  EXPECT_EQ(*SetStyleFrame(style, 2), Names({"transfer.threshold"}));
-  EXPECT_EQ(*SetStyleFrame(style, 2), Names());
-  EXPECT_EQ(*SetStyleFrame(style, 4), Names({"transfer.levels", "transfer.threshold"}))
+  using Keys = std::vector<std::string>;
+  EXPECT_EQ(*SetStyleFrame(style, 1), Keys());
+  EXPECT_EQ(*SetStyleFrame(style, 2), Keys({"transfer.threshold"}));
+  EXPECT_EQ(*SetStyleFrame(style, 2), Keys());
+  EXPECT_EQ(*SetStyleFrame(style, 4), Keys({"transfer.levels", "transfer.threshold"}))
       << "in the order of the alphabet";
-  EXPECT_EQ(*SetStyleFrame(style, 100), Names({"transfer.threshold"}));
+  EXPECT_EQ(*SetStyleFrame(style, 100), Keys({"transfer.threshold"}));
 }
 
 TEST_F(StyleKeyframes, OverridesReplaceTracksAndMayBeTracks) {

@@ -1,4 +1,5 @@
 // Trees over points against brute force, and the usable pixels of a painted scene.
+#include <algorithm>
 #include <cstring>
 #include <limits>
 #include <span>
@@ -65,7 +66,8 @@ TEST(PointTree, EqualsBruteForceOnRandomPoints) {
     for (const int count : {1, 2, 13, 16, 17, 200, 256, 257, 1500, 5000}) {
       const auto points = Scatter(std::size_t(count) * dimensions, 0, 11 + dimensions);
       ExpectExact(points, dimensions, Scatter(std::size_t(200) * dimensions, 0, 5));
-      ExpectExact(points, dimensions, points);
+      const std::size_t some = std::size_t(std::min(count, 500)) * std::size_t(dimensions);
+      ExpectExact(points, dimensions, {points.begin(), points.begin() + std::ptrdiff_t(some)});
     }
   }
 }
