@@ -58,7 +58,8 @@ Expected<ColorChannels> FindColorChannels(const OIIO::ImageSpec& spec, const std
     std::string names;
     for (const std::string& layer : layers)
       names += (names.empty() ? "" : ", ") + layer.substr(0, layer.size() - std::string_view(".COMBINED.").size());
-    return InputError(file + " holds the pictures of several view layers, " + names + ": choose one with --view-layer");
+    return InputError(file + " holds the pictures of several view layers, " + names +
+                      ": expected one; `scumble finish` takes it by --view-layer");
   }
   if (const int grey = find({"Y", "I", "L"}); grey >= 0) return ColorChannels{grey, grey, grey, found.a};
   const auto& names = spec.channelnames;

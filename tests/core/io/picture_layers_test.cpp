@@ -67,9 +67,6 @@ TEST_F(PictureLayers, LayersAreNoPicture) {
   ExpectNone({"lpe.full.B", "lpe.full.G", "lpe.full.R"});
   ExpectNone({"depth.Z"});
   ExpectNone({"albedo.R", "albedo.G", "luminance.Y"});
-  // Either could be meant.
-  ExpectNone({"Back.Combined.R", "Back.Combined.G", "Back.Combined.B", "Front.Combined.R", "Front.Combined.G",
-              "Front.Combined.B"});
 }
 
 }  // namespace
