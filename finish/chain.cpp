@@ -137,23 +137,17 @@ void MixColors(const float* shares, std::size_t count, const OklabBlock& from, O
   Mix(shares, from.b.data(), count, to.b.data());
 }
 
-// `count` pixels of a picture, from `first` on. `of_guides`: the picture is of the guides themselves, and knows no
-// half-covered pixels.
+// `count` pixels of a picture, from `first` on.
 struct Pixels {
   std::size_t first, count;
   const std::uint16_t* texels;
-  bool of_guides;
-
-  // Of each, how much of it is the surface in it.
-  void SurfaceShares(std::span<const float> coverage, float* shares) const {
-    if (!of_guides) return internal::SurfaceShares(coverage.data() + first, texels, count, shares);
-    for (std::size_t i = 0; i < count; ++i) shares[i] = coverage[first + i] > 0.0f ? 1.0f : 0.0f;
-  }
 };
+
+bool IsOfGuides(const FinishStep& step) { return step.pass.at == FinishPass::Stage::kGuides; }
 
 // Where the step changes nothing or only part of it, puts back what was before.
 void Weigh(const PointStep& one, const Pixels& pixels, const OklabBlock& before, OklabBlock& block) {
-  const auto [first, count, texels, of_guides] = pixels;
+  const auto [first, count, texels] = pixels;
   const FinishStep& step = *one.step;
   const auto strength = static_cast<float>(step.pass.strength);
   std::array<float, internal::kOklabBlock> shares;
@@ -163,7 +157,7 @@ void Weigh(const PointStep& one, const Pixels& pixels, const OklabBlock& before,
   for (std::size_t i = 0; i < count && !step.only.empty(); ++i) shares[i] = step.only[first + i] ? shares[i] : 0.0f;
   if (!one.coverage.empty()) {
     std::array<float, internal::kOklabBlock> surface;
-    pixels.SurfaceShares(one.coverage, surface.data());
+    internal::SurfaceShares(one.coverage.data() + first, texels, IsOfGuides(step), count, surface.data());
     if (one.behind) {
       const auto is_mixed = [](float share) { return share > 0.0f && share < 1.0f; };
       if (std::any_of(surface.begin(), surface.begin() + std::ptrdiff_t(count), is_mixed)) {
@@ -181,7 +175,6 @@ void Weigh(const PointStep& one, const Pixels& pixels, const OklabBlock& before,
 
 // Texels whose colour no step changes keep their bits, those of alpha 0 too.
 void PaintBlock(std::span<const PointStep> steps, std::size_t first, std::size_t count, std::uint16_t* texels) {
-  const bool of_guides = steps.front().step->pass.at == FinishPass::Stage::kGuides;
   OklabBlock given, block, before;
   internal::OklabFromTexels(texels, count, given);
   block = given;
@@ -189,7 +182,7 @@ void PaintBlock(std::span<const PointStep> steps, std::size_t first, std::size_t
     const bool is_weighed = IsWeighed(one);
     if (is_weighed) before = block;
     one.apply(first, count, block);
-    if (is_weighed) Weigh(one, {first, count, texels, of_guides}, before, block);
+    if (is_weighed) Weigh(one, {first, count, texels}, before, block);
   }
   internal::PutBlock(given, 1.0f, nullptr, count, block, texels);
 }
@@ -238,7 +231,7 @@ void ApplyToAll(const FinishStep& step, const FinishFrame& frame, Picture& pictu
   } else if (const auto* edges = std::get_if<EdgesPass>(&pass.effect)) {
     internal::DrawEdges(*edges, pass.strength, step.only, frame, picture);
   } else if (const auto* hatch = std::get_if<HatchPass>(&pass.effect)) {
-    internal::DrawHatch(*hatch, pass.strength, step.only, frame, picture);
+    internal::DrawHatch(*hatch, pass.strength, step.only, IsOfGuides(step), frame, picture);
   } else if (const auto* pigment = std::get_if<PigmentPass>(&pass.effect)) {
     internal::Pigment(*pigment, pass.strength, step.only, frame, picture);
   } else if (const auto* fill = std::get_if<FillPass>(&pass.effect)) {

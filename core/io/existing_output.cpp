@@ -49,7 +49,8 @@ const std::map<std::string, std::string>& UnrecordedSettings() {
                                                              {"fps", kAnySetting},
                                                              {"measured", kAnySetting},
                                                              {"samples", kAnySetting},
-                                                             {"finish_measures", kAnySetting}};
+                                                             {"finish_measures", kAnySetting},
+                                                             {"finish_measured", kAnySetting}};
   return kValues;
 }
 

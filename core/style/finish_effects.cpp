@@ -181,7 +181,7 @@ std::vector<FinishKey> OutlineKeys() {
       LineWidth("texture", LineClass::kTexture, "the same where the base colour changes"),
       LineWidth("suggestive", LineClass::kSuggestive, "the same in valleys that are nearly a silhouette"),
       PassNumber("crease_angle", &P::crease_angle, 0.0, 180.0,
-                 "of normals beside a crease, at least, degrees; it goes on to two thirds of it"),
+                 "of normals beside a crease, at least, degrees; a crease continues down to two thirds of it"),
       PassNumber("texture_step", &P::texture_step, 0.0, 2.0, "of base colours beside a line, at least, in Oklab"),
       PassNumber("suggestive_reach", &P::suggestive_reach, 1.0, 64.0, "across a valley to either side, pixels"),
       PassNumber("suggestive_depth", &P::suggestive_depth, 0.0, 1.0,

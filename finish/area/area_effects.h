@@ -39,9 +39,9 @@ void DrawEdges(const EdgesPass& pass, double strength, std::span<const std::uint
 // cells, apart by object; a patch's direction is the main axis of its structure tensor of normals, J = Σ ∇n ∇nᵀ, which
 // has no sign, so that all directions there are occur. Strokes of a layer are as wide as the share of ink asks,
 // antialiased; layers fill one after the other, and where they cross ink counts once: the mean share of ink is 1 - tone
-// / from.
-void DrawHatch(const HatchPass& pass, double strength, std::span<const std::uint8_t> only, const FinishFrame& frame,
-               Picture& picture);
+// / from. Of light, only the surface's share of a pixel has ink (SurfaceShares, with `of_guides`).
+void DrawHatch(const HatchPass& pass, double strength, std::span<const std::uint8_t> only, bool of_guides,
+               const FinishFrame& frame, Picture& picture);
 
 // The blur of DepthPass: a Gaussian with a sigma of blur · u, over the pixels that are on the same side of the focus
 // and blurred by half as much or more, so that nothing sharp runs into what is blurred and what is in focus keeps its

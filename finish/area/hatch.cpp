@@ -238,8 +238,8 @@ class Strokes {
 
 }  // namespace
 
-void DrawHatch(const HatchPass& pass, double strength, std::span<const std::uint8_t> only, const FinishFrame& frame,
-               Picture& picture) {
+void DrawHatch(const HatchPass& pass, double strength, std::span<const std::uint8_t> only, bool of_guides,
+               const FinishFrame& frame, Picture& picture) {
   const Patches patches(pass, frame, picture.width, picture.height);
   const FloatPlane tones =
       ToneOf(pass.tone == HatchPass::Tone::kLight ? EdgesPass::Tone::kLight : EdgesPass::Tone::kPaint, frame, picture);
@@ -265,7 +265,7 @@ void DrawHatch(const HatchPass& pass, double strength, std::span<const std::uint
       const std::size_t row = std::size_t(y) * width;
       if (of_light) {
         const auto coverage = frame.guides->Plane(Layer::kCoverage);
-        SurfaceShares(coverage.data() + row, picture.rgba.data() + 4 * row, width, surface.data());
+        SurfaceShares(coverage.data() + row, picture.rgba.data() + 4 * row, of_guides, width, surface.data());
       }
       for (std::size_t x = 0; x < width; ++x) {
         const std::size_t p = std::size_t(y) * width + x;

@@ -167,10 +167,10 @@ class Classifier {
   std::optional<Valleys> valleys_;
 };
 
-// Makes creases of the weak ones that lie end to end with one, and drops the others.
+// Makes creases of the weak ones that lie end to end with one of the same object, and drops the others.
 class CreaseJoiner {
  public:
-  explicit CreaseJoiner(BorderMap& map) : map_(map) {}
+  CreaseJoiner(std::span<const float> object, BorderMap& map) : object_(object), map_(map) {}
 
   void Run() {
     const auto count = static_cast<std::int64_t>(map_.right.size());
@@ -200,17 +200,25 @@ class CreaseJoiner {
       const std::int64_t p = at.pixel, on = at.is_below ? 1 : map_.width, aside = at.is_below ? map_.width : 1;
       const bool other = !at.is_below;
       const bool is_first = at.is_below && p % map_.width == 0, is_last = at.is_below && (p + 1) % map_.width == 0;
-      if (!is_first) Take({p - on, at.is_below}), Take({p - on, other}), Take({p - on + aside, other});
-      if (!is_last) Take({p + on, at.is_below}), Take({p, other}), Take({p + aside, other});
+      const float object = object_[std::size_t(p)];
+      if (!is_first)
+        for (const Border next : {Border{p - on, at.is_below}, Border{p - on, other}, Border{p - on + aside, other}})
+          Take(next, object);
+      if (!is_last)
+        for (const Border next : {Border{p + on, at.is_below}, Border{p, other}, Border{p + aside, other}})
+          Take(next, object);
     }
   }
 
-  void Take(Border next) {
-    if (next.pixel < 0 || next.pixel >= static_cast<std::int64_t>(map_.right.size()) || At(next) != kWeakCrease) return;
+  // A crease has the same object on both of its sides.
+  void Take(Border next, float object) {
+    if (next.pixel < 0 || next.pixel >= static_cast<std::int64_t>(map_.right.size())) return;
+    if (At(next) != kWeakCrease || object_[std::size_t(next.pixel)] != object) return;
     At(next) = kCrease;
     todo_.push_back(next);
   }
 
+  std::span<const float> object_;
   BorderMap& map_;
   std::vector<Border> todo_;
 };
@@ -273,7 +281,7 @@ BorderMap FindBorders(const OutlinePass& pass, const GuideSet& guides, double sc
       }
     }
   });
-  CreaseJoiner(map).Run();
+  if (pass.of_class[std::size_t(LineClass::kCrease)] > 0.0) CreaseJoiner(guides.Plane(Layer::kObject), map).Run();
   return map;
 }
 

@@ -72,11 +72,12 @@ Texture HighPassed(const std::vector<float>& plane, int width, const PictureRegi
 SCUMBLE_WIDE_LOOPS std::int64_t SumOfProducts(const std::int16_t* a, const std::int16_t* b, int columns, int rows,
                                               int side) {
   std::int64_t sum = 0;
-  for (int y = 0; y < rows; ++y, a += side, b += side) {
+  for (int y = 0; y < rows; ++y) {
+    const std::ptrdiff_t row = std::ptrdiff_t(y) * side;
     for (int from = 0; from < columns; from += kRun) {
       const int to = std::min(columns, from + kRun);
       std::int32_t run = 0;
-      for (int x = from; x < to; ++x) run += std::int32_t(a[x]) * b[x];
+      for (int x = from; x < to; ++x) run += std::int32_t(a[row + x]) * b[row + x];
       sum += run;
     }
   }

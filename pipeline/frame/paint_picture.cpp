@@ -352,6 +352,7 @@ Expected<PaintedPicture> PaintInMemory(StyleSet& styles, const GuideSet& given, 
   made.write.fast = request.fast_io;
   PictureSettings made_with = SettingsOf(request, settings.fps, settings.exposure, SamplesAsked(given.attributes));
   if (state.finish_measures) made_with.finish_measures = MeasuresText(*state.finish_measures);
+  made_with.finish_measured = !styles.options.finish_measures;
   made.write.settings = SettingsText(styles, made_with, state.hashes);
   PictureReport report{request.output,
                        picture.width,

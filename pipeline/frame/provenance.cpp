@@ -88,9 +88,14 @@ std::uint64_t HashOfStyles(const StyleSet& styles, std::size_t count, ExemplarHa
   return hash;
 }
 
+std::string FinishMeasuresPart(const std::string& measures, std::optional<bool> measured) {
+  return fmt::format("; finish_measures {}; finish_measured {}", measures.empty() ? kAnySetting : measures,
+                     measured ? *measured ? "yes" : "no" : kAnySetting);
+}
+
 std::string SettingsText(const StyleSet& styles, const PictureSettings& settings, ExemplarHashes& known) {
-  const auto& [seed, over, show, upsample, upscale, fps, exposure, measured, samples, show_finish, finish_measures] =
-      settings;  // all: each makes another picture
+  const auto& [seed, over, show, upsample, upscale, fps, exposure, measured, samples, show_finish, finish_measures,
+               finish_measured] = settings;  // all: each makes another picture
   std::string text = fmt::format("scumble {}; style {:016x}; seed {}; over {}; show {}; upsample {}", SCUMBLE_VERSION,
                                  HashOfStyles(styles, styles.chosen, known), seed, over ? "a picture" : "nothing",
                                  !show_finish.empty() ? kShowFinish + show_finish
@@ -101,8 +106,7 @@ std::string SettingsText(const StyleSet& styles, const PictureSettings& settings
   const auto chosen = std::span(styles.styles).first(styles.chosen);
   if (!samples.empty() && std::any_of(chosen.begin(), chosen.end(), AsksForLight)) text += "; samples " + samples;
   text += "; fps " + (fps ? fmt::format("{}", double(fps->numerator) / double(fps->denominator)) : kAnySetting);
-  if (EverLooksAtMeasures(styles))
-    text += "; finish_measures " + (finish_measures.empty() ? std::string(kAnySetting) : finish_measures);
+  if (EverLooksAtMeasures(styles)) text += FinishMeasuresPart(finish_measures, finish_measured);
   if (std::none_of(chosen.begin(), chosen.end(), LooksAtLight)) return text;
   text += "; exposure " + (exposure ? fmt::format("{}", *exposure) : kAnySetting);
   return text + "; measured " + (measured ? *measured ? "yes" : "no" : kAnySetting);

@@ -29,8 +29,10 @@ struct PictureSettings {
   // Of a pixel of light in the guides, as SamplesText has it; empty: unknown. Counts for styles that ask for any.
   std::string samples;
   std::string show_finish = {};  // of one finishing pass
-  // What finishing effects measured or were given, as MeasuresText has it; empty: unknown. Counts where any looks.
+  // What finishing effects measured or were given, as MeasuresText has it; empty: unknown. Counts where any looks, as
+  // does whether it was measured; empty: the numbers alone count.
   std::string finish_measures = {};
+  std::optional<bool> finish_measured = {};
 };
 
 // All settings of the transfer, as text: equal texts, equal settings.
@@ -41,6 +43,9 @@ std::uint64_t HashOfPaint(const Style& style);
 
 // Of what the first `count` styles are and who has them: settings, exemplars, light, paper, assignments.
 std::uint64_t HashOfStyles(const StyleSet& styles, std::size_t count, ExemplarHashes& known);
+
+// The parts "; finish_measures …; finish_measured …" of such a text.
+std::string FinishMeasuresPart(const std::string& measures, std::optional<bool> measured);
 
 // The text: parts "name value" with semicolons between, as core/io/existing_output.h compares them; a part that is left
 // out agrees with all. It holds only what both stylize and transfer know, and what changes the picture: equal pictures

@@ -67,7 +67,10 @@ Status PictureSequence::Check(int frame, const std::string& output, int width, i
   PictureShape shape{width, height, PictureChannels(output), PictureBits(output, {request_.bits}), {}};
   PictureSettings settings = SettingsOf(request_, fps, exposure, samples);
   if (exposure) settings.measured.reset();  // stops that were measured may be given to go on with
-  if (styles_.options.finish_measures) settings.finish_measures = MeasuresText(*styles_.options.finish_measures);
+  // What was measured may be given to go on with.
+  const std::optional<FinishMeasures>& given = styles_.options.finish_measures;
+  if (given) settings.finish_measures = MeasuresText(*given);
+  if (!given) settings.finish_measured = true;
   shape.settings = SettingsText(styles_, settings, state_.hashes);
   SCUMBLE_RETURN_IF_ERROR(CheckWholePicture(output, shape));
   if (request_.layers_out.empty()) return Ok();

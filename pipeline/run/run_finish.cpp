@@ -17,6 +17,7 @@
 #include "finish/jitter.h"
 #include "pipeline/frame/finish_layers.h"
 #include "pipeline/frame/frame_painter.h"
+#include "pipeline/frame/provenance.h"
 #include "pipeline/memory/memory_estimate.h"
 #include "pipeline/scene/run_inputs.h"
 #include "pipeline/style/finish_files.h"
@@ -39,10 +40,16 @@ LayerSet LayersOf(const FinishChain& chain) {
   return layers.empty() ? layers : layers.Add({Layer::kCoverage, Layer::kNormal});  // every guide set holds these
 }
 
-GuideReadOptions ReadOptions(const FinishRequest& request, const LayerSet& required, const std::string& camera) {
+// The view layer may be the picture's alone.
+GuideReadOptions ReadOptions(const FinishRequest& request, const LayerSet& required, const std::string& guides,
+                             const std::string& camera) {
   GuideReadOptions read;
   read.required = required, read.view_layer = request.view_layer, read.light_layer = request.light_layer;
   read.blender_camera = camera;
+  if (read.view_layer.empty()) return read;
+  const auto info = InspectGuides(guides);
+  const auto is_named = [](const auto& layers) { return !layers.first.empty(); };
+  if (info && std::none_of(info->layers.begin(), info->layers.end(), is_named)) read.view_layer.clear();
   return read;
 }
 
@@ -55,15 +62,17 @@ FrameRate RateFor(const FinishRequest& request, const std::string& guides) {
   return info ? RateOf({}, info->header) : FrameRate();
 }
 
-// `measures`: those that were given or measured; empty: not known yet.
+// `measures`: those that were given or measured; empty: not known yet. `measured`: see PictureSettings.
 std::string SettingsText(const FinishRequest& request, const FinishChain& chain,
-                         const std::optional<FinishMeasures>& measures, FrameRate fps) {
+                         const std::optional<FinishMeasures>& measures, std::optional<bool> measured, FrameRate fps) {
   std::string text;
   for (const FinishPass& pass : chain.passes) text += (text.empty() ? "" : ", ") + FinishText(pass);
   text = fmt::format("scumble {}; finish {}; seed {}; height {}", SCUMBLE_VERSION, text, request.seed,
                      request.reference_height);
   if (std::any_of(chain.passes.begin(), chain.passes.end(), Jitters)) text += "; fps " + FrameRateToText(fps);
-  if (EverLooksAtMeasures(chain)) text += "; finish_measures " + (measures ? MeasuresText(*measures) : kAnySetting);
+  if (EverLooksAtMeasures(chain)) text += FinishMeasuresPart(measures ? MeasuresText(*measures) : "", measured);
+  if (!request.view_layer.empty()) text += "; view_layer " + request.view_layer;
+  if (!request.light_layer.empty()) text += "; light_layer " + request.light_layer;
   return text + (request.show_finish.empty() ? "" : "; show " + (kShowFinish + request.show_finish));
 }
 
@@ -93,7 +102,7 @@ Status CheckFinishMemory(const FinishRequest& request, const FrameFiles& files, 
   need.TakeTransient("reading it", 16 * pixels);
   if (const auto info =
           files.guides.empty() ? Expected<GuideFileInfo>(InputError("none")) : InspectGuides(files.guides)) {
-    AddGuidesRead(*info, ReadOptions(request, state.required, files.camera), need);
+    AddGuidesRead(*info, ReadOptions(request, state.required, files.guides, files.camera), need);
   }
   AddFinish(state.chain, false, size, need);
   if (!files.layers.empty() || !request.show_finish.empty()) {
@@ -114,7 +123,7 @@ Expected<FrameWrite> Finish(const FinishRequest& request, const FrameFiles& file
   std::optional<GuideSet> guides;
   if (!files.guides.empty() && state.required.empty()) SCUMBLE_RETURN_IF_ERROR(InspectGuides(files.guides));
   if (!files.guides.empty() && !state.required.empty()) {
-    SCUMBLE_ASSIGN(guides, ReadGuides(files.guides, ReadOptions(request, state.required, files.camera)));
+    SCUMBLE_ASSIGN(guides, ReadGuides(files.guides, ReadOptions(request, state.required, files.guides, files.camera)));
     if (guides->width() != picture->width || guides->height() != picture->height) {
       return InputError(fmt::format("{} is {}×{}, its guides {} are {}×{}: render both at one size", files.picture,
                                     picture->width, picture->height, files.guides, guides->width(), guides->height()));
@@ -146,7 +155,8 @@ Expected<FrameWrite> Finish(const FinishRequest& request, const FrameFiles& file
   times.emplace_back("finish", watch.Lap());
   context.EndStage("finish");
   PictureWriteOptions write{request.bits, request.png_level};
-  write.fast = request.fast_io, write.settings = SettingsText(request, state.chain, state.measures, fps);
+  write.fast = request.fast_io,
+  write.settings = SettingsText(request, state.chain, state.measures, !request.measures, fps);
   PictureReport report{files.output, picture->width, picture->height, 1, false, 1, request.seed, {}, {}, {}, {}};
   for (const auto& [name, ms] : times) report.steps.push_back({name, ms, ms, ms});
   report.layers_output = files.layers;
@@ -233,7 +243,9 @@ Expected<RunReport> RunFinish(FinishRequest request, const SequenceListener& lis
     if (!header) return header.error();
     SCUMBLE_RETURN_IF_ERROR(SetFinishFrame(state.chain, frame));
     PictureWriteOptions write{request.bits, request.png_level};
-    const std::string settings = SettingsText(request, state.chain, state.measures, RateFor(request, guides.At(frame)));
+    const std::string settings =
+        SettingsText(request, state.chain, request.measures, request.measures ? std::optional<bool>() : true,
+                     RateFor(request, guides.At(frame)));
     SCUMBLE_RETURN_IF_ERROR(CheckWholePicture(
         output, {header->width, header->height, PictureChannels(output), PictureBits(output, write), settings}));
     if (request.layers_out.empty()) return Ok();
@@ -243,8 +255,8 @@ Expected<RunReport> RunFinish(FinishRequest request, const SequenceListener& lis
   work.begin = [&](std::span<const int>, const Progress&) -> Status {
     if (state.measures || !EverLooksAtMeasures(state.chain)) return Ok();
     const int first = sequence->frames.front();
-    SCUMBLE_ASSIGN(const GuideSet set,
-                   ReadGuides(guides.At(first), ReadOptions(request, state.required, camera.At(first))));
+    SCUMBLE_ASSIGN(const GuideSet set, ReadGuides(guides.At(first), ReadOptions(request, state.required,
+                                                                                guides.At(first), camera.At(first))));
     Measure(set, context, state);
     return Ok();
   };

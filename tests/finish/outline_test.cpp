@@ -236,6 +236,16 @@ TEST(Outline, ACreaseGoesOnToTwoThirdsOfItsAngle) {
     return SeenPoint{true, {0.0f, at.y < (at.x > 60.0f ? 40.0f : 41.0f) ? up : -up, out}, 5.0f, 1.0f};
   });
   EXPECT_NEAR(Sum(InkOf(pass, leaves)), 60.0, 2.0);
+  // Nor on another object.
+  const GuideSet two = GuidesOf(120, 80, [&](glm::vec2 at) {
+    const double half = (at.x < 60.0f ? 25.0 : 15.0) * std::numbers::pi / 180.0;
+    const auto up = static_cast<float>(std::sin(half)), out = static_cast<float>(std::cos(half));
+    return SeenPoint{true, {0.0f, at.y < 40.0f ? up : -up, out}, 5.0f, at.x < 60.0f ? 1.0f : 2.0f};
+  });
+  OutlinePass creases = pass;
+  for (double& width : creases.of_class) width = 0.0;
+  creases.of_class[std::size_t(LineClass::kCrease)] = 1.0;
+  EXPECT_NEAR(Sum(InkOf(creases, two)), 60.0, 2.0);
 }
 
 // The nearer of two overlapping things has the line, whatever lies behind.

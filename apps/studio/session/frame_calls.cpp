@@ -152,10 +152,15 @@ HttpResponse Session::State::PostFrame(const HttpRequest& request) {
   HttpResponse answer =
       Frame(moment, request, text("quality", "final"), text("format", "jpeg"), text("show", ""), others);
   if (answer.status != 200 || main.state.scene.empty() || main.state.style.empty()) return answer;
-  std::vector<StyleEntry> styles = StylesOf(moment.state);
+  const std::vector<StyleEntry> styles = StylesOf(moment.state);
   {
     const std::lock_guard lock(mutex);
-    compared = std::move(styles);
+    constexpr std::size_t kMostCompared = 4;
+    for (const StyleEntry& style : styles) {
+      std::erase_if(compared, [&](const StyleEntry& one) { return one.id == style.id; });
+      compared.push_back(style);
+    }
+    if (compared.size() > kMostCompared) compared.erase(compared.begin(), compared.end() - kMostCompared);
   }
   WatchFilesOf(main, begun, true);
   return answer;

@@ -59,7 +59,7 @@ struct Session::State {
   std::uint64_t generation = 1;  // raised when a file has changed
   std::optional<Error> problem;
   std::string watched;               // what the files that are watched belong to
-  std::vector<StyleEntry> compared;  // the styles of the last picture that was asked for beside the main one
+  std::vector<StyleEntry> compared;  // styles of the last pictures that were asked for beside the main one
   std::map<std::string, std::shared_ptr<const StyleFacts>> facts;  // by style id
   std::map<std::string, SceneDescription> descriptions;            // by what they depend on
   std::map<std::string, std::string> thumbnails;                   // by kind and id

@@ -28,7 +28,7 @@ import {KeysPanel} from './keys.js';
 import {Library} from './library.js';
 import {FinishPanel} from './finish.js';
 import {LightPanel} from './light.js';
-import {keepSteps, keptSteps} from './memory.js';
+import {keepSteps, keepUnsent, keptSteps, keptUnsent} from './memory.js';
 import {announce, announceSoon, showBusy, showError, showGone, showProblem} from './messages.js';
 import {OrbitControl} from './orbit.js';
 import {OutputPanel} from './output.js';
@@ -192,7 +192,10 @@ async function onFound() {
   showProblem(state.problem);
   if (!hasStarted) await start();
   const lost = known && lostSettings(state, known);
-  if (lost) await store.patch(lost, {undoable: false});
+  // The page was reloaded before the server had answered.
+  const unsent = before ? null : keptUnsent(state.run);
+  const missing = lost || unsent;
+  if (missing) await store.patch(missing, {undoable: false});
   if (wasGone || lost) frames.renew();
   else frames.wake();
   if (before) await exemplar.renew();
@@ -220,6 +223,8 @@ async function start() {
   store.undoSteps = steps.undo;
   store.redoSteps = steps.redo;
   addEventListener('pagehide', () => keepSteps(run, store.undoSteps, store.redoSteps));
+  // Earlier than that: what is on its way is given up in between.
+  addEventListener('beforeunload', () => keepUnsent(store.state.run, store.unsent));
   seen.remember();
   restorePage();
   store.listen(update);

@@ -7,7 +7,7 @@
  *   pixels: number}} SeenPicture
  *   thumbnail: a data URL; pixels: a hash of them */
 
-const kSeen = 'scumble-seen', kUndo = 'scumble-undo';
+const kSeen = 'scumble-seen', kUndo = 'scumble-undo', kUnsent = 'scumble-unsent';
 
 /** @param {string} name @param {unknown} value */
 function write(name, value) {
@@ -43,4 +43,13 @@ export function keptSteps(run) {
   // Times are those of the page before: no gesture goes on.
   const steps = (/** @type {Step[]} */ of) => of.map((step) => ({...step, gesture: ''}));
   return {undo: steps(kept.undo), redo: steps(kept.redo)};
+}
+
+/** @param {string} run of the server @param {Changes | undefined} changes */
+export const keepUnsent = (run, changes) => write(kUnsent, {run, changes});
+
+/** @param {string} run @returns {Changes | null} */
+export function keptUnsent(run) {
+  const kept = read(kUnsent);
+  return kept?.run === run && kept.changes ? kept.changes : null;
 }

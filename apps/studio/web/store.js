@@ -102,6 +102,8 @@ export class Store {
     /** @type {{changes: Changes, moving: boolean, step: Step | null}[]} */
     this.queue = [];
     this.sending = false;
+    /** @type {Changes | null} */
+    this.onItsWay = null;
     this.sent = 0;  // changes that were answered
     this.following = 0;  // a timer
     this.told = 0;  // the newest revision that an event has named
@@ -229,6 +231,14 @@ export class Store {
     }
   }
 
+  /** @returns {Changes | undefined} what the server has not answered: if the page goes now, it may be lost */
+  get unsent() {
+    const waiting = [this.onItsWay ?? {}, ...this.queue.map(({changes}) => changes)];
+    const keys = Object.assign({}, ...waiting.map((changes) => changes.keys ?? {}));
+    const all = Object.assign({}, ...waiting, Object.keys(keys).length ? {keys} : {});
+    return Object.keys(all).length ? all : undefined;
+  }
+
   /** Waits until no change is on its way. */
   async rested() {
     while (this.sending) await new Promise((resolve) => setTimeout(resolve, 20));
@@ -256,6 +266,7 @@ export class Store {
     let next = this.queue.shift();
     try {
       for (; next; next = this.queue.shift()) {
+        this.onItsWay = next.changes;
         /** @type {State} */
         const answer = await (await call('PATCH', '/api/state', {json: next.changes})).json();
         this.sent++;
@@ -272,6 +283,7 @@ export class Store {
       await this.refresh().catch(this.onError);
     } finally {
       this.sending = false;
+      this.onItsWay = null;
     }
     await this.hear(this.told).catch(this.onError);
   }

@@ -54,13 +54,6 @@ Expected<ColorChannels> FindColorChannels(const OIIO::ImageSpec& spec, const std
                       find({"B", "BLUE", "COMPOSITE.COMBINED.B", "VIEWLAYER.COMBINED.B", combined + "B"}),
                       find({"A", "ALPHA", "COMPOSITE.COMBINED.A", "VIEWLAYER.COMBINED.A", combined + "A"})};
   if (found.r >= 0 && found.g >= 0 && found.b >= 0) return found;
-  if (layers.size() > 1) {
-    std::string names;
-    for (const std::string& layer : layers)
-      names += (names.empty() ? "" : ", ") + layer.substr(0, layer.size() - std::string_view(".COMBINED.").size());
-    return InputError(file + " holds the pictures of several view layers, " + names +
-                      ": expected one; `scumble finish` takes it by --view-layer");
-  }
   if (const int grey = find({"Y", "I", "L"}); grey >= 0) return ColorChannels{grey, grey, grey, found.a};
   const auto& names = spec.channelnames;
   if (std::any_of(names.begin(), names.end(), [](const std::string& name) { return name.find('.') != name.npos; })) {
@@ -167,32 +160,48 @@ Picture Upright(Picture stored, int orientation) {
   return upright;
 }
 
-// Goes to the part that holds the picture, of an EXR of several: that of the usual names, else the first with R, G, B.
-void SeekPicture(OIIO::ImageInput& input) {
-  if (input.format_name() != std::string("openexr")) return;
-  if (!input.seek_subimage(1, 0)) return static_cast<void>(input.geterror());
-  int found = 0;
-  bool is_found = false;
+std::string SeveralLayers(const std::string& file, const std::vector<std::string>& combined) {
+  std::string names;
+  for (const std::string& layer : combined)
+    names += (names.empty() ? "" : ", ") + layer.substr(0, layer.size() - std::string_view(".COMBINED.").size());
+  return file + " holds the pictures of several view layers, " + names +
+         ": expected one; write it by itself, or choose it with `scumble finish --view-layer`";
+}
+
+// Goes to the part that holds the picture, of an EXR of several: that of the view layer, else of the usual names, else
+// the first with R, G and B. Where none has them, the first.
+Status SeekPicture(OIIO::ImageInput& input, const std::string& file, const std::string& view_layer = {}) {
+  if (input.format_name() != std::string("openexr")) return Ok();
+  int found = -1, usual = -1, chosen = -1;
+  std::vector<std::string> combined;
   for (int part = 0; input.seek_subimage(part, 0); ++part) {
     const OIIO::ImageSpec spec = input.spec();
+    const std::vector<std::string> layers = CombinedLayers(spec);
+    combined.insert(combined.end(), layers.begin(), layers.end());
     const auto has = [&](const std::string& name) {
       return std::any_of(spec.channelnames.begin(), spec.channelnames.end(),
                          [&](const std::string& channel) { return Upper(channel) == name; });
     };
-    if (!(has("R") && has("G") && has("B")) && CombinedLayers(spec).empty()) continue;
-    const std::string name = Upper(std::string(spec.get_string_attribute("oiio:subimagename")));
+    if (!view_layer.empty() && has(Upper(view_layer) + ".COMBINED.R")) chosen = part;
+    const bool has_colors = has("R") && has("G") && has("B");
+    if (found < 0 && (has_colors || !layers.empty())) found = part;
+    // Parts of several views are "rgba.left".
+    std::string name = Upper(std::string(spec.get_string_attribute("oiio:subimagename")));
+    name = name.substr(0, name.find('.'));
     const bool is_usual = name.empty() || name == "RGBA" || name == "RGB" || name == "BEAUTY" || name == "C";
-    if (is_usual || !is_found) found = part, is_found = true;
-    if (is_usual) break;
+    const bool is_of_blender = has("COMPOSITE.COMBINED.R") || has("VIEWLAYER.COMBINED.R");
+    if (usual < 0 && ((has_colors && is_usual) || is_of_blender)) usual = part;
   }
-  input.seek_subimage(found, 0);
   static_cast<void>(input.geterror());  // of the search for one more
+  if (chosen < 0 && usual < 0 && combined.size() > 1) return InputError(SeveralLayers(file, combined));
+  input.seek_subimage(chosen >= 0 ? chosen : usual >= 0 ? usual : std::max(0, found), 0);
+  return Ok();
 }
 
 // Pixels of the display window outside an EXR's data window are transparent; those of the data window beyond the
 // display window are cut off.
 Expected<Picture> ReadFrom(OIIO::ImageInput& input, const std::string& name, const std::string& view_layer = {}) {
-  SeekPicture(input);
+  SCUMBLE_RETURN_IF_ERROR(SeekPicture(input, name, view_layer));
   const OIIO::ImageSpec spec = input.spec();
   SCUMBLE_RETURN_IF_ERROR(internal::CheckSize(spec, name));
   OIIO::ImageSpec display = spec;
@@ -242,7 +251,8 @@ Status CheckJpegIntegrity(std::span<const std::byte> bytes, const std::string& n
 PictureHeader HeaderOf(const OIIO::ImageSpec& spec) {
   const double per_unit = spec.get_float_attribute("XResolution", 0.0f);
   const std::string unit(spec.get_string_attribute("ResolutionUnit"));
-  PictureHeader header{spec.width, spec.height, static_cast<int>(spec.format.size() * 8), 0};
+  // The picture's, not the data window's.
+  PictureHeader header{spec.full_width, spec.full_height, static_cast<int>(spec.format.size() * 8), 0};
   if (unit == "in" || unit == "inch") header.dpi = per_unit;
   if (unit == "cm") header.dpi = per_unit * 2.54;
   if (unit == "m") header.dpi = per_unit * 0.0254;
@@ -264,16 +274,14 @@ Expected<Picture> ReadPicture(const std::filesystem::path& path, const std::stri
 
 Expected<PictureHeader> InspectPicture(const std::filesystem::path& path) {
   SCUMBLE_ASSIGN(const auto input, internal::OpenInput(path));
+  if (!SeekPicture(*input, path.string())) input->seek_subimage(0, 0);  // view layers have one size
   return HeaderOf(input->spec());
 }
 
 Expected<PictureHeader> InspectEncoded(std::span<const std::byte> bytes, const std::string& name) {
   OIIO::Filesystem::IOMemReader proxy(const_cast<std::byte*>(bytes.data()), bytes.size());
   SCUMBLE_ASSIGN(const auto input, internal::OpenInput(proxy, name));
-  PictureHeader header = HeaderOf(input->spec());
-  header.width = input->spec().full_width,
-  header.height = input->spec().full_height;  // of the picture, not of the data window
-  return header;
+  return HeaderOf(input->spec());
 }
 
 Expected<Picture> DecodePicture(std::span<const std::byte> bytes, const std::string& name) {

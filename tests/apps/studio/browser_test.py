@@ -487,6 +487,15 @@ class Lasting(Page):
         self.settled()
         self.assertEqual(self.state()["scene"], "toys")
 
+    def test_a_reload_in_the_middle_of_changes_keeps_them(self):
+        for seed in (3, 5, 7):
+            self.js("const input = document.getElementById('seed');"
+                    "for (let i = 0; i <= arguments[0]; i += 1) {"
+                    "  input.value = String(i); input.dispatchEvent(new Event('change', {bubbles: true})); }"
+                    "location.reload()", seed)
+            self.until(lambda: self.state()["seed"] == seed, "the last seed")
+            self.settled()
+
     def test_a_studio_for_another_scene_is_left_as_it_is(self):
         self.choose("style", "gouache")
         self.assertEqual(self.studio.stop(), 0)

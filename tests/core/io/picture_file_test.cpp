@@ -244,6 +244,8 @@ TEST(PictureFile, AnExrOfPartsIsThePartThatIsAPicture) {
   const std::vector<std::string> rgb = {"R", "G", "B"};
   WriteParts(folder / "a.exr", {{"depth", {"depth.Z"}}, {"albedo", rgb}, {"beauty", rgb}});
   WriteParts(folder / "b.exr", {{"mask", {"A"}}, {"any", rgb}, {"more", rgb}});
+  WriteParts(folder / "c.exr", {{"N", rgb}, {"rgba.left", rgb}, {"rgba.right", rgb}});
+  EXPECT_EQ(ReadPicture(folder / "c.exr")->At(0, 0)[0], Srgb16FromLinear(0.5f));
   const auto usual = ReadPicture(folder / "a.exr"), first = ReadPicture(folder / "b.exr");
   ASSERT_TRUE(usual && first) << (usual ? first.error().message : usual.error().message);
   EXPECT_EQ(usual->At(1, 0)[0], Srgb16FromLinear(0.75f));
@@ -263,6 +265,15 @@ TEST(PictureFile, OfSeveralViewLayersOneIsNamed) {
       << none.error().message;
   EXPECT_EQ(ReadPicture(folder / "two.exr", "Back")->At(0, 0)[0], Srgb16FromLinear(0.25f));
   EXPECT_EQ(ReadPicture(folder / "two.exr", "Fore")->At(0, 0)[0], Srgb16FromLinear(0.5f));
+  // Each in a part of its own.
+  const auto layer = [](const std::string& name) {
+    return std::vector<std::string>{name + ".Combined.R", name + ".Combined.G", name + ".Combined.B"};
+  };
+  WriteParts(folder / "parts.exr", {{"back", layer("Back")}, {"fore", layer("Fore")}});
+  EXPECT_FALSE(ReadPicture(folder / "parts.exr"));
+  EXPECT_EQ(ReadPicture(folder / "parts.exr", "Back")->At(0, 0)[0], Srgb16FromLinear(0.25f));
+  EXPECT_EQ(ReadPicture(folder / "parts.exr", "Fore")->At(0, 0)[0], Srgb16FromLinear(0.5f));
+  EXPECT_FALSE(ReadPicture(folder / "parts.exr", "Middle"));
 }
 
 TEST(PictureFile, WritingExrDecodesAndAssociates) {

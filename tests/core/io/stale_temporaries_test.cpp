@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
-#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -145,26 +144,6 @@ TEST(LeftoverFiles, AreTakenAwayByTheFirstWriteToTheirFolder) {
   LeaveOne(folder / "another.png");
   ASSERT_TRUE(WriteFileAtomically(folder / "new.txt", "newer"));
   EXPECT_EQ(Names(folder).size(), 2u) << "a run looks once: folders of sequences are large";
-}
-
-// A signal may come at any moment of a file's life, also while its owner removes it.
-TEST(PendingTemporaries, ASignalLeavesNoneBehind) {
-  const TemporaryFolder folder;
-  for (int i = 0; i < 40; ++i) {
-    const pid_t child = ::fork();
-    if (child == 0) {
-      std::signal(SIGTERM, [](int) {
-        RemovePendingTemporaries();
-        ::_exit(0);
-      });
-      for (;;) static_cast<void>(CheckWritable(folder / "out.exr"));
-    }
-    ::usleep(static_cast<useconds_t>(3000 + 7 * i));
-    ASSERT_EQ(::kill(child, SIGTERM), 0);
-    int status = 0;
-    ASSERT_EQ(::waitpid(child, &status, 0), child);
-    ASSERT_EQ(Names(folder), std::vector<std::string>()) << i;
-  }
 }
 
 }  // namespace

@@ -83,7 +83,9 @@ TEST_F(CliFinishInTime, ResumeKnowsTheMeasures) {
     EXPECT_EQ(kept(run, ""), 2) << run[0];
     EXPECT_EQ(kept(run, measures), 2) << run[0];
     EXPECT_EQ(kept(run, "1,2,30,1,1"), 0) << run[0];
-    EXPECT_EQ(kept(run, measures), 0) << run[0];
+    EXPECT_EQ(kept(run, "1,2,30,1,1"), 2) << run[0];
+    std::filesystem::remove(At(run.back() == "p.####.png" ? "p.0002.png" : "f.0002.png"));
+    EXPECT_EQ(kept(run, ""), 0) << run[0] << ": frames of other measures are not mixed";
   }
 }
 
