@@ -49,8 +49,9 @@ std::string FinishMeasuresPart(const std::string& measures, std::optional<bool> 
 
 // The text: parts "name value" with semicolons between, as core/io/existing_output.h compares them; a part that is left
 // out agrees with all. It holds only what both stylize and transfer know, and what changes the picture: equal pictures
-// are equal files. Whether the exposure was measured is an exception, because a measured one is not known where it is
-// compared. The styles must be at the picture's frame (SetStyleFrame). Those that a scene asks for are left out.
+// are equal files. Whether exposure and finishing effects were measured is an exception, because what was measured is
+// not known where it is compared. The styles must be at the picture's frame (SetStyleFrame). Those that a scene asks
+// for are left out.
 std::string SettingsText(const StyleSet& styles, const PictureSettings& settings, ExemplarHashes& known);
 
 }  // namespace scumble
