@@ -180,7 +180,8 @@ nlohmann::json Session::State::StateJson() {
   const Moment moment = Now();
   nlohmann::json json = ToJson(moment.state);
   json["revision"] = moment.revision;
-  json["run"] = run_id, json["first"] = first, json["as_started"] = HashOf(moment.state) == first["options"];
+  json["run"] = run_id, json["first"] = first,
+  json["as_started"] = first["options"].get<std::string>() == HashOf(moment.state);
   const Catalogue known = KnownCatalogue();
   json["scenes"] = json["styles"] = json["finishes"] = json["exemplars"] = nlohmann::json::array();
   for (const SceneEntry& scene : known.scenes) {

@@ -195,8 +195,9 @@ TEST(PngWriter, SaysWhatThePictureLibraryWouldSay) {
       ASSERT_TRUE(
           WriteFileAtomically(folder / "ours.png", internal::WritePng(picture, {8, false, 6, dpi, settings, 1})));
       EXPECT_EQ(Said(folder / "ours.png"), Said(by_library)) << dpi << " dpi, settings '" << settings << "'";
-      for (const fs::path& file : {folder / "ours.png", fs::path(by_library)})
-        ExpectAsLibrary(*ReadWholeFile(file), file);
+      ExpectAsLibrary(*ReadWholeFile(folder / "ours.png"), folder / "ours.png");
+      // From OpenImageIO 2.5 on its files hold more, which is left to it.
+      if (OIIO_VERSION < 20500) ExpectAsLibrary(*ReadWholeFile(by_library), by_library);
     }
   }
 }
