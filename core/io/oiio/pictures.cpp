@@ -160,12 +160,12 @@ Picture Upright(Picture stored, int orientation) {
   return upright;
 }
 
-std::string SeveralLayers(const std::string& file, const std::vector<std::string>& combined) {
+// "Back, Fore" of what CombinedLayers gives.
+std::string NamesOf(const std::vector<std::string>& combined) {
   std::string names;
   for (const std::string& layer : combined)
     names += (names.empty() ? "" : ", ") + layer.substr(0, layer.size() - std::string_view(".COMBINED.").size());
-  return file + " holds the pictures of several view layers, " + names +
-         ": expected one; write it by itself, or choose it with `scumble finish --view-layer`";
+  return names;
 }
 
 // Goes to the part that holds the picture, of an EXR of several: that of the view layer, else of the usual names, else
@@ -173,6 +173,7 @@ std::string SeveralLayers(const std::string& file, const std::vector<std::string
 Status SeekPicture(OIIO::ImageInput& input, const std::string& file, const std::string& view_layer = {}) {
   if (input.format_name() != std::string("openexr")) return Ok();
   int found = -1, usual = -1, chosen = -1;
+  bool has_composite = false;  // of all view layers
   std::vector<std::string> combined;
   for (int part = 0; input.seek_subimage(part, 0); ++part) {
     const OIIO::ImageSpec spec = input.spec();
@@ -189,11 +190,17 @@ Status SeekPicture(OIIO::ImageInput& input, const std::string& file, const std::
     std::string name = Upper(std::string(spec.get_string_attribute("oiio:subimagename")));
     name = name.substr(0, name.find('.'));
     const bool is_usual = name.empty() || name == "RGBA" || name == "RGB" || name == "BEAUTY" || name == "C";
+    has_composite = has_composite || has("COMPOSITE.COMBINED.R");
     const bool is_of_blender = has("COMPOSITE.COMBINED.R") || has("VIEWLAYER.COMBINED.R");
     if (usual < 0 && ((has_colors && is_usual) || is_of_blender)) usual = part;
   }
   static_cast<void>(input.geterror());  // of the search for one more
-  if (chosen < 0 && usual < 0 && combined.size() > 1) return InputError(SeveralLayers(file, combined));
+  if (chosen < 0 && !view_layer.empty() && !combined.empty() && !has_composite)
+    return InputError(file + " has no view layer '" + view_layer + "'; it has " + NamesOf(combined));
+  if (chosen < 0 && usual < 0 && combined.size() > 1) {
+    return InputError(file + " holds the pictures of several view layers, " + NamesOf(combined) +
+                      ": expected one; write it by itself, or choose it with `scumble finish --view-layer`");
+  }
   input.seek_subimage(chosen >= 0 ? chosen : usual >= 0 ? usual : std::max(0, found), 0);
   return Ok();
 }

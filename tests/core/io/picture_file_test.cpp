@@ -265,6 +265,9 @@ TEST(PictureFile, OfSeveralViewLayersOneIsNamed) {
       << none.error().message;
   EXPECT_EQ(ReadPicture(folder / "two.exr", "Back")->At(0, 0)[0], Srgb16FromLinear(0.25f));
   EXPECT_EQ(ReadPicture(folder / "two.exr", "Fore")->At(0, 0)[0], Srgb16FromLinear(0.5f));
+  const auto other = ReadPicture(folder / "two.exr", "Middle");
+  ASSERT_FALSE(other);
+  EXPECT_NE(other.error().message.find("no view layer 'Middle'; it has Back, Fore"), std::string::npos);
   // Each in a part of its own.
   const auto layer = [](const std::string& name) {
     return std::vector<std::string>{name + ".Combined.R", name + ".Combined.G", name + ".Combined.B"};
