@@ -19,8 +19,8 @@
 namespace scumble {
 namespace {
 
-// State that a signal handler may touch. Each slot holds the name of a file, or null. Whoever takes the name out of its
-// slot, the writer or the handler, may end its life; the file is gone or renamed before the writer does so.
+// State that a signal handler may touch. Each slot holds the name of a file, or null. The handler takes names out and
+// removes their files; a writer takes its own out after its file was removed or renamed.
 constexpr std::size_t kMostFiles = 64;  // written at once; any beyond are not registered here
 std::array<std::atomic<const char*>, kMostFiles> pending_names{};
 std::atomic<int> being_made{0};
