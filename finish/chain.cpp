@@ -117,12 +117,6 @@ std::optional<PointEffect> PointEffectOf(const FinishStep& step, const FinishFra
   return std::visit(make, pass.effect);
 }
 
-// Whether the step may leave some of what was before.
-bool IsWeighed(const PointStep& one) {
-  const FinishStep& step = *one.step;
-  return step.pass.strength < 1.0 || !step.only.empty() || !step.share.empty() || !one.coverage.empty();
-}
-
 // From one colour to the other, as far as the share says.
 SCUMBLE_WIDE_LOOPS void Mix(const float* shares, const float* from, std::size_t count, float* to) {
   for (std::size_t i = 0; i < count; ++i) {
@@ -145,32 +139,62 @@ struct Pixels {
 
 bool IsOfGuides(const FinishStep& step) { return step.pass.at == FinishPass::Stage::kGuides; }
 
-// Where the step changes nothing or only part of it, puts back what was before.
-void Weigh(const PointStep& one, const Pixels& pixels, const OklabBlock& before, OklabBlock& block) {
+// How much of each pixel of a block is the surface: made once, for all steps that ask.
+class Surface {
+ public:
+  using Shares = std::array<float, internal::kOklabBlock>;
+
+  // The same coverage and stage for all steps of a loop.
+  const Shares& Of(const PointStep& one, const Pixels& pixels) {
+    if (!is_made_) {
+      kinds_ = internal::SurfaceShares(one.coverage.data() + pixels.first, pixels.texels, IsOfGuides(*one.step),
+                                       pixels.count, shares_.data());
+      is_made_ = true;
+    }
+    return shares_;
+  }
+  const internal::ShareKinds& kinds() const { return kinds_; }
+
+ private:
+  Shares shares_;
+  internal::ShareKinds kinds_;
+  bool is_made_ = false;
+};
+
+// How much of each pixel's change stays.
+enum class Weight { kNothing, kParts, kAll };
+
+Weight WeightsOf(const PointStep& one, const Pixels& pixels, Surface& surface, float* shares) {
   const auto [first, count, texels] = pixels;
   const FinishStep& step = *one.step;
   const auto strength = static_cast<float>(step.pass.strength);
-  std::array<float, internal::kOklabBlock> shares;
-  std::fill_n(shares.begin(), count, strength);
+  Weight weight = strength < 1.0f || !step.share.empty() || !step.only.empty() ? Weight::kParts : Weight::kAll;
+  const bool has_coverage = !one.coverage.empty() && !one.behind;
+  if (has_coverage) {
+    surface.Of(one, pixels);
+    if (surface.kinds().all_zero) return Weight::kNothing;
+    if (!surface.kinds().all_one) weight = Weight::kParts;
+  }
+  if (weight == Weight::kAll) return weight;
+  std::fill_n(shares, count, strength);
   for (std::size_t i = 0; i < count && !step.share.empty(); ++i)
     shares[i] = strength * (static_cast<float>(step.share[first + i]) / 65535.0f);
   for (std::size_t i = 0; i < count && !step.only.empty(); ++i) shares[i] = step.only[first + i] ? shares[i] : 0.0f;
-  if (!one.coverage.empty()) {
-    std::array<float, internal::kOklabBlock> surface;
-    internal::SurfaceShares(one.coverage.data() + first, texels, IsOfGuides(step), count, surface.data());
-    if (one.behind) {
-      const auto is_mixed = [](float share) { return share > 0.0f && share < 1.0f; };
-      if (std::any_of(surface.begin(), surface.begin() + std::ptrdiff_t(count), is_mixed)) {
-        OklabBlock behind = before;
-        one.behind(first, count, behind);
-        for (std::size_t i = 0; i < count; ++i) surface[i] = is_mixed(surface[i]) ? surface[i] : 1.0f;
-        MixColors(surface.data(), count, behind, block);
-      }
-    } else {
-      for (std::size_t i = 0; i < count; ++i) shares[i] *= surface[i];
-    }
+  if (has_coverage) {
+    const Surface::Shares& of_surface = surface.Of(one, pixels);
+    for (std::size_t i = 0; i < count; ++i) shares[i] *= of_surface[i];
   }
-  MixColors(shares.data(), count, before, block);
+  return weight;
+}
+
+// The part of mixed pixels that is background takes what the step does to that.
+void MixBehind(const PointStep& one, const Pixels& pixels, Surface& surface, const OklabBlock& before,
+               OklabBlock& block) {
+  Surface::Shares shares = surface.Of(one, pixels);
+  OklabBlock behind = before;
+  one.behind(pixels.first, pixels.count, behind);
+  for (std::size_t i = 0; i < pixels.count; ++i) shares[i] = shares[i] > 0.0f ? shares[i] : 1.0f;
+  MixColors(shares.data(), pixels.count, behind, block);
 }
 
 // Texels whose colour no step changes keep their bits, those of alpha 0 too.
@@ -178,11 +202,18 @@ void PaintBlock(std::span<const PointStep> steps, std::size_t first, std::size_t
   OklabBlock given, block, before;
   internal::OklabFromTexels(texels, count, given);
   block = given;
+  const Pixels pixels{first, count, texels};
+  Surface surface;
   for (const PointStep& one : steps) {
-    const bool is_weighed = IsWeighed(one);
-    if (is_weighed) before = block;
+    Surface::Shares shares;
+    const Weight weight = WeightsOf(one, pixels, surface, shares.data());
+    if (weight == Weight::kNothing) continue;
+    if (one.behind) surface.Of(one, pixels);
+    const bool mixes_behind = one.behind && surface.kinds().is_mixed;
+    if (weight == Weight::kParts || mixes_behind) before = block;
     one.apply(first, count, block);
-    if (is_weighed) Weigh(one, {first, count, texels}, before, block);
+    if (mixes_behind) MixBehind(one, pixels, surface, before, block);
+    if (weight == Weight::kParts) MixColors(shares.data(), count, before, block);
   }
   internal::PutBlock(given, 1.0f, nullptr, count, block, texels);
 }

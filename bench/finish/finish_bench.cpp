@@ -1,6 +1,10 @@
-// The time of each finishing effect at 1080p, as a ratio to a copy of the picture's bytes in the same run. Prints the
-// table of docs/finish.md. Where OpenCV is installed (libopencv-imgproc-dev), its filters are timed, too.
+// The time of each finishing effect at 1080p, as a ratio to a copy of the bytes that it reads and writes, in the same
+// run and on the same threads: the picture and the layers that the effect needs. Prints the table of docs/finish.md.
+// Where OpenCV is installed (libopencv-imgproc-dev, libopencv-contrib-dev), its filters are timed, too.
 //   finish_bench [RUNS [NAME]]    only work whose name has NAME in it
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -46,6 +50,39 @@ Spread Timed(int runs, const Work& work) {
   return Timed(runs, work, [] {});
 }
 
+// Copies of one picture and of layers of its size, made by all threads.
+class Copies {
+ public:
+  Copies(const Picture& picture, const GuideSet& guides) : guides_(guides), picture_(picture), texels_(picture.rgba) {}
+
+  Spread Time(int runs, const LayerSet& layers) {
+    std::vector<std::span<const float>> planes;
+    for (const LayerInfo& info : AllLayers()) {
+      for (int c = 0; layers.Has(info.layer) && c < ChannelCount(info.layer); ++c)
+        planes.push_back(guides_.Plane(info.layer, c));
+    }
+    planes_.resize(std::max(planes_.size(), planes.size()));
+    for (std::size_t i = 0; i < planes.size(); ++i) planes_[i].resize(planes[i].size());
+    return Timed(runs, [&] {
+      Copy(picture_.rgba.data(), picture_.rgba.size(), texels_.data());
+      for (std::size_t i = 0; i < planes.size(); ++i) Copy(planes[i].data(), planes[i].size(), planes_[i].data());
+    });
+  }
+
+ private:
+  template <class Value>
+  static void Copy(const Value* from, std::size_t count, Value* to) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1 << 18), [&](const auto& part) {
+      std::memcpy(to + part.begin(), from + part.begin(), part.size() * sizeof(Value));
+    });
+  }
+
+  const GuideSet& guides_;
+  const Picture& picture_;
+  std::vector<std::uint16_t> texels_;
+  std::vector<std::vector<float>> planes_;
+};
+
 int Run(int runs, const std::string& part) {
   Stylizer stylizer;
   SceneSettings scene;
@@ -58,14 +95,13 @@ int Run(int runs, const std::string& part) {
   const GuideSet& guides = *layers->state()->guides;
   const FinishFrame frame{&guides, MeasureFinish(guides), 1.0, 0};
 
-  std::vector<std::uint16_t> copy(painted->rgba.size());
-  const Spread plain = Timed(runs, [&] { std::memcpy(copy.data(), painted->rgba.data(), 2 * copy.size()); });
-  std::printf("%-34s %7s %16s %8s\n", "work", "ms", "spread", "copies");
-  const auto print = [&](const std::string& name, const Spread& spread) {
-    std::printf("%-34s %7.1f %7.1f … %6.1f %8.1f\n", name.c_str(), spread.median, spread.least, spread.most,
-                spread.median / plain.median);
+  Copies copies(*painted, guides);
+  const Spread plain = copies.Time(runs, {});
+  std::printf("%-36s %7s %16s %7s %7s\n", "work", "ms", "spread", "copies", "copy");
+  const auto print = [&](const std::string& name, const Spread& spread, const Spread& copy) {
+    std::printf("%-36s %7.1f %7.1f … %6.1f %7.1f %7.1f\n", name.c_str(), spread.median, spread.least, spread.most,
+                spread.median / copy.median, copy.median);
   };
-  print("copy of the picture, one thread", plain);
   const auto measure = [&](const std::string& name, const std::vector<FinishPass>& passes) {
     if (name.find(part) == std::string::npos) return 0.0;
     std::vector<FinishStep> steps;
@@ -77,8 +113,11 @@ int Run(int runs, const std::string& part) {
           std::fprintf(stderr, "%s: %s\n", name.c_str(), done.error().message.c_str()), std::exit(3);
       }
     };
+    LayerSet needed;
+    for (const FinishPass& pass : passes) needed.Add(RequiredLayers(pass));
+    const Spread copy = copies.Time(runs, needed);
     const Spread spread = Timed(runs, apply, [&] { picture.rgba = painted->rgba; });
-    print(name, spread);
+    print(name, spread, copy);
     return spread.median;
   };
   const int picture_width = painted->width, picture_height = painted->height;
@@ -146,28 +185,32 @@ int Run(int runs, const std::string& part) {
     const auto preset = LoadFinishPreset(file);
     if (preset) measure("preset " + preset->name, preset->passes);
   }
-  if (!part.empty()) return 0;  // the rest compares all of it with others
   std::vector<float> rgb;
   for (std::size_t i = 0; i < painted->rgba.size(); ++i)
     if (i % 4 != 3) rgb.push_back(static_cast<float>(painted->rgba[i]) / 65535.0f);
   const auto against = [&](const Rival& rival, double ours, const char* name) {
+    if (!(ours > 0.0)) return;
     const Spread spread = Timed(std::min(runs, 5), rival.run);
-    print(rival.name, spread);
+    print(rival.name, spread, plain);
     std::printf("  %s takes %.2f of that\n", name, ours / spread.median);
   };
   against(PlainKuwahara(picture_width, picture_height, rgb), kuwahara, "smooth kuwahara");
-  const auto rivals = OpenCvRivals(picture_width, picture_height, rgb);
-  if (rivals.size() == 3) {
-    against(rivals[0], bilateral, "smooth bilateral, 4 passes");
-    against(rivals[1], guided, "smooth guided");
-    against(rivals[2], dog, "edges of light");
+  for (const Rival& rival : OpenCvRivals(picture_width, picture_height, rgb)) {
+    const bool is_pair = rival.filter == Rival::Filter::kGaussians;
+    const double ours = is_pair ? dog : rival.filter == Rival::Filter::kGuided ? guided : bilateral;
+    against(rival, ours,
+            is_pair                                  ? "edges of light"
+            : rival.filter == Rival::Filter::kGuided ? "smooth guided"
+                                                     : "smooth bilateral, 4 passes");
+  }
+  if (dog > 0.0) {
     internal::FloatPlane plane(rgb.size() / 3);
     for (std::size_t i = 0; i < plane.size(); ++i) plane[i] = rgb[3 * i];
     const Spread pair = Timed(runs, [&] {
       internal::ForEachGaussianPair(plane, picture_width, picture_height, 2.0 / 2.055, 21.0f, -20.0f, 1.0f,
                                     [](int, const float*) {});
     });
-    print("two Gaussians of edges alone", pair);
+    print("two Gaussians of edges alone", pair, plain);
   }
   return 0;
 }

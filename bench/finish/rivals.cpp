@@ -9,6 +9,9 @@
 
 #ifdef SCUMBLE_BENCH_OPENCV
 #include <opencv2/imgproc.hpp>
+#ifdef SCUMBLE_BENCH_XIMGPROC
+#include <opencv2/ximgproc.hpp>
+#endif
 #endif
 
 namespace scumble {
@@ -44,19 +47,26 @@ std::vector<Rival> OpenCvRivals(int width, int height, const std::vector<float>&
   cv::Mat plane;
   cv::extractChannel(picture, plane, 0);
   const auto out = std::make_shared<cv::Mat>();
-  return {{"cv::bilateralFilter, d 13", [=] { cv::bilateralFilter(picture, *out, 13, 0.08, 3.0); }},
-          {"guided, of cv::boxFilter", [=] { GuidedByBoxes(picture, 9, 0.0016f, *out); }},
-          {"cv::GaussianBlur, two", [=] {
-             cv::GaussianBlur(plane, *out, {}, 2.0 / 2.055);
-             cv::GaussianBlur(plane, *out, {}, 3.2 / 2.055);
-           }}};
+  using Filter = Rival::Filter;
+  std::vector<Rival> rivals = {
+      {Filter::kBilateral, "cv::bilateralFilter, d 13", [=] { cv::bilateralFilter(picture, *out, 13, 0.08, 3.0); }},
+      {Filter::kGuided, "guided, of cv::boxFilter", [=] { GuidedByBoxes(picture, 9, 0.0016f, *out); }},
+      {Filter::kGaussians, "cv::GaussianBlur, two", [=] {
+         cv::GaussianBlur(plane, *out, {}, 2.0 / 2.055);
+         cv::GaussianBlur(plane, *out, {}, 3.2 / 2.055);
+       }}};
+#ifdef SCUMBLE_BENCH_XIMGPROC
+  rivals.push_back({Filter::kGuided, "cv::ximgproc::guidedFilter",
+                    [=] { cv::ximgproc::guidedFilter(picture, picture, *out, 4, 0.0016); }});
+#endif
+  return rivals;
 }
 #else
 std::vector<Rival> OpenCvRivals(int, int, const std::vector<float>&) { return {}; }
 #endif
 
 Rival PlainKuwahara(int width, int height, const std::vector<float>& rgb) {
-  return {"kuwahara, radius 6, plain loop", [=] {
+  return {Rival::Filter::kKuwahara, "kuwahara, radius 6, plain loop", [=] {
             constexpr int kRadius = 6, kSectors = 8;
             constexpr float kZeta = 1.0f / 3.0f, kEta = 3.774f;
             std::vector<float> out(rgb.size());
@@ -91,7 +101,7 @@ Rival PlainKuwahara(int width, int height, const std::vector<float>& rgb) {
                   for (const auto& one : sums) {
                     const float r = one[0] / one[4], g = one[1] / one[4], b = one[2] / one[4];
                     const float variance = std::max(0.0f, one[3] / one[4] - (r * r + g * g + b * b)) * 65025.0f;
-                    const float w = 1.0f / (1.0f + variance * variance * variance * variance);
+                    const float w = 1.0f / (1.0f + variance * variance * variance);
                     mean[0] += w * r, mean[1] += w * g, mean[2] += w * b, mean[3] += w;
                   }
                   for (std::size_t c = 0; c < 3; ++c)

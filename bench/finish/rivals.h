@@ -9,11 +9,14 @@
 namespace scumble {
 
 struct Rival {
+  enum class Filter { kBilateral, kGuided, kGaussians, kKuwahara };
+
+  Filter filter;  // whose work it does
   std::string name;
   std::function<void()> run;
 };
 
-// Of a picture of that size. Empty without OpenCV.
+// Of a picture of that size. Those that OpenCV has on this system; ximgproc's guided filter is in its contrib part.
 std::vector<Rival> OpenCvRivals(int width, int height, const std::vector<float>& rgb);
 
 // An anisotropic Kuwahara filter of radius 6 without borders, pixel by pixel and tap by tap, in floats, without the

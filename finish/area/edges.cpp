@@ -1,13 +1,13 @@
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <vector>
 
-#include "core/image/exact_math.h"
+#include "core/filter/wide_loops.h"
 #include "finish/area/area_effects.h"
 #include "finish/area/edges_flow.h"
 #include "finish/area/gaussian_rows.h"
 #include "finish/area/oklab_blocks.h"
+#include "finish/tone/fast_tanh.h"
 #include "finish/tone/point_effect.h"
 
 namespace scumble::internal {
@@ -50,11 +50,6 @@ void ForEachResponse(const EdgesPass& pass, const FinishFrame& frame, const Floa
   });
 }
 
-float Tanh(float x) {
-  const double e = Exp2(2.0 * double(std::max(x, -20.0f)) * kLog2OfE);
-  return static_cast<float>((e - 1.0) / (e + 1.0));
-}
-
 // Whether a value is below `limit`. No early exit, so that it vectorises.
 bool AnyBelow(const float* values, std::size_t count, float limit) {
   int below = 0;
@@ -62,11 +57,18 @@ bool AnyBelow(const float* values, std::size_t count, float limit) {
   return below != 0;
 }
 
-// The share of ink, or of paper.
-float ShareOf(const EdgesPass& pass, float response) {
-  const float below = response - static_cast<float>(pass.threshold);
-  const float ink = below >= 0.0f ? 0.0f : -Tanh(static_cast<float>(pass.slope) * below);
-  return pass.draw == EdgesPass::Draw::kPaint ? 1.0f - ink : ink;
+// The shares of ink, or of paper, that responses mean.
+struct Inking {
+  float threshold, slope, strength;
+  bool is_paper;
+};
+
+SCUMBLE_WIDE_LOOPS void TakeShares(const Inking& inking, const float* responses, std::size_t count, float* shares) {
+  const auto [threshold, slope, strength, is_paper] = inking;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float below = responses[i] - threshold, ink = below < 0.0f ? FastTanh(-slope * below) : 0.0f;
+    shares[i] = (is_paper ? 1.0f - ink : ink) * strength;
+  }
 }
 
 }  // namespace
@@ -79,19 +81,21 @@ void DrawEdges(const EdgesPass& pass, double strength, std::span<const std::uint
   const bool of_paint = !on_paper && pass.color != OutlinePass::Color::kInk;
   // As outlines have it: a third as light and half as colourful.
   const float chroma = pass.color == OutlinePass::Color::kComplement ? -0.5f : 0.5f;
+  const Inking inking{static_cast<float>(pass.threshold), static_cast<float>(pass.slope), static_cast<float>(strength),
+                      on_paper};
   const auto draw = [&](std::size_t first, std::size_t count, const float* responses) {
-    if (!on_paper && !AnyBelow(responses, count, static_cast<float>(pass.threshold))) return;
+    if (!on_paper && !AnyBelow(responses, count, inking.threshold)) return;
+    std::array<float, kOklabBlock> shares;
+    TakeShares(inking, responses, count, shares.data());
     // Few pixels have ink: these alone are mixed, side by side.
     std::uint16_t* const texels = picture.rgba.data() + 4 * first;
-    std::array<std::uint16_t, 4 * kOklabBlock> made{};
+    std::array<std::uint16_t, 4 * kOklabBlock> made;
     std::array<std::uint16_t, kOklabBlock> where;
     std::array<float, kOklabBlock> share;
     std::size_t found = 0;
     for (std::size_t i = 0; i < count; ++i) {
-      if (!on_paper && !(responses[i] < static_cast<float>(pass.threshold))) continue;
-      if (texels[4 * i + 3] == 0 || (!only.empty() && !only[first + i])) continue;
-      share[found] = ShareOf(pass, responses[i]) * static_cast<float>(strength);
-      if (!(share[found] > 0.0f)) continue;
+      if (!(shares[i] > 0.0f) || texels[4 * i + 3] == 0 || (!only.empty() && !only[first + i])) continue;
+      share[found] = shares[i];
       std::copy_n(texels + 4 * i, 4, made.data() + 4 * found);
       where[found++] = static_cast<std::uint16_t>(i);
     }

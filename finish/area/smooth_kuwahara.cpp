@@ -75,7 +75,7 @@ HWY_INLINE void AddTo(KuwaharaSector& sector, Vector weight, Vector l, Vector a,
   sector.weight = hn::Add(sector.weight, weight);
 }
 
-// The mean of the sectors' means, each by 1 / (1 + deviation^8), deviations being 0 … 255. One that lies outside of
+// The mean of the sectors' means, each by 1 / (1 + deviation^6), deviations being 0 … 255. One that lies outside of
 // what is looked at for the most part has too little in it to be called even.
 HWY_INLINE void Judge(const KuwaharaSector* sectors, const KuwaharaRun& run, std::size_t p) {
   const Floats d;
@@ -87,8 +87,8 @@ HWY_INLINE void Judge(const KuwaharaSector* sectors, const KuwaharaRun& run, std
                mean_b = Lane(sectors[k].b) * per_weight;
     const Lane variance =
         Max(0.0f, Lane(sectors[k].square) * per_weight - (mean_l * mean_l + mean_a * mean_a + mean_b * mean_b));
-    Lane power = variance * (255.0f * 255.0f);
-    for (int i = 0; i < 2; ++i) power = power * power;
+    const Lane square = variance * (255.0f * 255.0f);
+    const Lane power = square * square * square;
     const Choice is_poor = Less(sectors[k].weight, most * 0.25f);
     const Lane weight = Select(is_poor, 0.0f, Lane(1.0f) / (Lane(1.0f) + power));
     sum = sum + weight;

@@ -45,6 +45,7 @@ THIRD_PARTY = {
     "Imath/": {"io"},
     "png.h": {"io"},
     "zip.h": {"io"},
+    "lcms2.h": {"io"},
     "zlib.h": {"io"},
     "hpdf.h": {"style"},
     "embree": {"guidegen"},

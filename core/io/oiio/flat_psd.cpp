@@ -128,20 +128,21 @@ std::string Resource(Size id, const std::string& bytes) {
   return "8BIM" + AsBytes(id, 2) + AsBytes(0, 2) + WithLength(bytes, 4);
 }
 
-// Keeps two resources: the resolution and an indexed picture's transparent colour. Without the latter OpenImageIO 2.4
-// reports alpha but writes none. A colour that no pixel has makes it write 1.
+// Keeps three resources: the resolution, the colour profile and an indexed picture's transparent colour. Without the
+// latter OpenImageIO 2.4 reports alpha but writes none. A colour that no pixel has makes it write 1.
 std::string KeptResources(IOProxy& file, const Header& header, Size at, Size end) {
-  constexpr Size kResolution = 1005, kTransparent = 1047, kNoColor = 256;
-  std::string resolution, transparent = Resource(kTransparent, AsBytes(kNoColor, 2));
+  constexpr Size kResolution = 1005, kProfile = 1039, kTransparent = 1047, kNoColor = 256;
+  std::string resolution, profile, transparent = Resource(kTransparent, AsBytes(kNoColor, 2));
   while (at + 12 <= end) {
     const Size id = NumberAt(file, at + 4, 2), name_bytes = NumberAt(file, at + 6, 1);
     const Size data = at + 6 + (name_bytes + 2) / 2 * 2 + 4, length = NumberAt(file, data - 4, 4);
     if (data + length > end) break;
     if (id == kResolution && length >= 16) resolution = Resource(id, BytesAt(file, data, 16));
+    if (id == kProfile) profile = Resource(id, BytesAt(file, data, length) + std::string(length % 2, '\0'));
     if (id == kTransparent && length >= 2) transparent = Resource(id, BytesAt(file, data, 2));
     at = data + length + length % 2;
   }
-  return resolution + (header.mode == kIndexed ? transparent : "");
+  return resolution + profile + (header.mode == kIndexed ? transparent : "");
 }
 
 // Whether the channel after the colours is the flattened picture's alpha: then the number of layers is negative.

@@ -2,10 +2,13 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cstddef>
+#include <span>
 #include <string_view>
 #include <utility>
 
 #include "core/image/color.h"
+#include "core/io/color_profile.h"
 #include "core/io/file/atomic_file.h"
 #include "core/io/format_dispatch.h"
 #include "core/io/guides/guide_header.h"
@@ -62,6 +65,20 @@ Expected<ColorChannels> FindColorChannels(const OIIO::ImageSpec& spec, const std
   }
   if (spec.nchannels >= 3) return ColorChannels{0, 1, 2, spec.nchannels >= 4 ? 3 : -1};
   return ColorChannels{0, 0, 0, spec.nchannels == 2 ? 1 : -1};
+}
+
+// Whether colours are as they would be without alpha, as OpenInput asks for. Three readers give it and do not say so;
+// the others say it, or give colours times alpha, as EXR has them.
+bool IsStraight(const OIIO::ImageSpec& spec, std::string_view reader) {
+  const bool is_silent = reader == "psd" || reader == "jpeg2000" || reader == "bmp";
+  return is_silent || spec.get_int_attribute("oiio:UnassociatedAlpha", 0) != 0;
+}
+
+// The file's ICC profile; empty: none.
+std::span<const std::byte> ProfileOf(const OIIO::ImageSpec& spec) {
+  const OIIO::ParamValue* const found = spec.find_attribute("ICCProfile");
+  if (!found || found->type().basetype != OIIO::TypeDesc::UINT8) return {};
+  return {static_cast<const std::byte*>(found->data()), found->type().size()};
 }
 
 bool IsLinear(const OIIO::ImageSpec& spec) {
@@ -221,15 +238,16 @@ Expected<Picture> ReadFrom(OIIO::ImageInput& input, const std::string& name, con
     return InputError(name + " has its colours " + std::to_string(range.count()) +
                       " channels apart, too many for its size; write R, G, B and A side by side");
   }
-  const Decoder decoder{Within(channels, range),
-                        spec.get_int_attribute("oiio:UnassociatedAlpha", 0) != 0 || channels.a < 0};
+  const Decoder decoder{Within(channels, range), channels.a < 0 || IsStraight(spec, input.format_name())};
   if (IsLinear(spec)) {
     return ReadPixels<float>(input, name, OIIO::TypeDesc::FLOAT, range,
                              [&](const float* pixel, std::uint16_t* out) { decoder.Linear(pixel, out); });
   }
-  return ReadPixels<std::uint16_t>(
-      input, name, OIIO::TypeDesc::UINT16, range,
-      [&](const std::uint16_t* pixel, std::uint16_t* out) { decoder.Encoded(pixel, out); });
+  auto picture =
+      ReadPixels<std::uint16_t>(input, name, OIIO::TypeDesc::UINT16, range,
+                                [&](const std::uint16_t* pixel, std::uint16_t* out) { decoder.Encoded(pixel, out); });
+  if (const auto profile = ProfileOf(spec); picture && !profile.empty()) internal::ConvertToSrgb(profile, *picture);
+  return picture;
 }
 
 // The JPEG reader fills missing data with grey and reports no error. So the markers are followed here, from segment to

@@ -8,10 +8,12 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "core/image/guides.h"
+#include "core/io/color_profile.h"
 #include "core/io/picture_rules.h"
 
 namespace scumble::internal {
@@ -77,6 +79,7 @@ struct Reading {
   png_structp png = nullptr;
   png_infop info = nullptr;
   int channels = 0, bits = 0;
+  std::vector<std::byte> profile;  // ICC
   ~Reading() { png_destroy_read_struct(&png, &info, nullptr); }
 };
 
@@ -89,6 +92,14 @@ bool ReadHead(Reading& reading, Picture& picture) {
   const std::int64_t width = png_get_image_width(png, info), height = png_get_image_height(png, info);
   if (!IsPlain(png, info) || !IsOfASizeThatWeTake(width, height)) return false;
   picture.width = static_cast<int>(width), picture.height = static_cast<int>(height);
+  png_charp name = nullptr;
+  int packing = 0;
+  png_bytep profile = nullptr;
+  png_uint_32 profile_bytes = 0;
+  if (png_get_iCCP(png, info, &name, &packing, &profile, &profile_bytes) != 0) {
+    const auto bytes = std::as_bytes(std::span(profile, profile_bytes));
+    reading.profile.assign(bytes.begin(), bytes.end());
+  }
   png_set_expand(png);  // palettes to colours, one to four bits to eight, a transparent colour to alpha
   png_set_interlace_handling(png);
   png_read_update_info(png, info);
@@ -159,6 +170,7 @@ std::optional<Picture> ReadPlainPng(std::span<const std::byte> bytes) {
     Spread(samples, reading.channels, From8, picture);
   else
     Spread(samples, reading.channels, From16, picture);
+  if (!reading.profile.empty()) ConvertToSrgb(reading.profile, picture);
   return picture;
 }
 

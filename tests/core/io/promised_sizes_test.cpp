@@ -367,6 +367,22 @@ TEST(PromisesOfPsd, AlphaAndResolutionAreKept) {
   }
 }
 
+// Colours of transparent pixels are stored over white.
+TEST(PromisesOfPsd, ColoursUnderAlphaAreThoseOfThePainting) {
+  PsdFile file{.channels = 4, .layers = PsdFile::Layers(1, -1, 2)};
+  file.pixels.assign(2, 0);  // not packed
+  for (const int color : {200, 100, 50}) {
+    for (const int alpha : {51, 204}) file.pixels += static_cast<char>((color * alpha + 255 * (255 - alpha)) / 255);
+  }
+  file.pixels += std::string{'\x33', '\xcc'};
+  const auto picture = DecodePicture(file.Bytes(), "p.psd");
+  ASSERT_TRUE(picture) << picture.error().message;
+  for (int x = 0; x < 2; ++x) {
+    const int expected[] = {200, 100, 50, x == 0 ? 51 : 204};
+    for (int c = 0; c < 4; ++c) EXPECT_NEAR(picture->At(x, 0)[c] / 257.0, expected[c], x == 0 ? 5.0 : 1.5) << x << c;
+  }
+}
+
 // By the palette, 256 values of red, then of green, then of blue; opaque but for the transparent colour.
 TEST(PromisesOfPsd, IndexedColoursAreThoseOfThePalette) {
   std::string palette(768, '\0');

@@ -1,0 +1,17 @@
+// Pictures whose file says by an ICC profile what its numbers mean.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "scumble/picture.h"
+
+namespace scumble::internal {
+
+// Converts a picture's codes from the profile's to sRGB's, by Little CMS, relative colorimetric with black point
+// compensation. Colours that sRGB does not have become its nearest. Alpha stays. Where the profile is sRGB, to half a
+// code of 8 bits, the codes stay. A profile that is broken, or for other than RGB and grey, is not applied, as in web
+// browsers. `picture` holds what the file has in each channel; of grey files, three times the same.
+void ConvertToSrgb(std::span<const std::byte> profile, Picture& picture);
+
+}  // namespace scumble::internal
