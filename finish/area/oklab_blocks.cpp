@@ -66,7 +66,7 @@ FloatPlane ToneOf(EdgesPass::Tone of, const FinishFrame& frame, const Picture& p
     ForEachOklabBlock(pixels, [&](std::size_t first, std::size_t count) {
       for (std::size_t i = first; i < first + count; ++i) covered[i] = coverage[i] > 0.0f ? 1.0f : 0.0f;
     });
-    even = EvenedLight(light, covered, guides.width(), guides.height(),
+    even = EvenedLight(light, {covered}, guides.width(), guides.height(),
                        kLightNoise * static_cast<float>(frame.measures.bright), frame.Apart());
     light = even;
   }
