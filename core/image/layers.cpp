@@ -62,7 +62,10 @@ constexpr Alias kAliases[] = {
     {"depth", Layer::kDepth, 0},        {"depth.V", Layer::kDepth, 0},       {"IndexOB.X", Layer::kObject, 0},
     {"IndexMA.X", Layer::kMaterial, 0}, {"P.X", Layer::kPosition, 0},        {"P.Y", Layer::kPosition, 1},
     {"P.Z", Layer::kPosition, 2},       {"DiffCol.R", Layer::kAlbedo, 0},    {"DiffCol.G", Layer::kAlbedo, 1},
-    {"DiffCol.B", Layer::kAlbedo, 2},
+    {"DiffCol.B", Layer::kAlbedo, 2},   {"C.A", Layer::kCoverage, 0},        {"N.R", Layer::kNormal, 0},
+    {"N.G", Layer::kNormal, 1},         {"N.B", Layer::kNormal, 2},          {"normal.R", Layer::kNormal, 0},
+    {"normal.G", Layer::kNormal, 1},    {"normal.B", Layer::kNormal, 2},     {"normals.R", Layer::kNormal, 0},
+    {"normals.G", Layer::kNormal, 1},   {"normals.B", Layer::kNormal, 2},
 };
 
 bool EqualIgnoringCase(std::string_view a, std::string_view b) {

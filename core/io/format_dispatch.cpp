@@ -17,6 +17,7 @@
 #include "core/io/channel_file.h"
 #include "core/io/file/atomic_file.h"
 #include "core/io/file/readable_file.h"
+#include "core/io/guides/normal_space.h"
 #include "core/io/guides/own_guides.h"
 #include "core/io/library.h"
 #include "core/io/png/png_integrity.h"
@@ -150,9 +151,14 @@ Expected<ChannelImage> ReadChannels(const std::filesystem::path& path) {
 }
 
 Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideReadOptions& options) {
-  if (auto plain = internal::ReadPlainGuides(path, options)) return *std::move(plain);
-  SCUMBLE_ASSIGN(const Formats* const formats, LoadFormatsToRead(path));
-  return formats->read_guides(path, options);
+  auto guides = internal::ReadPlainGuides(path, options);
+  if (!guides) {
+    SCUMBLE_ASSIGN(const Formats* const formats, LoadFormatsToRead(path));
+    guides = formats->read_guides(path, options);
+  }
+  // Guides of ours, and of Blender's renders, have a camera.
+  if (*guides && !(*guides)->camera) SCUMBLE_RETURN_IF_ERROR(internal::CheckNormalSpace(**guides, path.string()));
+  return *std::move(guides);
 }
 
 Expected<GuideFileInfo> InspectGuides(const std::filesystem::path& path) {

@@ -1,0 +1,21 @@
+// Whether normals and depths of a file are of one view.
+#pragma once
+
+#include <string>
+
+#include "core/image/guides.h"
+#include "scumble/status.h"
+
+namespace scumble::internal {
+
+// By how many degrees the way in which depth falls is turned from the way in which normals point, in the picture: the
+// mean over pixels that are not seen from the front. Under any camera, perspective or orthographic, both are one way
+// where normals are in view space and face the eye; 0 to a few degrees as surfaces are smoothed or bumpy. -1 where too
+// few pixels tell. The guides hold normals and depths.
+double NormalsAgainstDepth(const GuideSet& guides);
+
+// kInput where the guides' normals clearly do not fit their depth: those in world space, which renderers often write,
+// would paint another picture without a word. What lacks a layer that tells is not looked at.
+Status CheckNormalSpace(const GuideSet& guides, const std::string& name);
+
+}  // namespace scumble::internal
