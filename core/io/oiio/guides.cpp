@@ -59,6 +59,15 @@ void FindManifests(const OIIO::ImageSpec& spec, FileContents& contents) {
   }
 }
 
+// The name that tells what a channel is: "N.X" for the X of a part that is called N, or the channel's own.
+std::string FullName(const std::string& part, const std::string& channel) {
+  if (part.empty() || channel.find('.') != std::string::npos) return channel;
+  const std::string full = part + "." + channel;
+  const auto of_full = ParseChannelName(full);
+  const bool is_known = (of_full && of_full->prefix.empty()) || ParseMatteChannel(full);
+  return is_known || (of_full && !ParseChannelName(channel)) ? full : channel;
+}
+
 Expected<FileContents> Survey(OIIO::ImageInput& input, const std::string& name) {
   FileContents contents;
   contents.spec = input.spec(0);
@@ -70,7 +79,8 @@ Expected<FileContents> Survey(OIIO::ImageInput& input, const std::string& name) 
       return InputError(name + ": its parts differ in size; write all guides at one size");
     }
     for (int c = 0; c < spec.nchannels; ++c) {
-      const std::string& channel = spec.channelnames[c];
+      const std::string part(spec.get_string_attribute("oiio:subimagename"));
+      const std::string channel = FullName(part, spec.channelnames[c]);
       names.push_back(channel);
       contents.has_half = contents.has_half || spec.channelformat(c) == OIIO::TypeDesc::HALF;
       if (channel.find("Combined.R") != std::string::npos) contents.from_blender = true;

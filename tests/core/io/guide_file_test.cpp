@@ -460,13 +460,14 @@ TEST(GuideFile, OverscanIsCutOff) {
 }
 
 // Coverage in a part of 3×2 pixels, normals in another that holds the lower row only.
-void WriteTwoParts(const fs::path& path) {
+void WriteTwoParts(const fs::path& path, const std::string& part = "shape",
+                   const std::vector<std::string>& channels = {"normal.X", "normal.Y", "normal.Z"}) {
   std::vector<OIIO::ImageSpec> specs = {OIIO::ImageSpec(3, 2, 1, OIIO::TypeDesc::FLOAT),
                                         OIIO::ImageSpec(3, 1, 3, OIIO::TypeDesc::FLOAT)};
   specs[0].channelnames = {"A"};
   specs[0].attribute("oiio:subimagename", "cover");
-  specs[1].channelnames = {"normal.X", "normal.Y", "normal.Z"};
-  specs[1].attribute("oiio:subimagename", "shape");
+  specs[1].channelnames = channels;
+  specs[1].attribute("oiio:subimagename", part);
   specs[1].y = 1;
   specs[1].full_height = 2;
   auto output = OIIO::ImageOutput::create(path.string());
@@ -481,12 +482,17 @@ void WriteTwoParts(const fs::path& path) {
 TEST(GuideFile, PartsOfOneFileBelongTogether) {
   const TemporaryFolder folder;
   WriteTwoParts(folder / "parts.exr");
-  const auto read = ReadGuides(folder / "parts.exr", OnlyNormals());
-  ASSERT_TRUE(read) << read.error().message;
-  ASSERT_EQ(read->height(), 2);
-  for (std::size_t i = 0; i < 6; ++i) {
-    EXPECT_EQ(read->Plane(Layer::kCoverage)[i], i < 3 ? 0.0f : 1.0f);
-    EXPECT_EQ(read->Vec3(Layer::kNormal, i), glm::vec3(0, i < 3 ? 0 : 1, 0));
+  WriteTwoParts(folder / "N.exr", "N", {"X", "Y", "Z"});  // Z by itself would be depth
+  WriteTwoParts(folder / "colors.exr", "normals", {"R", "G", "B"});
+  for (const char* const name : {"parts.exr", "N.exr", "colors.exr"}) {
+    const auto read = ReadGuides(folder / name, OnlyNormals());
+    ASSERT_TRUE(read) << read.error().message;
+    ASSERT_EQ(read->height(), 2);
+    EXPECT_FALSE(read->Has(Layer::kDepth));
+    for (std::size_t i = 0; i < 6; ++i) {
+      EXPECT_EQ(read->Plane(Layer::kCoverage)[i], i < 3 ? 0.0f : 1.0f);
+      EXPECT_EQ(read->Vec3(Layer::kNormal, i), glm::vec3(0, i < 3 ? 0 : 1, 0));
+    }
   }
 }
 
