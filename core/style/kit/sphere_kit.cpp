@@ -392,6 +392,7 @@ Expected<std::vector<fs::path>> WriteSphereKit(const fs::path& folder, std::vect
 
 std::vector<std::string> UnlistedGuides(const fs::path& folder, const std::vector<fs::path>& written) {
   std::vector<std::string> unlisted;
+  if (std::find(written.begin(), written.end(), folder / "style.toml") != written.end()) return unlisted;
   const auto bytes = ReadWholeFile(folder / "style.toml", kMaxStyleBytes);
   if (!bytes) return unlisted;
   const std::string text(reinterpret_cast<const char*>(bytes->data()), bytes->size());

@@ -36,8 +36,8 @@ Expected<std::vector<std::filesystem::path>> WriteSphereKit(const std::filesyste
                                                             std::vector<KitLight> lights,
                                                             const KitOptions& options = {});
 
-// The names of those guides among the `written` files of WriteSphereKit that no [[exemplar]] of style.toml has: a whole
-// template painted for them would show its margin.
+// The names of those guides among the `written` files of WriteSphereKit that no [[exemplar]] of a style.toml that was
+// kept has: a template painted for them is no exemplar yet.
 std::vector<std::string> UnlistedGuides(const std::filesystem::path& folder,
                                         const std::vector<std::filesystem::path>& written);
 

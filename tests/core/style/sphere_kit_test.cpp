@@ -142,6 +142,11 @@ TEST(SphereKit, AStyleFileWithoutExemplarsGetsThoseOfTheKit) {
   ExpectRefusal(LoadStyle(folder.path()), {"[[exemplar]], image = \"lit.png\" and guides = \"guides.exr\" under it"});
   ASSERT_TRUE(WriteFileAtomically(folder / "style.toml", "name = \n"));
   ExpectRefusal(WriteSphereKit(folder.path(), {KitLight{0, 0, SphereGuides(16)}}), {"style.toml:1", "TOML"});
+  // A new file lists four lights, the fifth as a comment.
+  const TemporaryFolder many;
+  const auto five = WriteSphereKit(many.path(), std::vector<KitLight>(5, KitLight{0, 0, SphereGuides(16)}));
+  ASSERT_TRUE(five) << five.error().message;
+  EXPECT_TRUE(UnlistedGuides(many.path(), *five).empty());
 }
 
 TEST(SphereKit, ALightMustNotTakeThePaintingOfAnother) {
