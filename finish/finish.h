@@ -41,9 +41,9 @@ FinishMeasures MeasureFinish(const GuideSet& guides);
 // are not 0. 0 where there are none. The same on any number of threads.
 ColorSpread MeasureColors(const Picture& picture, std::span<const std::uint8_t> only = {});
 
-// A threshold texture from the greys of a square picture that repeats, strokes along its rows: of pixels of equal grey
-// each has the mean of their ranks. Smaller levels are means of four, ranked anew. kInput where the picture is no
-// square of 16 pixels or more.
+// A threshold texture from the greys of a square picture that repeats, strokes along its rows; what is transparent is
+// laid on white. Of pixels of equal grey each has the mean of their ranks. Smaller levels are means of four, ranked
+// anew. kInput where the picture is no square of 16 pixels or more, or has one grey all over.
 Expected<HatchTexture> MakeHatchTexture(const Picture& picture);
 
 struct FinishStep {

@@ -43,6 +43,14 @@ Expected<ColorRamp> ColorRampOf(const Picture& picture) {
     return InputError("the ramp is " + std::to_string(picture.width) + "×" + std::to_string(picture.height) +
                       " pixels: expected at most " + std::to_string(kMostRampTexels) + " a side; scale it down");
   }
+  for (std::size_t i = 3; i < picture.rgba.size(); i += 4) {
+    if (picture.rgba[i] == 65535) continue;
+    const std::size_t texel = i / 4, width = std::size_t(picture.width);
+    return InputError("the ramp is transparent at x=" + std::to_string(texel % width) +
+                      ", y=" + std::to_string(texel / width) +
+                      ", where it has no colour of its own: expected opaque colours; crop the picture to them, or "
+                      "flatten it");
+  }
   ColorRamp ramp{picture.width, picture.height, {}};
   for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
     ramp.colors.push_back({picture.rgba[i], picture.rgba[i + 1], picture.rgba[i + 2]});

@@ -18,7 +18,8 @@ bool IsRampText(const std::string& value);
 // "#202040 #fff4d0 / #405060 #c0d0e0": colours from dark to light, rows of equally many. kUsage says what is wrong.
 Expected<ColorRamp> ParseColorRamp(const std::string& text);
 
-// Every texel is a colour, row 0 the first; alpha is ignored. kInput where there are more than kMostRampTexels a side.
+// Every texel is a colour, row 0 the first. kInput where one is transparent, or there are more than kMostRampTexels a
+// side.
 Expected<ColorRamp> ColorRampOf(const Picture& picture);
 
 }  // namespace scumble

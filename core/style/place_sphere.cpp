@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/image/painting/find_sphere.h"
+#include "core/style/kit/sphere_kit.h"
 #include "core/style/kit/sphere_template.h"
 
 namespace scumble {
@@ -69,16 +70,26 @@ std::string WhyNone(const FoundSphere& found, bool is_square) {
          fills;
 }
 
+// Marks and margin would become part of the paint. Guides of the kit say where the margin ends.
+Error WholeTemplate(const std::string& name) {
+  const auto guides = GuidesOfPainting(name);
+  return InputError(name + " is a whole template, margin and marks included: " +
+                    (guides ? "write guides = \"" + guides->filename().string() +
+                                  "\" under its [[exemplar]] in style.toml, or crop the picture to the sphere"
+                            : "crop the picture to the sphere, or write the guides of its template under its "
+                              "[[exemplar]] in style.toml"));
+}
+
 }  // namespace
 
 Status PlaceSphere(Exemplar& exemplar) {
   const Picture& picture = exemplar.picture;
   if (exemplar.fills || !exemplar.is_sphere || !exemplar.guides_file.empty() || exemplar.guides || picture.empty())
     return Ok();
+  if (LooksLikeTemplate(picture)) return WholeTemplate(exemplar.name);
   const FoundSphere found = FindSphere(picture);
   const bool is_square = picture.width == picture.height;
-  if (is_square && (found.kind == Kind::kFills || found.kind == Kind::kNoGround || LooksLikeTemplate(picture)))
-    return Ok();
+  if (is_square && (found.kind == Kind::kFills || found.kind == Kind::kNoGround)) return Ok();
   switch (found.kind) {
     case Kind::kInside:
       CutTo(found.circle, exemplar);

@@ -330,7 +330,9 @@ Expected<Style> ReadStyleFile(const fs::path& path, const StyleReading& reading)
     }
   }
   if (style.exemplars.empty() && style.unpainted.empty()) {
-    return InputError(file + " has no [[exemplar]]; add [[exemplar]] and image = \"lit.png\" under it");
+    const bool has_guides = Exists(path.parent_path() / "guides.exr");
+    return InputError(file + " has no [[exemplar]]; add [[exemplar]]" + (has_guides ? ", " : " and ") +
+                      "image = \"lit.png\"" + (has_guides ? " and guides = \"guides.exr\"" : "") + " under it");
   }
   return style;
 }

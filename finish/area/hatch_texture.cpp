@@ -12,6 +12,7 @@ namespace scumble {
 namespace {
 
 constexpr int kSmallestTexture = 16;
+constexpr float kWhite = 3.0f * 65535.0f;  // the sum of three channels
 
 // Replaces numbers by their ranks, 0 … 1; equal ones get the middle of theirs.
 void Rank(std::vector<float>& values) {
@@ -53,7 +54,15 @@ Expected<HatchTexture> MakeHatchTexture(const Picture& picture) {
   texture.levels.push_back({picture.width, {}});
   for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
     const std::uint16_t* const texel = picture.rgba.data() + i;
-    texture.levels[0].thresholds.push_back(static_cast<float>(texel[0]) + texel[1] + texel[2]);
+    const float alpha = static_cast<float>(texel[3]) / 65535.0f,
+                ink = static_cast<float>(texel[0]) + texel[1] + texel[2];
+    texture.levels[0].thresholds.push_back(alpha * ink + (1.0f - alpha) * kWhite);
+  }
+  const auto [darkest, lightest] = std::ranges::minmax(texture.levels[0].thresholds);
+  if (darkest == lightest) {
+    return InputError(
+        "the picture has one grey all over, so it shows no strokes; expected dark strokes on white or on "
+        "transparency");
   }
   Rank(texture.levels[0].thresholds);
   while (texture.levels.back().size >= 2 * kSmallestTexture) texture.levels.push_back(Halved(texture.levels.back()));

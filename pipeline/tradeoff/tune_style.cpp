@@ -123,6 +123,10 @@ class Tuner {
     plain.scene_styles = false;
     SCUMBLE_ASSIGN(StyleSet styles, OpenStyles(plain, context_));
     const Style& style = styles.styles.front();
+    if (!style.unpainted.empty()) {
+      return UsageError(request_.style.style + ": method = \"" + style.unpainted +
+                        "\" has no paint that could look like an exemplar's, so there is nothing to tune");
+    }
     if (style.transfer.method == Method::kLitSphere) {
       return UsageError(request_.style.style +
                         ": method = \"litsphere\" looks up each pixel by itself, so there is "

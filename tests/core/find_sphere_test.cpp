@@ -234,6 +234,25 @@ TEST(FindSphere, UnevenGroundIsNamed) {
   EXPECT_EQ(FindSphere(noise).doubt, SphereDoubt::kNone) << "no paper at all";
 }
 
+// Around the middle of a photograph, paper of one brightness is a circle too.
+TEST(FindSphere, ACircleOfEqualLightIsNoSphere) {
+  const auto photograph = [](int width, int height, double radius, double fall) {
+    const double x = 0.5 * width, y = 0.5 * height;
+    Picture sheet = Drawn(width, height, 0.96, {{x, y, radius}});
+    Overlay(sheet, [&](double u, double v) {
+      const double share = ((u - x) * (u - x) + (v - y) * (v - y)) / (x * x + y * y);
+      return std::pow(1.0 - fall * share, 1.0 / 2.2);
+    });
+    return sheet;
+  };
+  ExpectFound(photograph(225, 200, 64, 0.2), {112.5, 100, 64}, 1.5);
+  for (const Picture& sheet : {photograph(225, 200, 64, 0.4), photograph(200, 200, 64, 0.4)}) {
+    const FoundSphere found = FindSphere(sheet);
+    EXPECT_EQ(found.kind, Kind::kUnclear) << found.circle.radius;
+    EXPECT_EQ(found.doubt, SphereDoubt::kUnevenGround);
+  }
+}
+
 // An eye, a ball with a ring: two outlines, one in the other, of one sphere.
 TEST(FindSphere, ARingAroundADiscIsOneSphere) {
   for (const double ground : {kWhite, kNothing}) {

@@ -232,7 +232,27 @@ TEST(HatchTexture, MustBeASquare) {
     ASSERT_FALSE(made);
     EXPECT_THAT(made.error().message, ::testing::HasSubstr("expected a square"));
   }
-  EXPECT_TRUE(MakeHatchTexture(PlainPicture(17, 17, 5, 5, 5)));  // all of one grey
+}
+
+// Black strokes whose shape is in alpha alone, and the same strokes on white.
+TEST(HatchTexture, TransparencyIsWhite) {
+  Picture clear(64, 64), white = PlainPicture(64, 64, 65535, 65535, 65535);
+  for (std::size_t i = 0; i < clear.rgba.size(); i += 4) {
+    const auto ink = static_cast<std::uint16_t>(257u * ((i / 4 / 64 * 4) % 256));
+    clear.rgba[i + 3] = ink;
+    std::fill_n(white.rgba.data() + i, 3, static_cast<std::uint16_t>(65535 - ink));
+  }
+  const auto of_alpha = MakeHatchTexture(clear), of_grey = MakeHatchTexture(white);
+  ASSERT_TRUE(of_alpha && of_grey);
+  EXPECT_EQ(of_alpha->levels[0].thresholds, of_grey->levels[0].thresholds);
+}
+
+TEST(HatchTexture, OneGreyShowsNoStrokes) {
+  for (const Picture& picture : {PlainPicture(17, 17, 5, 5, 5), Picture(32, 32)}) {
+    const auto made = MakeHatchTexture(picture);
+    ASSERT_FALSE(made);
+    EXPECT_THAT(made.error().message, ::testing::HasSubstr("one grey all over"));
+  }
 }
 
 }  // namespace

@@ -87,12 +87,9 @@ std::string ReportText(const RectifyReport& report, int size) {
   out(text, "held",
       fmt::format("turned {:.1f}° clockwise, tilted about {:.0f}°{}", Tidy(report.rotation, 0.1), report.tilt, lens));
   out(text, "cast", Cast(report.paper));
-  // Scanners often clip deliberately, so this is no warning.
-  const std::string limit =
-      report.clipped > 0.5 ? "; the paper is at the file's limit, lighter paint is not told from it" : "";
   out(text, "light",
-      fmt::format("falls off by {:.0f}% across the sheet; printed black reflects {:.0f}% of the paper{}",
-                  100 * report.unevenness, 100 * report.black, limit));
+      fmt::format("falls off by {:.0f}% across the sheet; printed black reflects {:.0f}% of the paper",
+                  100 * report.unevenness, 100 * report.black));
   out(text, "paint",
       fmt::format("covers {:.0f}% of the sphere, {:.0f}% of its edge", 100 * report.painted, 100 * report.painted_rim));
   return text;

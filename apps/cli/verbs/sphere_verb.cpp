@@ -189,6 +189,12 @@ Expected<ExitCode> RunSphereVerb(SphereVerb verb, const Globals& globals) {
     lights.push_back(std::move(light));
   }
   SCUMBLE_ASSIGN(const auto files, WriteSphereKit(verb.output, std::move(lights), options));
+  for (const std::string& guides : UnlistedGuides(verb.output, files)) {
+    globals.Warn(
+        fmt::format("{}/style.toml was kept and does not name {}: for a painting over this template add "
+                    "[[exemplar]] with its image and guides = \"{}\"",
+                    verb.output, guides, guides));
+  }
   if (globals.json) {
     nlohmann::ordered_json json;
     for (const auto& file : files) json["files"].push_back(file.string());

@@ -12,6 +12,7 @@
 #include "core/io/file/atomic_file.h"
 #include "core/io/picture_file.h"
 #include "core/style/style_edit.h"
+#include "core/style/style_keys.h"
 #include "measure/report/html_page.h"
 #include "pipeline/style/style_locations.h"
 #include "pipeline/tradeoff/tune_style.h"
@@ -119,14 +120,56 @@ Expected<fs::path> StyleFileOf(const StyleRequest& style, const RunContext& cont
   return file;
 }
 
-Status Write(const TunedStyle& chosen, const fs::path& file, const Globals& globals) {
+// A key given by --set, as WithSettings takes it.
+Expected<std::string> SettingOf(const std::string& set) {
+  const std::size_t equals = set.find('=');
+  const StyleKey* const key = equals == std::string::npos ? nullptr : FindStyleKey(set.substr(0, equals));
+  const std::string value = key ? set.substr(equals + 1) : "";
+  const bool is_text =
+      key && (key->kind == KeyKind::kChoice || key->kind == KeyKind::kText || key->kind == KeyKind::kFile);
+  const bool is_quoted = value.starts_with('"') || value.starts_with('\'');
+  // The file is found from another folder there.
+  const bool is_file = key && key->kind == KeyKind::kFile && !value.empty() && !value.starts_with('#') && !is_quoted;
+  if (!key || is_file) {
+    return UsageError("--set " + set +
+                      ": --write cannot put that into style.toml; write it there yourself and leave it out here");
+  }
+  return is_text && !is_quoted ? key->name + "=" + TomlText(KeyValue(value)) : set;
+}
+
+// The text of a style.toml with the keys that were given, with which the proposals were made, and with `more`.
+Expected<std::string> NewText(const fs::path& file, const std::vector<std::string>& sets,
+                              const std::vector<std::string>& more, std::vector<std::string>* written = nullptr) {
+  std::vector<std::string> settings;
+  for (const std::string& set : sets) {
+    SCUMBLE_ASSIGN(std::string setting, SettingOf(set));
+    settings.push_back(std::move(setting));
+  }
+  settings.insert(settings.end(), more.begin(), more.end());
   SCUMBLE_ASSIGN(const std::vector<std::byte> bytes, ReadWholeFile(file));
-  SCUMBLE_ASSIGN(const std::string text,
-                 WithSettings(std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()), chosen.settings,
-                              file.string()));
+  if (written) *written = settings;
+  return WithSettings(std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()), settings, file.string());
+}
+
+Status Write(const std::vector<std::string>& sets, const TunedStyle& chosen, const fs::path& file,
+             const Globals& globals) {
+  std::vector<std::string> written;
+  SCUMBLE_ASSIGN(const std::string text, NewText(file, sets, chosen.settings, &written));
   SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(file, text));
-  globals.Note(fmt::format("{}: {}", file.string(), fmt::join(chosen.settings, ", ")));
+  globals.Note(fmt::format("{}: {}", file.string(), fmt::join(written, ", ")));
   return Ok();
+}
+
+// Before minutes of work.
+Status CheckTargets(const StylesTune& tune, const fs::path& style_file) {
+  if (!style_file.empty()) {
+    SCUMBLE_RETURN_IF_ERROR(NewText(style_file, tune.style.sets, {}));
+    SCUMBLE_RETURN_IF_ERROR(CheckWritable(style_file));
+  }
+  if (tune.folder.empty()) return Ok();
+  std::error_code failed;  // which CheckWritable says
+  fs::create_directories(tune.folder, failed);
+  return CheckWritable(fs::path(tune.folder) / kPage);
 }
 
 }  // namespace
@@ -139,14 +182,13 @@ Expected<ExitCode> RunStylesTune(const StylesTune& tune, const Globals& globals)
     SCUMBLE_ASSIGN(request.scenes, SampleScenes(globals));
   }
   fs::path style_file;
-  if (tune.write > 0) {  // found before minutes of work
+  if (tune.write > 0) {
     SCUMBLE_ASSIGN(style_file, StyleFileOf(tune.style, globals));
   }
+  SCUMBLE_RETURN_IF_ERROR(CheckTargets(tune, style_file));
   SCUMBLE_ASSIGN(const TuneReport report, TuneStyle(request, globals));
   Print(globals.json ? JsonText(JsonOf(report)) : TextOf(report));
   if (!tune.folder.empty()) {
-    std::error_code failed;
-    fs::create_directories(tune.folder, failed);
     SCUMBLE_ASSIGN(const std::string page, PageOf(report));
     SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(fs::path(tune.folder) / kPage, page));
     globals.Note((fs::path(tune.folder) / kPage).string() + ": the pictures side by side");
@@ -156,7 +198,8 @@ Expected<ExitCode> RunStylesTune(const StylesTune& tune, const Globals& globals)
     return UsageError(
         fmt::format("--write {}: there are {} proposals, nothing was written", tune.write, report.proposals.size()));
   }
-  SCUMBLE_RETURN_IF_ERROR(Write(report.proposals[static_cast<std::size_t>(tune.write) - 1], style_file, globals));
+  const TunedStyle& chosen = report.proposals[static_cast<std::size_t>(tune.write) - 1];
+  SCUMBLE_RETURN_IF_ERROR(Write(tune.style.sets, chosen, style_file, globals));
   return ExitCode::kOk;
 }
 

@@ -147,7 +147,8 @@ void AddStylesVerb(CLI::App& app, Globals& globals, Action& chosen) {
   tune->add_option("-o,--output", tuned->folder, "folder for a contact sheet, tune.html")
       ->type_name("FOLDER")
       ->check(RefuseEmpty);
-  tune->add_option("--write", tuned->write, "put the keys of the N-th proposal into the style's style.toml")
+  tune->add_option("--write", tuned->write,
+                   "put the keys of the N-th proposal, and those of --set, into the style's style.toml")
       ->type_name("N")
       ->check(CLI::Range(1, static_cast<int>(kMostProposals)));
   AddGlobalOptions(*sub, globals);

@@ -321,7 +321,13 @@ FoundSphere FindSphere(const Picture& picture) {
     return unclear;
   }
   const Circle line{outline.circle()->x, outline.circle()->y, outline.outline_radius()};
-  FoundSphere found{is_square && FillsSquare(line, width) ? Kind::kFills : Kind::kInside};
+  const bool fills = is_square && FillsSquare(line, width);
+  if (!fills && mask.ground().kind == BarePaper::Kind::kPaper && !HasColorStep(picture, line)) {
+    FoundSphere uneven{Kind::kUnclear};
+    uneven.doubt = SphereDoubt::kUnevenGround;
+    return uneven;
+  }
+  FoundSphere found{fills ? Kind::kFills : Kind::kInside};
   found.circle = *outline.circle();
   return found;
 }

@@ -63,7 +63,43 @@ bool TouchesBelow(const PaintMask& mask, const Circle& circle, double radius) {
   return length > kTogether * count && sum.y > kBelow * length;
 }
 
+// The bands to either side of the circle whose colours are compared.
+constexpr double kLeastStepGap = 2.0, kStepGap = 0.01;    // pixels, of the radius: from the circle to a band
+constexpr double kLeastStepBand = 3.0, kStepBand = 0.02;  // pixels, of the radius: a band's width
+constexpr int kStepSectors = 36;
+constexpr double kLeastStep = 6.0 * 257.0;  // of 65535, between the means of the bands in a sector
+constexpr double kLeastStepSectors = 0.2;   // of the sectors: on the side of the light, paint may be as light as paper
+
+// Adds a picture's colours from `first` to `last` on a ray from the circle's middle.
+void AddBand(const Picture& picture, const Circle& circle, int direction, double first, double last, glm::dvec4& sum) {
+  const glm::dvec2 step = OutlineDirection(direction);
+  for (double distance = first; distance <= last; distance += 1.0) {
+    const double x = circle.x + distance * step.x, y = circle.y + distance * step.y;
+    if (x < 0.0 || y < 0.0 || x >= picture.width || y >= picture.height) continue;
+    const std::uint16_t* const texel = picture.At(static_cast<int>(x), static_cast<int>(y));
+    sum += glm::dvec4(texel[0], texel[1], texel[2], 1.0);
+  }
+}
+
 }  // namespace
+
+bool HasColorStep(const Picture& picture, const Circle& circle) {
+  const double gap = std::max(kLeastStepGap, kStepGap * circle.radius);
+  const double band = std::max(kLeastStepBand, kStepBand * circle.radius);
+  constexpr int kDirections = kOutlineDirections / kStepSectors;
+  int seen = 0, steps = 0;
+  for (int sector = 0; sector < kStepSectors; ++sector) {
+    glm::dvec4 inside(0.0), outside(0.0);
+    for (int i = sector * kDirections; i < (sector + 1) * kDirections; ++i) {
+      AddBand(picture, circle, i, circle.radius - gap - band, circle.radius - gap, inside);
+      AddBand(picture, circle, i, circle.radius + gap, circle.radius + gap + band, outside);
+    }
+    if (inside.w == 0.0 || outside.w == 0.0) continue;
+    const glm::dvec3 apart = glm::abs(glm::dvec3(inside) / inside.w - glm::dvec3(outside) / outside.w);
+    ++seen, steps += std::max({apart.x, apart.y, apart.z}) >= kLeastStep;
+  }
+  return steps >= kLeastStepSectors * seen;
+}
 
 SphereDoubt DoubtAbout(const Picture& picture, const PaintMask& mask, const Circle& circle, double tolerance) {
   const double radius = circle.radius + tolerance + kGapOfTouch;

@@ -12,4 +12,8 @@ namespace scumble {
 // around it is uneven ground. kNoCircle, if it is neither.
 SphereDoubt DoubtAbout(const Picture& picture, const PaintMask& mask, const Circle& circle, double tolerance);
 
+// Whether colour steps across the circle in a good part of its directions, as where paint ends on paper. Where light
+// falls off across paper, the line of one brightness may be a circle too, but colour changes gradually across it.
+bool HasColorStep(const Picture& picture, const Circle& circle);
+
 }  // namespace scumble

@@ -18,6 +18,8 @@
 #include "core/style/kit/guide_layers.h"
 #include "core/style/kit/template_pdf.h"
 #include "core/style/style_file.h"
+#include "core/style/style_keys.h"
+#include "core/style/toml_values.h"
 
 namespace scumble {
 namespace {
@@ -245,29 +247,65 @@ Expected<std::vector<RasterLayer>> TemplateLayers(const KitLight& light) {
   return layers;
 }
 
-// The new text of style.toml; empty optional where the file should stay.
+// An [[exemplar]] of style.toml: plain file names, empty where there is none.
+struct ListedExemplar {
+  std::string image, guides;
+};
+
+std::vector<ListedExemplar> ExemplarsOf(const toml::table& style) {
+  std::vector<ListedExemplar> listed;
+  const auto* array = style["exemplar"].as_array();
+  if (!array) return listed;
+  const auto name = [](const toml::table& table, const char* key) {
+    return fs::path(table[key].value_or(std::string())).lexically_normal().string();
+  };
+  for (const auto& item : *array) {
+    if (const auto* table = item.as_table()) listed.push_back({name(*table, "image"), name(*table, "guides")});
+  }
+  return listed;
+}
+
+// A painting fits the guides that it was painted with: a light must not ask for a painting that has others.
+Status RefuseOtherExemplar(const fs::path& style, const std::vector<ListedExemplar>& listed, const KitLight& light,
+                           std::size_t index) {
+  const std::string guides = GuidesName(light, index);
+  const std::vector<std::string> names = PaintingNames(light, index);
+  for (const ListedExemplar& exemplar : listed) {
+    const bool is_it = std::find(names.begin(), names.end(), exemplar.image) != names.end();
+    if (!is_it || exemplar.guides.empty() || exemplar.guides == guides) continue;
+    return OutputError(style.string() + " lists " + exemplar.image + " with " + exemplar.guides +
+                       ", and this light has the guides " + guides +
+                       ": give it a --name of its own, or write to another folder");
+  }
+  return Ok();
+}
+
+// The new text of style.toml; empty optional where the file should stay. Lights without names are those of a new style:
+// they are added where no exemplar is listed and the method needs one.
 Expected<std::optional<std::string>> NewStyle(const fs::path& path, const std::vector<KitLight>& lights) {
   std::error_code failed;
   if (!fs::exists(path, failed)) return std::optional(StarterStyle(lights));
   SCUMBLE_ASSIGN(const auto bytes, ReadWholeFile(path, kMaxStyleBytes));
   const std::string old(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  SCUMBLE_ASSIGN(const toml::table style, internal::ParseToml(old, path.string()));
+  const std::vector<ListedExemplar> listed = ExemplarsOf(style);
+  const bool add_all = listed.empty() && !IsUnpainted(style["transfer"]["method"].value_or(std::string()));
   std::string text = old;
+  std::size_t count = listed.size();
   for (std::size_t i = 0; i < lights.size(); ++i) {
+    SCUMBLE_RETURN_IF_ERROR(RefuseOtherExemplar(path, listed, lights[i], i));
     const std::vector<std::string> names = PaintingNames(lights[i], i);
-    const bool listed = std::any_of(names.begin(), names.end(), [&](const std::string& name) {
-      return old.find('"' + name + '"') != std::string::npos || old.find('\'' + name + '\'') != std::string::npos;
+    const bool is_listed = std::any_of(listed.begin(), listed.end(), [&](const ListedExemplar& exemplar) {
+      return std::find(names.begin(), names.end(), exemplar.image) != names.end();
     });
-    if (lights[i].name.empty() || listed) continue;
+    if ((lights[i].name.empty() && !add_all) || is_listed) continue;
     if (!text.empty() && text.back() != '\n') text += '\n';
     text += ExemplarEntry(lights[i], i, "");
+    ++count;
   }
   if (text == old) return std::optional<std::string>();
-  int exemplars = 0;
-  for (std::size_t at = text.find("\n[[exemplar]]"); at != std::string::npos; at = text.find("\n[[exemplar]]", at + 1))
-    ++exemplars;
-  exemplars += text.rfind("[[exemplar]]", 0) == 0;
-  if (exemplars > kMaxExemplars) {
-    return OutputError(path.string() + " would list " + std::to_string(exemplars) + " lights: a style takes up to " +
+  if (count > std::size_t(kMaxExemplars)) {
+    return OutputError(path.string() + " would list " + std::to_string(count) + " lights: a style takes up to " +
                        std::to_string(kMaxExemplars) + "; take an [[exemplar]] out, or write to another folder");
   }
   return std::optional(std::move(text));
@@ -350,6 +388,24 @@ Expected<std::vector<fs::path>> WriteSphereKit(const fs::path& folder, std::vect
     written.push_back(howto);
   }
   return written;
+}
+
+std::vector<std::string> UnlistedGuides(const fs::path& folder, const std::vector<fs::path>& written) {
+  std::vector<std::string> unlisted;
+  if (std::find(written.begin(), written.end(), folder / "style.toml") != written.end()) return unlisted;
+  const auto bytes = ReadWholeFile(folder / "style.toml", kMaxStyleBytes);
+  if (!bytes) return unlisted;
+  const std::string text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+  const auto style = internal::ParseToml(text, "style.toml");
+  if (!style) return unlisted;
+  const std::vector<ListedExemplar> listed = ExemplarsOf(*style);
+  for (const fs::path& file : written) {
+    const std::string name = file.filename().string();
+    const bool is_listed = std::any_of(listed.begin(), listed.end(),
+                                       [&](const ListedExemplar& exemplar) { return exemplar.guides == name; });
+    if (file.extension() == ".exr" && !is_listed) unlisted.push_back(name);
+  }
+  return unlisted;
 }
 
 std::optional<fs::path> GuidesOfPainting(const fs::path& painting) {

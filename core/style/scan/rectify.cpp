@@ -186,6 +186,11 @@ void Warn(const RectifyOptions& options, const TemplateFit& fit, RectifyReport& 
     say.push_back("the light falls off by " + Percent(report.unevenness) +
                   " across the sheet: what the shade of it hides cannot be brought back");
   }
+  if (report.clipped > 0.2) {
+    say.push_back(Percent(report.clipped) +
+                  " of the paper is overexposed, as bright as the file can hold: colours come out too light, by a "
+                  "little where a scanner clips its paper, by much in a photograph that is too bright; take it darker");
+  }
   if (report.bare_margin < 0.8) {
     say.push_back("only " + Percent(report.bare_margin) +
                   " of the margin looks like bare paper in even light: colours may be off where a "

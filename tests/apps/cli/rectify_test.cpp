@@ -89,7 +89,7 @@ TEST_F(RectifyCliTest, ScansOfAnyKind) {
 TEST_F(RectifyCliTest, TheSizeIsThatOfTheLightsOwnGuides) {
   WriteScan("scan.png");
   RunOk({"sphere", "--size", "128", "--only", "png", "-q", "-o", "kit"});
-  for (const auto& [name, size] : {std::pair{"lit", 160}, {"lit-evening", 192}}) {
+  for (const auto& [name, size] : {std::pair{"shade", 160}, {"lit-evening", 192}}) {
     const std::string picture = std::string("kit/") + name + ".png";
     EXPECT_EQ(RunOk({"sphere", "--rectify", "scan.png", "-o", picture, "--json"}).Json()["size"], 128);
     std::filesystem::remove(At(picture));

@@ -24,7 +24,7 @@ class StylesTune : public CliTest {
 
 TEST_F(StylesTune, ProposesWhatIsNearerToTheExemplar) {
   WriteCoarse();
-  const CommandResult run = RunOk(Tune({"--json", "-o", "sheet", "--write", "1"}));
+  const CommandResult run = RunOk(Tune({"--json", "-o", "sheet", "--write", "1", "--set", "transfer.edge=exact"}));
   const nlohmann::json report = run.Json();
   EXPECT_EQ(report["style"], "coarse");
   EXPECT_EQ(report["scenes"], nlohmann::json({"suzanne"}));
@@ -54,11 +54,12 @@ TEST_F(StylesTune, ProposesWhatIsNearerToTheExemplar) {
   const std::string text = Bytes("coarse/style.toml");
   EXPECT_EQ(text.find("# mine\nname = \"coarse\"\n[transfer]\n"), 0u) << text;
   EXPECT_NE(text.find("# too much\nlevels = 6\n[[exemplar]]\nimage = \"lit.png\"\n"), std::string::npos) << text;
-  const Arguments stylize{"stylize", Scene("suzanne.glb"),     "--size", "160x90", "--style", "coarse",
-                          "--set",   "transfer.blend_radius=1"};
+  EXPECT_NE(text.find("blend_radius = 1\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("edge = \"exact\"\n"), std::string::npos) << text;
+  const Arguments stylize{"stylize", Scene("suzanne.glb"), "--size", "160x90", "--style", "coarse"};
   RunOk(With(stylize, {"-o", "written.png"}));
   WriteCoarse();
-  Arguments sets;
+  Arguments sets{"--set", "transfer.blend_radius=1"};
   for (const std::string& setting : settings) sets = With(sets, {"--set", setting});
   RunOk(With(With(stylize, sets), {"-o", "set.png"}));
   EXPECT_EQ(Bytes("written.png"), Bytes("set.png"));
@@ -90,6 +91,15 @@ TEST_F(StylesTune, RefusesWhatCannotBeTuned) {
   ExpectError({"styles", "tune", "coarse", "--scene", "gone.glb"}, 3, {"gone.glb"});
   ExpectError({"styles", "tune", "alone.png", "--scene", Scene("suzanne.glb"), "--write", "1"}, 3,
               {"alone.png has no style.toml"});
+  WriteText("toon/style.toml", "[transfer]\nmethod = \"toon\"\n");
+  ExpectError({"styles", "tune", "toon", "--scene", Scene("suzanne.glb")}, 2, {"method = \"toon\"", "nothing to tune"});
+  // What cannot be written is refused at once.
+  ExpectError(Tune({"-o", "coarse/style.toml"}), 4, {"coarse/style.toml/tune.html"});
+  for (const char* set : {"finish.hatch.spacing=3", "exemplar.1.fills=true", "transfer.paper=alone.png"}) {
+    ExpectError(Tune({"--write", "1", "--set", set}), 2, {set, "--write cannot put that into style.toml"});
+  }
+  ExpectError(Tune({"--write", "1", "--set", "transfer.scale=[[1, 2], [5, 3]]"}), 2,
+              {"transfer.scale", "expected a number"});
   ExpectError({"styles", "tune", "oil", "--scene", Scene("suzanne.glb"), "--write", "1"}, 2,
               {"oil is a bundled style", "copy"});
 }

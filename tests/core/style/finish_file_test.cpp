@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -17,6 +18,7 @@
 #include "core/style/finish_mask_keys.h"
 #include "core/style/style_file.h"
 #include "core/style/style_keyframes.h"
+#include "tests/support/refusal.h"
 #include "tests/support/temporary_folder.h"
 
 namespace scumble {
@@ -123,7 +125,11 @@ TEST_F(FinishFile, RampsAreRowsOfColours) {
   other.colors[5][2] = 1;
   toon.ramp_colors = std::make_shared<const ColorRamp>(other);
   EXPECT_NE(FinishText(pass), before);
-  EXPECT_EQ(ColorRampOf(Picture(3, 2))->rows, 2);
+  Picture picture(3, 2);
+  std::fill(picture.rgba.begin(), picture.rgba.end(), std::uint16_t{65535});
+  EXPECT_EQ(ColorRampOf(picture)->rows, 2);
+  picture.At(2, 1)[3] = 40000;
+  ExpectRefusal(ColorRampOf(picture), {"transparent at x=2, y=1", "flatten"});
   EXPECT_FALSE(ColorRampOf(Picture(2, 1025)));
 }
 

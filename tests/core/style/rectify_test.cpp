@@ -227,6 +227,15 @@ TEST(Rectify, WhatMaySpoilTheExemplarIsWarnedOf) {
   ASSERT_TRUE(shadow) << shadow.error().message;
   EXPECT_TRUE(warns(*shadow, "shadow lies on the sheet"));
 
+  Scan bright;
+  bright.width = 450, bright.height = 360;
+  for (const double exposure : {1.1, 1.6}) {
+    bright.cast = {exposure, exposure, exposure};
+    const auto exposed = RectifyScan(TakeScan(CharcoalSheet(), bright), "bright.png", Small());
+    ASSERT_TRUE(exposed) << exposed.error().message;
+    EXPECT_EQ(warns(*exposed, "of the paper is overexposed"), exposure > 1.2) << exposure;
+  }
+
   Scan scan;
   scan.fill = 0.45;
   RectifyOptions options;

@@ -105,15 +105,57 @@ TEST(SphereKit, FromTemplateToStyle) {
   }
 }
 
+std::string TextOf(const fs::path& file) {
+  const auto bytes = ReadWholeFile(file);
+  EXPECT_TRUE(bytes);
+  return bytes ? std::string(reinterpret_cast<const char*>(bytes->data()), bytes->size()) : "";
+}
+
 TEST(SphereKit, AnArtistsStyleFileIsKept) {
+  for (const std::string mine : {"[[exemplar]]\nimage = 'ball.png'\n", "# mine\n[transfer]\nmethod = 'toon'\n",
+                                 "[[exemplar]]\nimage = 'lit.png'\nguides = './guides.exr'\n"}) {
+    const TemporaryFolder folder;
+    ASSERT_TRUE(WriteFileAtomically(folder / "style.toml", mine));
+    const auto written = WriteSphereKit(folder.path(), {KitLight{0, 0, SphereGuides(16)}});
+    ASSERT_TRUE(written) << written.error().message;
+    EXPECT_EQ(written->size(), 5u) << "what was kept is not listed as written";
+    EXPECT_EQ(TextOf(folder / "style.toml"), mine);
+    const bool lists = mine.find("guides.exr") != std::string::npos;
+    EXPECT_EQ(UnlistedGuides(folder.path(), *written).size(), lists ? 0u : 1u) << mine;
+  }
+}
+
+TEST(SphereKit, AStyleFileWithoutExemplarsGetsThoseOfTheKit) {
   const TemporaryFolder folder;
-  ASSERT_TRUE(WriteFileAtomically(folder / "style.toml", "# mine\n"));
+  const std::string mine = "# image = \"lit.png\"\nname = 'mine'";
+  ASSERT_TRUE(WriteFileAtomically(folder / "style.toml", mine));
+  ASSERT_TRUE(WritePicture(folder / "lit.png", RandomPicture(16, 16)));
+  ExpectRefusal(LoadStyle(folder.path()), {"add [[exemplar]] and image = \"lit.png\" under it"});
   const auto written = WriteSphereKit(folder.path(), {KitLight{0, 0, SphereGuides(16)}});
   ASSERT_TRUE(written) << written.error().message;
-  EXPECT_EQ(written->size(), 5u) << "what was kept is not listed as written";
-  const auto kept = ReadWholeFile(folder / "style.toml");
-  ASSERT_TRUE(kept);
-  EXPECT_EQ(std::string(reinterpret_cast<const char*>(kept->data()), kept->size()), "# mine\n");
+  EXPECT_EQ(TextOf(folder / "style.toml").rfind(mine + "\n", 0), 0u);
+  EXPECT_TRUE(UnlistedGuides(folder.path(), *written).empty());
+  const auto style = LoadStyle(folder.path());
+  ASSERT_TRUE(style) << style.error().message;
+  EXPECT_EQ(style->exemplars.at(0).guides_file.filename(), "guides.exr");
+  ASSERT_TRUE(WriteFileAtomically(folder / "style.toml", mine));
+  ExpectRefusal(LoadStyle(folder.path()), {"[[exemplar]], image = \"lit.png\" and guides = \"guides.exr\" under it"});
+  ASSERT_TRUE(WriteFileAtomically(folder / "style.toml", "name = \n"));
+  ExpectRefusal(WriteSphereKit(folder.path(), {KitLight{0, 0, SphereGuides(16)}}), {"style.toml:1", "TOML"});
+  // A new file lists four lights, the fifth as a comment.
+  const TemporaryFolder many;
+  const auto five = WriteSphereKit(many.path(), std::vector<KitLight>(5, KitLight{0, 0, SphereGuides(16)}));
+  ASSERT_TRUE(five) << five.error().message;
+  EXPECT_TRUE(UnlistedGuides(many.path(), *five).empty());
+}
+
+TEST(SphereKit, ALightMustNotTakeThePaintingOfAnother) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(WriteSphereKit(folder.path(), {KitLight{0, 0, SphereGuides(16)}}));
+  const std::vector<std::string> before = folder.List();
+  ExpectRefusal(WriteSphereKit(folder.path(), {KitLight{120, -10, SphereGuides(16), "lit"}}), ErrorKind::kOutput,
+                {"style.toml lists lit.png with guides.exr", "lit-guides.exr", "--name"});
+  EXPECT_EQ(folder.List(), before);
 }
 
 TEST(SphereKit, FurtherLightsGetFilesOfTheirOwn) {
@@ -179,6 +221,14 @@ TEST(SphereKit, ATemplateNamedAsAStyleIsRefusedAndAPaintingStandsForItsFolder) {
   const auto style = LoadStyle(folder / "lit.png");
   ASSERT_TRUE(style) << style.error().message;
   EXPECT_EQ(style->exemplars[0].picture.width, 64) << "without the margin";
+  // Without its guides nobody knows the margin, whether the file is named or the folder.
+  ASSERT_TRUE(WriteFileAtomically(folder / "style.toml", "[[exemplar]]\nimage = 'lit.png'\n"));
+  for (const fs::path& named : {folder.path(), folder / "lit.png"}) {
+    ExpectRefusal(LoadStyle(named), {"lit.png is a whole template", "guides = \"guides.exr\"", "crop"});
+  }
+  fs::remove(folder / "guides.exr");
+  ExpectRefusal(LoadStyle(folder.path()), {"lit.png is a whole template", "crop", "or write the guides"});
+  EXPECT_TRUE(LoadStyle(folder.path(), {"exemplar.1.fills=true"}));
 }
 
 TEST(SphereKit, APaintedTemplateIsNotOverwritten) {
@@ -242,6 +292,7 @@ TEST(SphereKit, GuidesAndPaintingsByTheirNames) {
   EXPECT_EQ(guides("lit-2.png"), "guides-2.exr");
   EXPECT_EQ(guides("lit-evening.png"), "none");
   EXPECT_EQ(guides("literal.png"), "none");
+  fs::remove(folder / "style.toml");  // it lists lit.png with guides.exr
   for (const char* name : {"lit", "lit-evening", "shade"}) {
     ASSERT_TRUE(WriteSphereKit(folder.path(), {KitLight{0, 0, SphereGuides(16), name}}));
     EXPECT_EQ(guides(std::string(name) + ".png"), std::string(name) + "-guides.exr");
