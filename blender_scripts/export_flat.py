@@ -55,11 +55,23 @@ def is_made_of_itself(instance):
     return instance.persistent_id[1] == LAST_LEVEL
 
 
+def particle_number(instance):
+    """"", "#2", "#3", … by the particle's own number, which it keeps when others die or are born; "#2.3": the third one
+    of its object's second system, and further numbers before these where the emitter is an instance."""
+    levels = [number + 1 for number in instance.persistent_id if number != LAST_LEVEL][::-1]
+    while len(levels) > 1 and levels[0] == 1:
+        del levels[0]
+    return "" if levels == [1] else "#" + ".".join(str(number) for number in levels)
+
+
 def name_of(instance, taken):
-    """The object's name; of an instance "Instancer/Object". Repeated ones count on in Blender's own order."""
+    """The object's name; of an instance "Instancer/Object", and a number. Repeated ones count on in Blender's own
+    order."""
     name = instance.object.original.name
     if instance.is_instance and instance.parent and not is_made_of_itself(instance):
         name = instance.parent.original.name + "/" + name
+        if instance.particle_system:
+            name += particle_number(instance)
     taken[name] = taken.get(name, 0) + 1
     return name if taken[name] == 1 else f"{name}#{taken[name]}"
 

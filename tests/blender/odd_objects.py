@@ -140,16 +140,18 @@ def stale(path):
     bpy.context.scene.collection.objects.link(instancer)
 
 
-def emitter():
-    """Sends leaves up, 1 m in a second."""
+def emitters():
+    """They send leaves up, 1 m in a second; those of Brief are gone after 4 frames."""
     leaf = plane("Leaf", 39)
     leaf.hide_render = True
-    source = plane("Emitter", 4)
-    source.modifiers.new("Particles", "PARTICLE_SYSTEM")
-    settings = source.particle_systems[0].settings
-    settings.count, settings.frame_end = 10, 10
-    settings.render_type, settings.instance_object, settings.particle_size = "OBJECT", leaf, 0.1
-    settings.effector_weights.gravity = 0
+    for name, cell, systems, lifetime in (("Emitter", 4, 1, 50), ("Brief", 5, 2, 4)):
+        source = plane(name, cell)
+        for number in range(systems):
+            source.modifiers.new("Particles", "PARTICLE_SYSTEM")
+            settings = source.particle_systems[number].settings
+            settings.count, settings.frame_end, settings.lifetime = 10, 10, lifetime
+            settings.render_type, settings.instance_object, settings.particle_size = "OBJECT", leaf, 0.1
+            settings.effector_weights.gravity = 0
 
 
 def build(asset_path):
