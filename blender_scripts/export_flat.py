@@ -38,7 +38,8 @@ class FlatScene:
     meshes: list = field(default_factory=list)
     lamps: list = field(default_factory=list)
     cameras: list = field(default_factory=list)  # the active one first
-    materials: dict = field(default_factory=dict)  # by the key that MaterialKey gives
+    materials: dict = field(default_factory=dict)  # by material_key
+    shown_maps: dict = field(default_factory=dict)  # by material_key: its meshes' UV maps that renders take
     normals: dict = field(default_factory=dict)  # of metaballs' vertices, by the object's full name
     corners: dict = field(default_factory=dict)  # how many each mesh had before its faces were cut, by its name
 
@@ -225,6 +226,11 @@ def add_mesh(flat, number, instance, depsgraph, unsupported):
     return mesh, hair
 
 
+def add_material(flat, material, mesh):
+    flat.materials.setdefault(material_key(material), material)
+    flat.shown_maps.setdefault(material_key(material), set()).add(export_maps.shown_map(mesh))
+
+
 def place_mesh(flat, meshes, placed, instance, depsgraph, unsupported):
     thing = instance.object
     key = mesh_key(instance, depsgraph)
@@ -234,12 +240,12 @@ def place_mesh(flat, meshes, placed, instance, depsgraph, unsupported):
         return
     placed.mesh, placed.hair = meshes[key]
     for hair in placed.hair:
-        flat.materials.setdefault(material_key(hair.material), hair.material)
+        add_material(flat, hair.material, placed.mesh)
     placed.is_own_shape = thing.type == "MESH" and not is_generated(instance, depsgraph)
     materials = [slot.material.original if slot.material else None for slot in thing.material_slots]
     placed.slots = tuple(materials or [None])
     for material in placed.slots:
-        flat.materials.setdefault(material_key(material), material)
+        add_material(flat, material, placed.mesh)
     flat.meshes.append(placed)
 
 

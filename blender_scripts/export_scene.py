@@ -57,7 +57,7 @@ def export(scene, view_layer, output, unsupported):
     if not flat.meshes:
         blend_check.check_emptiness(scene, view_layer, unsupported)
     has_rest = export_rest.add_rest_positions(flat, view_layer)
-    materials = export_materials.simplify(flat.materials, unsupported)
+    materials = export_materials.simplify(flat.materials, flat.shown_maps, unsupported)
     has_heights = export_bends.add_exact_v(flat, materials)
     has_colors = export_colors.add_colors(flat, materials)
     has_attributes = has_rest or has_heights or has_colors

@@ -76,6 +76,7 @@ def make_layered(folder):
     scene.frame_set(1)
     bpy.context.view_layer.layer_collection.children["Moving"].exclude = True
     odd_materials.plane("Tilted", 3, odd_materials.tilted())
+    odd_materials.holes()
     odd_objects.emitters()
     save(folder, "layered")
 
