@@ -95,7 +95,7 @@ def take_settings(scene, view_layer):
             use_render_nodes(tree)
     for thing in bpy.data.objects:
         release(thing)
-        put(thing, "hide_viewport", thing.hide_render)
+        put(thing, "hide_viewport", thing.hide_render and thing.type != "CAMERA")  # cameras are never rendered
         put(thing, "show_instancer_for_viewport", thing.show_instancer_for_render)
         use_render_modifiers(thing)
         if thing.data is not None:
@@ -112,6 +112,14 @@ def hidden_objects(view_layer):
     return [thing for thing in bpy.data.objects
             if thing.hide_viewport or any(collection.hide_viewport for collection in thing.users_collection)
             or (thing in in_layer and not thing.visible_get(view_layer=view_layer))]
+
+
+def bring_in(cameras, scene, view_layer):
+    """Cameras that the view layer leaves out or does not show, so that the frame moves them as well."""
+    for camera in cameras:
+        held = camera in set(view_layer.objects) and camera.visible_get(view_layer=view_layer)
+        if not held and scene.library is None and camera.name not in scene.collection.objects:
+            scene.collection.objects.link(camera)
 
 
 def show_as_rendered(scene, view_layer):

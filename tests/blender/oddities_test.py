@@ -89,6 +89,8 @@ def check_layered(document, extras):
     expect(colors == [[0, 0, 1]], colors)
     heights = [node["matrix"][13] for node in document["nodes"] if node["name"].startswith("Emitter/Leaf")]
     expect(heights and abs(max(heights) - 9 / 24) < 0.05, "particles keep their way", heights)
+    away = next(node["matrix"][12] for node in document["nodes"] if node["name"] == "Away")
+    expect(abs(away - 10) < 1e-6, "a camera that the view layer excludes stands where the frame has it", away)
     living = {name for name in names if name.startswith("Brief/")}
     expect(living == {f"Brief/Leaf#{system}{number}" for system in ("", "2.") for number in range(7, 11)},
            "particles keep their numbers when others are gone", sorted(living))
