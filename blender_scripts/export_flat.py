@@ -153,6 +153,9 @@ def note_limits(thing, shown, view_layer, unsupported):
         unsupported.add(f"object '{thing.name}': is invisible to {', '.join(rays)} rays, which is ignored")
     if thing.is_holdout or shown.holdout_get(view_layer=view_layer):
         unsupported.add(f"object '{thing.name}': is a holdout, which is ignored")
+    levels = export_viewport.diced_levels(thing, view_layer.id_data)
+    if levels > 0:
+        unsupported.add(f"object '{thing.name}': its adaptive subdivision is taken for {levels} levels more")
     if getattr(thing, "is_shadow_catcher", False) and not isinstance(thing.get("scumble_style"), str):
         unsupported.add(f"object '{thing.name}': is a shadow catcher: pictures leave it out, and with --set "
                         "transfer.shadow=paint they have the shadows on it")

@@ -87,6 +87,7 @@ def make_layered(folder):
     odd_materials.plane("Tilted", 3, odd_materials.tilted())
     odd_materials.holes()
     odd_objects.emitters()
+    odd_objects.diced()
     save(folder, "layered")
 
 

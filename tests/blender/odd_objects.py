@@ -154,6 +154,17 @@ def emitters():
             settings.effector_weights.gravity = 0
 
 
+def diced():
+    """Two planes with adaptive subdivision, which counts where the modifier is the last one alone."""
+    bpy.context.scene.cycles.feature_set = "EXPERIMENTAL"
+    for name, cell in (("Diced", 6), ("Plain", 7)):
+        thing = plane(name, cell)
+        smooth = thing.modifiers.new("Smooth", "SUBSURF")
+        smooth.levels, smooth.render_levels = 0, 1
+        thing.cycles.use_adaptive_subdivision = True
+    thing.modifiers.new("Triangulate", "TRIANGULATE")
+
+
 def build(asset_path):
     red = diffuse("red", (1, 0, 0))
     viewport(red)
