@@ -132,13 +132,14 @@ def new_mesh(instance, depsgraph):
 
 
 def new_shape(instance, depsgraph):
-    """(mesh, hair): the mesh is empty where only the hair is shown, or there is no mesh."""
-    thing = instance.object
+    """(mesh, hair): the mesh is empty where only the hair is shown, or there is no mesh. A view layer's filter may leave
+    out all surfaces, or all curves."""
+    thing, layer = instance.object, depsgraph.view_layer
     if thing.type == "CURVES":
-        return bpy.data.meshes.new("scumble"), export_hair.curves_hair(thing)
-    shown = instance.is_instance or instance.show_self
+        return bpy.data.meshes.new("scumble"), export_hair.curves_hair(thing) if layer.use_strand else []
+    shown = layer.use_solid and (instance.is_instance or instance.show_self)
     mesh = new_mesh(instance, depsgraph) if shown else bpy.data.meshes.new("scumble")
-    drawn = not is_generated(instance, depsgraph) and (instance.is_instance or instance.show_particles)
+    drawn = layer.use_strand and not is_generated(instance, depsgraph) and (instance.is_instance or instance.show_particles)
     return mesh, export_hair.particle_hair(thing) if drawn and thing.type == "MESH" else []
 
 
@@ -159,6 +160,13 @@ def note_limits(thing, shown, view_layer, unsupported):
     if getattr(thing, "is_shadow_catcher", False) and not isinstance(thing.get("scumble_style"), str):
         unsupported.add(f"object '{thing.name}': is a shadow catcher: pictures leave it out, and with --set "
                         "transfer.shadow=paint they have the shadows on it")
+
+
+def note_seen_lamp(thing, unsupported):
+    """A lamp with a size, which a render shows itself."""
+    lamp = thing.data
+    if thing.visible_camera and lamp.type != "SUN" and (lamp.type == "AREA" or lamp.shadow_soft_size > 0.0):
+        unsupported.add(f"lamp '{thing.name}': is visible to the camera, which is ignored: take a surface that emits")
 
 
 def flatten(scene, view_layer, unsupported):
@@ -193,6 +201,7 @@ def place_object(flat, meshes, instance, name, depsgraph, unsupported):
         return
     placed = Placed(name, thing.original, instance.matrix_world.copy())
     if thing.type == "LIGHT":
+        note_seen_lamp(thing.original, unsupported)
         flat.lamps.append(placed)
     elif thing.type == "CAMERA":
         flat.cameras.append(placed)

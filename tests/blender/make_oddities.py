@@ -88,6 +88,8 @@ def make_layered(folder):
     odd_materials.holes()
     odd_objects.emitters()
     odd_objects.diced()
+    odd_objects.filtered()
+    scene.view_layers.new("Strands").use_solid = second.use_strand = False
     save(folder, "layered")
 
 

@@ -165,6 +165,18 @@ def diced():
     thing.modifiers.new("Triangulate", "TRIANGULATE")
 
 
+def filtered():
+    """Hair, and two lamps of which the camera sees one."""
+    furry = plane("Furry", 8)
+    furry.modifiers.new("Particles", "PARTICLE_SYSTEM")
+    furry.particle_systems[0].settings.type = "HAIR"
+    furry.particle_systems[0].settings.count = 5
+    for name in ("Panel", "Unseen"):
+        lamp = bpy.data.objects.new(name, bpy.data.lights.new(name, "AREA"))
+        lamp.visible_camera = name == "Panel"
+        bpy.context.scene.collection.objects.link(lamp)
+
+
 def build(asset_path):
     red = diffuse("red", (1, 0, 0))
     viewport(red)

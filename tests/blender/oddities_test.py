@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """What few files do is exported as Cycles renders it: odd materials, curves with geometry nodes, settings of the
-viewport, and view layers other than the window's.
+viewport, view layers other than the window's and their filters, and alpha, subdivision and lamps that are said.
 
     oddities_test.py PROGRAM [BLENDER]
 """
@@ -21,7 +21,8 @@ TRIANGLES = {  # of objects whose viewport shows another mesh, or none
     "Screw": 2 * 24, "RenderAlone": 2 * QUADS, "Body": 2 * QUADS, "Child": 2 * QUADS * 16,
     "Instancer/Body": 2 * QUADS, "Instancer/Child": 2 * QUADS * 16, "Path/Path": 2 * QUADS, "Path/Path#5": 2 * QUADS}
 
-LOST = ["material 'elsewhere': node 'Image Texture.001' at other places than the colour's image",
+LOST = ["lamp 'Panel': is visible to the camera",
+        "material 'elsewhere': node 'Image Texture.001' at other places than the colour's image",
         "material 'fade': image 'Fade' is its alpha and half transparent in wide parts",
         "material 'glass': its alpha 0.3 is cut at one half: the surface is left out",
         "material 'tilted': node 'Mapping'",
@@ -109,13 +110,24 @@ def check_layered(document, extras):
     expect(len(lost) == len(LOST) and all(start in line for start, line in zip(LOST, lost)), lost)
 
 
+def check_filter(document, has_surfaces, has_hair):
+    """Furry is the only one with hair."""
+    kinds = {node["name"]: {primitive.get("mode", 4) for primitive in document["meshes"][node["mesh"]]["primitives"]}
+             for node in document["nodes"] if "mesh" in node}
+    expect(("First" in kinds) == has_surfaces, sorted(kinds))
+    expect(kinds["Furry"] == ({4} if has_surfaces else set()) | ({0} if has_hair else set()), kinds["Furry"])
+
+
 def main():
     program, blender = Path(sys.argv[1]).resolve(), (sys.argv[2:] or ["blender"])[0]
     with tempfile.TemporaryDirectory() as work:
         folder = Path(work)
         blender_run(blender, "-P", SOURCE / "tests/blender/make_oddities.py", "--", "--output", folder)
         check_odd(*exported(blender, folder, "odd"))
-        check_layered(*exported(blender, folder, "layered", "--frame", "10", "--view-layer", "Second"))
+        layered, extras = exported(blender, folder, "layered", "--frame", "10", "--view-layer", "Second")
+        check_layered(layered, extras)
+        check_filter(layered, True, False)
+        check_filter(exported(blender, folder, "layered", "--view-layer", "Strands")[0], False, True)
         check_against_cycles(program, blender, folder / "odd.blend")
 
 
