@@ -197,6 +197,8 @@ def check_emptiness(scene, view_layer, unsupported):
         reason = barred.get(thing)
         if reason is None and thing.hide_render:
             reason = "hidden from render"
+        if reason is None and not view_layer.use_solid:
+            reason = "without hair, in a view layer whose filter leaves out surfaces"
         reasons.setdefault(reason or "without a surface that the camera sees", []).append(thing)
     if reasons:
         ranked = sorted(reasons.items(), key=lambda item: -len(item[1]))

@@ -38,7 +38,8 @@ class FlatScene:
     meshes: list = field(default_factory=list)
     lamps: list = field(default_factory=list)
     cameras: list = field(default_factory=list)  # the active one first
-    materials: dict = field(default_factory=dict)  # by the key that MaterialKey gives
+    materials: dict = field(default_factory=dict)  # by material_key
+    shown_maps: dict = field(default_factory=dict)  # by material_key: its meshes' UV maps that renders take
     normals: dict = field(default_factory=dict)  # of metaballs' vertices, by the object's full name
     corners: dict = field(default_factory=dict)  # how many each mesh had before its faces were cut, by its name
 
@@ -55,11 +56,23 @@ def is_made_of_itself(instance):
     return instance.persistent_id[1] == LAST_LEVEL
 
 
+def particle_number(instance):
+    """"", "#2", "#3", … by the particle's own number, which it keeps when others die or are born; "#2.3": the third one
+    of its object's second system, and further numbers before these where the emitter is an instance."""
+    levels = [number + 1 for number in instance.persistent_id if number != LAST_LEVEL][::-1]
+    while len(levels) > 1 and levels[0] == 1:
+        del levels[0]
+    return "" if levels == [1] else "#" + ".".join(str(number) for number in levels)
+
+
 def name_of(instance, taken):
-    """The object's name; of an instance "Instancer/Object". Repeated ones count on in Blender's own order."""
+    """The object's name; of an instance "Instancer/Object", and a number. Repeated ones count on in Blender's own
+    order."""
     name = instance.object.original.name
     if instance.is_instance and instance.parent and not is_made_of_itself(instance):
         name = instance.parent.original.name + "/" + name
+        if instance.particle_system:
+            name += particle_number(instance)
     taken[name] = taken.get(name, 0) + 1
     return name if taken[name] == 1 else f"{name}#{taken[name]}"
 
@@ -119,13 +132,14 @@ def new_mesh(instance, depsgraph):
 
 
 def new_shape(instance, depsgraph):
-    """(mesh, hair): the mesh is empty where only the hair is shown, or there is no mesh."""
-    thing = instance.object
+    """(mesh, hair): the mesh is empty where only the hair is shown, or there is no mesh. A view layer's filter may leave
+    out all surfaces, or all curves."""
+    thing, layer = instance.object, depsgraph.view_layer
     if thing.type == "CURVES":
-        return bpy.data.meshes.new("scumble"), export_hair.curves_hair(thing)
-    shown = instance.is_instance or instance.show_self
+        return bpy.data.meshes.new("scumble"), export_hair.curves_hair(thing) if layer.use_strand else []
+    shown = layer.use_solid and (instance.is_instance or instance.show_self)
     mesh = new_mesh(instance, depsgraph) if shown else bpy.data.meshes.new("scumble")
-    drawn = not is_generated(instance, depsgraph) and (instance.is_instance or instance.show_particles)
+    drawn = layer.use_strand and not is_generated(instance, depsgraph) and (instance.is_instance or instance.show_particles)
     return mesh, export_hair.particle_hair(thing) if drawn and thing.type == "MESH" else []
 
 
@@ -140,9 +154,19 @@ def note_limits(thing, shown, view_layer, unsupported):
         unsupported.add(f"object '{thing.name}': is invisible to {', '.join(rays)} rays, which is ignored")
     if thing.is_holdout or shown.holdout_get(view_layer=view_layer):
         unsupported.add(f"object '{thing.name}': is a holdout, which is ignored")
+    levels = export_viewport.diced_levels(thing, view_layer.id_data)
+    if levels > 0:
+        unsupported.add(f"object '{thing.name}': its adaptive subdivision is taken for {levels} levels more")
     if getattr(thing, "is_shadow_catcher", False) and not isinstance(thing.get("scumble_style"), str):
         unsupported.add(f"object '{thing.name}': is a shadow catcher: pictures leave it out, and with --set "
                         "transfer.shadow=paint they have the shadows on it")
+
+
+def note_seen_lamp(thing, unsupported):
+    """A lamp with a size, which a render shows itself."""
+    lamp = thing.data
+    if thing.visible_camera and lamp.type != "SUN" and (lamp.type == "AREA" or lamp.shadow_soft_size > 0.0):
+        unsupported.add(f"lamp '{thing.name}': is visible to the camera, which is ignored: take a surface that emits")
 
 
 def flatten(scene, view_layer, unsupported):
@@ -177,6 +201,7 @@ def place_object(flat, meshes, instance, name, depsgraph, unsupported):
         return
     placed = Placed(name, thing.original, instance.matrix_world.copy())
     if thing.type == "LIGHT":
+        note_seen_lamp(thing.original, unsupported)
         flat.lamps.append(placed)
     elif thing.type == "CAMERA":
         flat.cameras.append(placed)
@@ -213,6 +238,11 @@ def add_mesh(flat, number, instance, depsgraph, unsupported):
     return mesh, hair
 
 
+def add_material(flat, material, mesh):
+    flat.materials.setdefault(material_key(material), material)
+    flat.shown_maps.setdefault(material_key(material), set()).add(export_maps.shown_map(mesh))
+
+
 def place_mesh(flat, meshes, placed, instance, depsgraph, unsupported):
     thing = instance.object
     key = mesh_key(instance, depsgraph)
@@ -222,12 +252,12 @@ def place_mesh(flat, meshes, placed, instance, depsgraph, unsupported):
         return
     placed.mesh, placed.hair = meshes[key]
     for hair in placed.hair:
-        flat.materials.setdefault(material_key(hair.material), hair.material)
+        add_material(flat, hair.material, placed.mesh)
     placed.is_own_shape = thing.type == "MESH" and not is_generated(instance, depsgraph)
     materials = [slot.material.original if slot.material else None for slot in thing.material_slots]
     placed.slots = tuple(materials or [None])
     for material in placed.slots:
-        flat.materials.setdefault(material_key(material), material)
+        add_material(flat, material, placed.mesh)
     flat.meshes.append(placed)
 
 

@@ -7,9 +7,10 @@ becomes a Diffuse surface in the material's viewport colour.
 
 import bpy
 
+import export_alpha
 import export_bends
 import export_copies
-from export_nodes import clear_links, constant, image_fault, previous, principled_input
+from export_nodes import clear_links, constant, image_fault, one_texture, previous, principled_input
 
 PLAIN = {"BSDF_DIFFUSE": "DIFFUSE", "BSDF_GLOSSY": "GLOSSY", "EMISSION": "EMISSION", "BSDF_PRINCIPLED": "PRINCIPLED"}
 CYCLES_DEFAULT = (0.8, 0.8, 0.8)  # Cycles' material of faces without one
@@ -26,8 +27,9 @@ WHITE = (1.0, 1.0, 1.0)  # of Specular Tint from Blender 4.0 on, where it is a c
 class Reader:
     """Reads one material's nodes; losses go to `unsupported` under the material's name."""
 
-    def __init__(self, name, unsupported):
+    def __init__(self, name, shown_map, unsupported):
         self.name = name
+        self.shown_map = shown_map  # the UV map that renders take, "" where its meshes differ
         self.unsupported = unsupported
 
     def complain(self, what):
@@ -98,14 +100,27 @@ def read_plain(kind, node, reader):
     return bsdf, source
 
 
-def keep_or_cut(tree, reader, node, name):
-    """An input of numbers that only an image may feed. Returns its constant, or None for an image."""
-    source = previous(node.inputs[name])
+def number_image(socket):
+    """The node of the image that feeds an input of numbers, alone or by one of its channels; None where none does."""
+    source = previous(socket)
     if source is not None and source.node.type in {"SEPARATE_COLOR", "SEPRGB"}:
         source = previous(source.node.inputs[0])
-    if source is not None and source.node.type == "TEX_IMAGE" and image_fault(source.node, "data") is None:
-        return None
-    value = min(max(reader.number(node.inputs[name]), 0.0), 1.0)  # as Cycles clamps it
+    return source.node if source is not None and source.node.type == "TEX_IMAGE" else None
+
+
+def keep_or_cut(tree, reader, node, name, beside=None):
+    """An input of numbers that only an image may feed. Returns its constant, or None for an image. `beside`: another
+    input's image, which shares a texture with it."""
+    image = number_image(node.inputs[name])
+    if image is not None and image_fault(image, "data") is None:
+        if beside is None or one_texture(image, beside, reader.shown_map):
+            return None
+        reader.complain(f"node '{image.name}' at other places than the roughness' image, with which it shares a "
+                        f"texture, feeds {name}, which keeps its own value instead")
+        value = node.inputs[name].default_value
+    else:
+        value = reader.number(node.inputs[name])
+    value = min(max(value, 0.0), 1.0)  # as Cycles clamps it
     clear_links(tree, node.inputs[name])
     node.inputs[name].default_value = value
     return value
@@ -146,17 +161,14 @@ def read_principled(tree, node, reader):
     if emission_source is None:
         clear_links(tree, emits)
         emits.default_value = (*emission, 1.0)
-    bsdf = {"type": "PRINCIPLED", "color": list(color), "texture": is_texture(source),
-            "roughness": keep_or_cut(tree, reader, node, "Roughness"),
-            "metallic": keep_or_cut(tree, reader, node, "Metallic"),
+    roughness = keep_or_cut(tree, reader, node, "Roughness")
+    beside = number_image(node.inputs["Roughness"])
+    bsdf = {"type": "PRINCIPLED", "color": list(color), "texture": is_texture(source), "roughness": roughness,
+            "metallic": keep_or_cut(tree, reader, node, "Metallic", beside),
             "emission": [strength * c for c in emission] if emission_source is None else None,
             "strength": strength, "distribution": node.distribution}
     drop_ignored(tree, node, reader)
-    alpha = previous(node.inputs["Alpha"])
-    if alpha is not None and alpha.node.type != "TEX_IMAGE":
-        reader.number(node.inputs["Alpha"])
-        alpha = None
-    return bsdf, source, alpha is not None or node.inputs["Alpha"].default_value < 1.0
+    return bsdf, source, export_alpha.read(tree, node, source if is_texture(source) else None, reader)
 
 
 def rebuild(copy, bsdf, source, bends, surface, output):
@@ -219,8 +231,9 @@ def simplify_nodes(copy, reader):
     return bsdf, bends, holes, source if isinstance(source, tuple) else None
 
 
-def simplify(materials, unsupported):
-    """For each material by its key: {"material": the exporter's, "name": the original's, "extras": …, …}."""
+def simplify(materials, shown_maps, unsupported):
+    """For each material by its key: {"material": the exporter's, "name": the original's, "extras": …, …}. `shown_maps`:
+    the names of the UV maps that renders take, likewise."""
     entries = {}
     for number, (key, material) in enumerate(materials.items()):
         if material is None:
@@ -230,9 +243,10 @@ def simplify(materials, unsupported):
         else:
             copy, name = material.copy(), material.name
         copy.name = f"scumble.{number:06d}"
+        shown = next(iter(shown_maps[key])) if len(shown_maps[key]) == 1 else ""
         holes, bends, bsdf, attribute = False, export_bends.Bends(), diffuse(copy.diffuse_color[:3]), None
         if copy.use_nodes and copy.node_tree:
-            bsdf, bends, holes, attribute = simplify_nodes(copy, Reader(name, unsupported))
+            bsdf, bends, holes, attribute = simplify_nodes(copy, Reader(name, shown, unsupported))
         # Old files hold values beyond 1 here, which the exporter writes for a material without nodes.
         copy.roughness, copy.metallic = min(copy.roughness, 1.0), min(copy.metallic, 1.0)
         # These settings are the viewport's; Cycles shows both sides of every surface and always applies alpha.

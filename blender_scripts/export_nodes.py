@@ -100,6 +100,22 @@ def image_fault(node, spaces):
     return coordinates_of(node.inputs["Vector"])[1]
 
 
+def placement_of(node, shown_map):
+    """Where and how an image texture without a fault lies on the surface."""
+    name = coordinates_of(node.inputs["Vector"])[0] or shown_map
+    source = previous(node.inputs["Vector"])
+    numbers = (0.0, 0.0, 0.0, 1.0, 1.0)
+    if source is not None and source.node.type == "MAPPING":
+        at, turn, scale = (source.node.inputs[key].default_value for key in ("Location", "Rotation", "Scale"))
+        numbers = (at[0], at[1], turn[2], scale[0], scale[1])
+    return name, node.extension, node.interpolation == "Closest", *(round(number, 6) for number in numbers)
+
+
+def one_texture(first, second, shown_map):
+    """Whether one texture of glTF can hold both images. `shown_map`: the UV map that renders take, "" if unknown."""
+    return placement_of(first, shown_map) == placement_of(second, shown_map)
+
+
 def clear_links(tree, socket):
     for link in list(socket.links):
         tree.links.remove(link)

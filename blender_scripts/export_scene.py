@@ -38,6 +38,7 @@ import export_lamps  # noqa: E402
 import export_materials  # noqa: E402
 import export_rest  # noqa: E402
 import export_stretch  # noqa: E402
+import export_viewport  # noqa: E402
 from blend_common import (Unsupported, action_curves, cameras_of, check_version, choose_layer,  # noqa: E402
                           choose_scene, fail, say)
 
@@ -57,7 +58,7 @@ def export(scene, view_layer, output, unsupported):
     if not flat.meshes:
         blend_check.check_emptiness(scene, view_layer, unsupported)
     has_rest = export_rest.add_rest_positions(flat, view_layer)
-    materials = export_materials.simplify(flat.materials, unsupported)
+    materials = export_materials.simplify(flat.materials, flat.shown_maps, unsupported)
     has_heights = export_bends.add_exact_v(flat, materials)
     has_colors = export_colors.add_colors(flat, materials)
     has_attributes = has_rest or has_heights or has_colors
@@ -122,6 +123,7 @@ def open_again():
 def show_frame(scene, view_layer, frame):
     """Animation reaches the file's own data only from the window's layer, and only once that has been evaluated."""
     bpy.context.window.scene, bpy.context.window.view_layer = scene, view_layer
+    export_viewport.bring_in(cameras_of(scene, Unsupported()), scene, view_layer)
     view_layer.update()
     scene.frame_set(frame)
 

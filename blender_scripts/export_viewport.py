@@ -3,6 +3,7 @@
 The file is opened anew for each frame, so nothing is put back.
 """
 
+import math
 import re
 
 import bpy
@@ -14,6 +15,8 @@ MODIFIERS = {"SUBSURF": ("levels", "render_levels"), "MULTIRES": ("levels", "ren
              "SCREW": ("steps", "render_steps"), "OCEAN": ("viewport_resolution", "resolution")}
 DATA = (("resolution_u", "render_resolution_u"), ("resolution_v", "render_resolution_v"),
         ("resolution", "render_resolution"))
+DICED = "scumble.diced"  # the modifier that stands for an adaptive subdivision
+MOST_DICED, MOST_LEVELS = 40_000, 6  # its faces, unless the object's own modifier makes more
 # Paths of properties that are the viewport's. The resolution of an Ocean is the render's.
 OF_VIEWPORT = re.compile(r"(hide_viewport|show_viewport|\.levels|\.steps|viewport_resolution|^resolution(_u|_v)?"
                          r"|show_instancer_for_viewport|display_percentage|display_step|child_nbr|child_percent)$")
@@ -48,12 +51,37 @@ def use_render_particles(settings):
     put(settings, "display_step", settings.render_step)
 
 
-def use_render_modifiers(thing):
+def diced_levels(thing, scene):
+    """The levels that stand for Cycles' adaptive subdivision of an object, whatever its view, so that all frames have
+    equal triangles; 0 where there is none. Cycles subdivides what the modifier has subdivided once more."""
+    of_scene, of_object = getattr(scene, "cycles", None), getattr(thing, "cycles", None)
+    if getattr(of_scene, "feature_set", "") != "EXPERIMENTAL" or not getattr(of_object, "use_adaptive_subdivision", 0):
+        return 0
+    own = [modifier for modifier in thing.modifiers if modifier.name != DICED]
+    if thing.type != "MESH" or not own or own[-1].type != "SUBSURF" or not own[-1].show_render:
+        return 0
+    if own[-1].subdivision_type != "CATMULL_CLARK":
+        return 0  # more faces, but no other surface
+    faces = max(len(thing.data.polygons), 1) * 4 ** own[-1].render_levels
+    return min(max(math.floor(math.log(MOST_DICED / faces, 4)), 0), MOST_LEVELS)
+
+
+def dice(thing, levels):
+    last = thing.modifiers[-1]
+    more = thing.modifiers.new(DICED, "SUBSURF")
+    more.levels = more.render_levels = levels
+    more.uv_smooth, more.boundary_smooth = last.uv_smooth, last.boundary_smooth
+
+
+def use_render_modifiers(thing, scene):
     for modifier in thing.modifiers:
         put(modifier, "show_viewport", modifier.show_render)
         if modifier.type in MODIFIERS:
             viewport, render = MODIFIERS[modifier.type]
             put(modifier, viewport, getattr(modifier, render))
+    levels = diced_levels(thing, scene)
+    if levels > 0 and DICED not in thing.modifiers:
+        dice(thing, levels)
     for system in thing.particle_systems:
         use_render_particles(system.settings)
 
@@ -95,9 +123,9 @@ def take_settings(scene, view_layer):
             use_render_nodes(tree)
     for thing in bpy.data.objects:
         release(thing)
-        put(thing, "hide_viewport", thing.hide_render)
+        put(thing, "hide_viewport", thing.hide_render and thing.type != "CAMERA")  # cameras are never rendered
         put(thing, "show_instancer_for_viewport", thing.show_instancer_for_render)
-        use_render_modifiers(thing)
+        use_render_modifiers(thing, scene)
         if thing.data is not None:
             use_render_data(thing.data)
     for thing in view_layer.objects:
@@ -112,6 +140,14 @@ def hidden_objects(view_layer):
     return [thing for thing in bpy.data.objects
             if thing.hide_viewport or any(collection.hide_viewport for collection in thing.users_collection)
             or (thing in in_layer and not thing.visible_get(view_layer=view_layer))]
+
+
+def bring_in(cameras, scene, view_layer):
+    """Cameras that the view layer leaves out or does not show, so that the frame moves them as well."""
+    for camera in cameras:
+        held = camera in set(view_layer.objects) and camera.visible_get(view_layer=view_layer)
+        if not held and scene.library is None and camera.name not in scene.collection.objects:
+            scene.collection.objects.link(camera)
 
 
 def show_as_rendered(scene, view_layer):

@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/image/check.h"
@@ -133,19 +134,28 @@ void PlaceKeyLamp(const Scene& scene, View& view) {
   at = view.key_lamp->endless ? view.camera.DirectionToView(at) : view.camera.ViewFromWorld(at);
 }
 
+// Each instance's name, and how many before it have that name: an object has one for each of its materials. The index
+// of a mesh is no name, because an object that appears moves all that follow.
+std::vector<std::pair<std::string, int>> PartNames(const Scene& scene) {
+  std::map<std::string, int> count;
+  std::vector<std::pair<std::string, int>> names;
+  for (const Instance& instance : scene.instances) names.emplace_back(instance.object, count[instance.object]++);
+  return names;
+}
+
 // The instances of the next frame in the order of this one's.
 Status PlaceNextFrame(const Scene& scene, const NextFrame& next, const GuidegenOptions& options, View& view) {
   SCUMBLE_ASSIGN(view.next_camera, CameraRays::Make(next.camera, options.width, options.height));
+  const std::vector<std::pair<std::string, int>> names = PartNames(scene), next_names = PartNames(next.scene);
   std::map<std::pair<std::string, int>, const Instance*> by_name;
-  for (const Instance& instance : next.scene.instances)
-    by_name.try_emplace({instance.object, instance.mesh}, &instance);
-  for (const Instance& instance : scene.instances) {
+  for (std::size_t i = 0; i < next_names.size(); ++i) by_name.emplace(next_names[i], &next.scene.instances[i]);
+  for (std::size_t i = 0; i < names.size(); ++i) {
     PlacedObject placed;
-    const auto found = by_name.find({instance.object, instance.mesh});
-    if (found != by_name.end() && std::size_t(instance.mesh) < next.scene.meshes.size()) {
-      const Mesh& mesh = next.scene.meshes[std::size_t(instance.mesh)];
+    const auto found = by_name.find(names[i]);
+    if (found != by_name.end()) {
+      const Mesh& mesh = next.scene.meshes[std::size_t(found->second->mesh)];
       // Other triangles mean a different object under an old name, or faces that were cut along other diagonals.
-      if (SameTriangles(scene.meshes[std::size_t(instance.mesh)], mesh)) {
+      if (SameTriangles(scene.meshes[std::size_t(scene.instances[i].mesh)], mesh)) {
         placed.mesh = &mesh;
         placed.view_from_object = view.next_camera.ViewFromObject(found->second->world_from_object);
       }

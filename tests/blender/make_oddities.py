@@ -55,7 +55,8 @@ def make_odd(folder):
 
 
 def make_layered(folder):
-    """The window's layer excludes what moves from frame 1, at which the file is saved, to frame 10."""
+    """The window's layer excludes what moves from frame 1, at which the file is saved, to frame 10. Both
+    layers exclude a camera that moves."""
     scene = clear()
     odd_materials.plane("First", 0, odd_materials.diffuse("red", (1, 0, 0)))
     moving = bpy.data.collections.new("Moving")
@@ -71,12 +72,24 @@ def make_layered(folder):
         for owner, path in ((goes, "hide_render"), (comes, "hide_render"), (sun.data, "energy"),
                             (colour, "default_value")):
             owner.keyframe_insert(path, frame=frame)
-    scene.view_layers.new("Second")
+    away, excluded = bpy.data.objects.new("Away", bpy.data.cameras.new("Away")), bpy.data.collections.new("Excluded")
+    scene.collection.children.link(excluded)
+    excluded.objects.link(away)
+    for frame in (1, 10):
+        away.location.x = frame
+        away.keyframe_insert("location", frame=frame)
+    second = scene.view_layers.new("Second")
     scene.frame_set(10)
     scene.frame_set(1)
     bpy.context.view_layer.layer_collection.children["Moving"].exclude = True
+    for layer in (bpy.context.view_layer, second):
+        layer.layer_collection.children["Excluded"].exclude = True
     odd_materials.plane("Tilted", 3, odd_materials.tilted())
-    odd_objects.emitter()
+    odd_materials.holes()
+    odd_objects.emitters()
+    odd_objects.diced()
+    odd_objects.filtered()
+    scene.view_layers.new("Strands").use_solid = second.use_strand = False
     save(folder, "layered")
 
 

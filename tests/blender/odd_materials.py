@@ -183,6 +183,48 @@ def numbers():
     plane("Glow", 18, glow)
 
 
+def feed(tree, image, output, inputs, scale=None, uv_map=None, extension="REPEAT"):
+    """An image that feeds inputs of the Principled node, at mapped places or by a UV map of that name."""
+    texture = tree.nodes.new("ShaderNodeTexImage")
+    texture.image, texture.extension = image, extension
+    if scale:
+        mapping = tree.nodes.new("ShaderNodeMapping")
+        mapping.inputs["Scale"].default_value = (scale, scale, 1)
+        tree.links.new(tree.nodes.new("ShaderNodeTexCoord").outputs["UV"], mapping.inputs["Vector"])
+        tree.links.new(mapping.outputs[0], texture.inputs["Vector"])
+    elif uv_map:
+        named = tree.nodes.new("ShaderNodeUVMap")
+        named.uv_map = uv_map
+        tree.links.new(named.outputs[0], texture.inputs["Vector"])
+    for name in inputs:
+        tree.links.new(texture.outputs[output], tree.nodes["Principled BSDF"].inputs[name])
+
+
+def holes():
+    """Alpha, and two images of numbers, in cells of the last two rows."""
+    mask = bpy.data.images.new("Mask", 8, 8)
+    y, x = np.mgrid[0:8, 0:8]
+    inside = (x > 0) & (x < 7) & (y > 0) & (y < 5)
+    mask.pixels.foreach_set(np.stack([inside, inside, inside, np.ones((8, 8))], axis=2).astype(np.float32).ravel())
+    mask.colorspace_settings.name = "Non-Color"
+    mask.pack()
+    fade, unread = picture("Fade", 0.4), picture("Unread", 0.3)
+    unread.alpha_mode = "NONE"
+    wanted = {
+        "glass": [], "fade": [(fade, "Alpha", ["Alpha"])], "unread": [(unread, "Alpha", ["Alpha"])],
+        "elsewhere": [(fade, "Color", ["Base Color"]), (mask, "Color", ["Alpha"], 3)],
+        "named": [(fade, "Color", ["Base Color"]), (mask, "Color", ["Alpha"], None, "UVMap")],
+        "alone": [(mask, "Color", ["Alpha"], 3)], "clipped": [(mask, "Color", ["Alpha"], 3, None, "CLIP")],
+        "two": [(mask, "Color", ["Roughness"]), (mask, "Color", ["Metallic"], 3)],
+        "one": [(mask, "Color", ["Roughness", "Metallic"], 3)]}
+    for number, (name, images) in enumerate(wanted.items()):
+        material, tree, surface = shader(name, "ShaderNodeBsdfPrincipled")
+        surface.inputs["Alpha"].default_value = 0.3 if name == "glass" else 1.0
+        for image in images:
+            feed(tree, *image)
+        plane("Holes " + name, 24 + number, material)
+
+
 def build():
     for cells in (attributes, maps, muted, numbers):
         cells()

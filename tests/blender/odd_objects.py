@@ -140,16 +140,41 @@ def stale(path):
     bpy.context.scene.collection.objects.link(instancer)
 
 
-def emitter():
-    """Sends leaves up, 1 m in a second."""
+def emitters():
+    """They send leaves up, 1 m in a second; those of Brief are gone after 4 frames."""
     leaf = plane("Leaf", 39)
     leaf.hide_render = True
-    source = plane("Emitter", 4)
-    source.modifiers.new("Particles", "PARTICLE_SYSTEM")
-    settings = source.particle_systems[0].settings
-    settings.count, settings.frame_end = 10, 10
-    settings.render_type, settings.instance_object, settings.particle_size = "OBJECT", leaf, 0.1
-    settings.effector_weights.gravity = 0
+    for name, cell, systems, lifetime in (("Emitter", 4, 1, 50), ("Brief", 5, 2, 4)):
+        source = plane(name, cell)
+        for number in range(systems):
+            source.modifiers.new("Particles", "PARTICLE_SYSTEM")
+            settings = source.particle_systems[number].settings
+            settings.count, settings.frame_end, settings.lifetime = 10, 10, lifetime
+            settings.render_type, settings.instance_object, settings.particle_size = "OBJECT", leaf, 0.1
+            settings.effector_weights.gravity = 0
+
+
+def diced():
+    """Two planes with adaptive subdivision, which counts where the modifier is the last one alone."""
+    bpy.context.scene.cycles.feature_set = "EXPERIMENTAL"
+    for name, cell in (("Diced", 6), ("Plain", 7)):
+        thing = plane(name, cell)
+        smooth = thing.modifiers.new("Smooth", "SUBSURF")
+        smooth.levels, smooth.render_levels = 0, 1
+        thing.cycles.use_adaptive_subdivision = True
+    thing.modifiers.new("Triangulate", "TRIANGULATE")
+
+
+def filtered():
+    """Hair, and two lamps of which the camera sees one."""
+    furry = plane("Furry", 8)
+    furry.modifiers.new("Particles", "PARTICLE_SYSTEM")
+    furry.particle_systems[0].settings.type = "HAIR"
+    furry.particle_systems[0].settings.count = 5
+    for name in ("Panel", "Unseen"):
+        lamp = bpy.data.objects.new(name, bpy.data.lights.new(name, "AREA"))
+        lamp.visible_camera = name == "Panel"
+        bpy.context.scene.collection.objects.link(lamp)
 
 
 def build(asset_path):

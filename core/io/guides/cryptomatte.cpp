@@ -174,6 +174,21 @@ std::uint32_t MatteBits(std::uint32_t hash) {
   return (hash & 0x807fffff) | exponent << 23;
 }
 
+Expected<std::map<std::uint32_t, std::string>> RoundedAsPxr24(const std::map<std::uint32_t, std::string>& manifest,
+                                                              const std::string& name) {
+  std::map<std::uint32_t, std::string> rounded;
+  for (const auto& [bits, text] : manifest) {
+    // To the nearest, unless that were infinite.
+    const std::uint32_t size = bits & 0x7fffffff, nearest = (size + (size & 0x80)) & 0xffffff00;
+    const std::uint32_t rest = nearest < 0x7f800000 ? nearest : size & 0xffffff00;
+    const auto [other, is_new] = rounded.emplace((bits & 0x80000000) | rest, text);
+    if (is_new) continue;
+    return InputError(name + ": its compression pxr24 is lossy and leaves one Cryptomatte id for '" + other->second +
+                      "' and '" + text + "'; render it again with the codec ZIP");
+  }
+  return rounded;
+}
+
 Expected<std::map<std::uint32_t, std::string>> ReadManifest(std::string_view text, const std::string& name) {
   std::map<std::uint32_t, std::string> names;
   std::size_t at = SkipSpace(text, 0);

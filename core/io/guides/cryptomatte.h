@@ -41,6 +41,11 @@ std::uint32_t MatteHash(std::string_view name);
 // ("uint32_to_float32").
 std::uint32_t MatteBits(std::uint32_t hash);
 
+// The manifest of a file in OpenEXR's compression pxr24, which rounds each float to 24 bits: names by what is left of
+// their ids. Two names with equal rests are an error. `name` stands for the file.
+Expected<std::map<std::uint32_t, std::string>> RoundedAsPxr24(const std::map<std::uint32_t, std::string>& manifest,
+                                                              const std::string& name);
+
 // Names by the bits of their ids. Reads {"name":"8 hex digits", …}, with JSON's escapes or, as Blender 3.4 writes them,
 // with unescaped quotation marks and backslashes. Of all readings of an entry, the one that gives its hash counts.
 // Empty manifests ("", "}" and "{}") give no names; other text is an error. `name` stands for the file.

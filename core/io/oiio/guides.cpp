@@ -27,6 +27,7 @@ struct FoundMatte {
   int subimage;
   int channel;
   bool is_float;
+  bool is_pxr24;
   MatteChannel meaning;
 };
 
@@ -44,6 +45,7 @@ struct FileContents {
   std::vector<FoundLight> lights;
   std::map<std::string, std::string> manifests;  // by the matte's name: "ViewLayer.CryptoObject"
   std::string all_names;                         // for messages
+  std::string dwa;                               // dwaa or dwab, where a part is compressed so
   bool has_half = false;
   bool from_blender = false;
 };
@@ -78,6 +80,8 @@ Expected<FileContents> Survey(OIIO::ImageInput& input, const std::string& name) 
     if (spec.full_width != contents.spec.full_width || spec.full_height != contents.spec.full_height) {
       return InputError(name + ": its parts differ in size; write all guides at one size");
     }
+    const std::string compression(spec.get_string_attribute("compression"));
+    if (compression.starts_with("dwa")) contents.dwa = compression;
     for (int c = 0; c < spec.nchannels; ++c) {
       const std::string part(spec.get_string_attribute("oiio:subimagename"));
       const std::string channel = FullName(part, spec.channelnames[c]);
@@ -85,7 +89,8 @@ Expected<FileContents> Survey(OIIO::ImageInput& input, const std::string& name) 
       contents.has_half = contents.has_half || spec.channelformat(c) == OIIO::TypeDesc::HALF;
       if (channel.find("Combined.R") != std::string::npos) contents.from_blender = true;
       if (auto matte = ParseMatteChannel(channel)) {
-        contents.mattes.push_back({subimage, c, spec.channelformat(c) == OIIO::TypeDesc::FLOAT, *matte});
+        const bool is_float = spec.channelformat(c) == OIIO::TypeDesc::FLOAT;
+        contents.mattes.push_back({subimage, c, is_float, compression == "pxr24", *matte});
       } else if (auto meaning = ParseChannelName(channel)) {
         contents.channels.push_back({subimage, c, *meaning});
       } else if (auto light = ParseLightChannel(channel)) {
@@ -267,6 +272,9 @@ Expected<BlenderMattes> MattesOf(const FileContents& contents, const std::string
       const auto manifest = contents.manifests.find(found.meaning.matte);
       if (manifest != contents.manifests.end()) {
         SCUMBLE_ASSIGN(matte.manifest, ReadManifest(manifest->second, name));
+        if (found.is_pxr24) {
+          SCUMBLE_ASSIGN(matte.manifest, RoundedAsPxr24(matte.manifest, name));
+        }
       }
     }
     const std::size_t index = static_cast<std::size_t>(found.meaning.index);
@@ -386,6 +394,10 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
     if (complete.Has(info.layer) || mattes.count(info.layer) || lit) missing.Remove(info.layer);
   }
   const bool solves_camera = contents.from_blender && !camera;
+  if (!contents.dwa.empty() && (solves_camera || !mattes.empty())) {
+    return InputError(name + ": its compression " + contents.dwa +
+                      " is lossy, which Position and Cryptomatte do not survive; render it again with the codec ZIP");
+  }
   if (solves_camera && !missing.empty()) {  // name at once the layers that the next run would lack
     for (const Layer layer : {Layer::kDepth, Layer::kPosition}) {
       if (!complete.Has(layer)) missing.Add(layer);

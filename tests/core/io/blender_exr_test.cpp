@@ -1,6 +1,7 @@
 // Plain Blender renders: names from Cryptomatte, coverage from an opaque film, the camera solved or from its file.
 // Scenes are made here, so the truth is known; tests/blender/render_test.cpp compares with Blender itself.
 #include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -301,6 +302,41 @@ TEST(BlenderFile, AnotherViewLayersCryptomatteIsNotTaken) {
   file.Header("cryptomatte/1234567/manifest", "{}");
   file.Write(folder / "half.exr", OIIO::TypeDesc::HALF);
   ExpectRefusal(ReadGuides(folder / "half.exr", WithObjects()), {"half.exr", "half floats", "32-bit"});
+}
+
+// pxr24 rounds ids, dwaa what ends in .r, .g, .b and .Y; b44 only half floats.
+TEST(BlenderFile, LossyCompressionKeepsNamesOrIsNamed) {
+  const TemporaryFolder folder;
+  BlenderFile file;
+  const auto hex = [](const std::string& name) { return fmt::format("{:08x}", MatteHash(name)); };
+  const std::string cube = R"({"Cube":")" + hex("Cube") + "\"", ball = R"("Ball":")" + hex("Ball") + "\"";
+  file.AddMatte("CryptoObject", "Cube", "Ball", cube + "," + ball + "}");
+  for (const char* codec : {"zip", "piz", "pxr24", "b44", "b44a"}) {
+    file.Header("compression", codec);
+    file.Write(folder / "shot.exr");
+    const auto guides = ReadGuides(folder / "shot.exr", WithObjects());
+    ASSERT_TRUE(guides) << codec << ": " << guides.error().message;
+    for (std::size_t i = 0; i < file.Pixels(); ++i) {
+      if (file.Channel("Depth.Z")[i] > 1e9f) continue;
+      EXPECT_EQ(guides->Plane(Layer::kObject)[i], IdOf(i % 40 < 20 ? "Cube" : "Ball")) << codec;
+    }
+  }
+  for (const char* codec : {"dwaa", "dwab"}) {
+    file.Header("compression", codec);
+    file.Write(folder / "dwa.exr");
+    ExpectRefusal(ReadGuides(folder / "dwa.exr", WithObjects()), {"dwa.exr", codec, "lossy", "codec ZIP"});
+  }
+}
+
+TEST(Cryptomatte, RoundsIdsAsOpenExrDoes) {
+  const auto rounded = RoundedAsPxr24(
+      {{0x10010381, "up"}, {0xaa5ce97f, "down"}, {0x7f7fffff, "the largest"}, {0x00800000, "exact"}}, "a.exr");
+  ASSERT_TRUE(rounded) << rounded.error().message;
+  EXPECT_EQ(rounded->at(0x10010400), "up");
+  EXPECT_EQ(rounded->at(0xaa5ce900), "down");
+  EXPECT_EQ(rounded->at(0x7f7fff00), "the largest") << "not infinite";
+  EXPECT_EQ(rounded->at(0x00800000), "exact");
+  ExpectRefusal(RoundedAsPxr24({{0x10010381, "a"}, {0x10010401, "b"}}, "a.exr"), {"a.exr", "pxr24", "'a' and 'b'"});
 }
 
 TEST(BlenderFile, NothingIsOutsideARenderBorder) {

@@ -195,6 +195,38 @@ TEST(RayScene, MotionFollowsTrianglesWhateverTheirVerticesAreCalled) {
   EXPECT_GT(middle(joint, split), 1.0f) << "one place at rest";
 }
 
+// Each frame is an export of its own, whose meshes are numbered anew.
+TEST(RayScene, MotionFollowsAnObjectWhenOthersAppearOrVanish) {
+  Mesh square;
+  square.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+  square.triangles = {{0, 1, 2}, {0, 2, 3}};
+  Mesh upper = square, lower = square;
+  upper.triangles = {{0, 2, 3}};
+  lower.triangles = {{0, 1, 2}};
+  Scene scene = SceneOf(lower);  // two materials, and so two meshes
+  scene.meshes.push_back(upper);
+  scene.instances.push_back(scene.instances.front());
+  scene.instances.back().mesh = 1;
+  Scene more = scene;
+  more.meshes.insert(more.meshes.begin(), square);
+  for (Instance& instance : more.instances) ++instance.mesh;
+  more.instances.insert(more.instances.begin(), {"other", 0, Moved(0.0, 0.0, -9.0)});
+  const auto motion = [&](const Scene& now, Scene next, int column, int row) {
+    for (Instance& instance : next.instances) instance.world_from_object *= Moved(0.5, 0.0, 0.0);
+    const Camera camera = LookingAt({0.0, 0.0, 5.0}, {0.0, 0.0, 0.0});
+    const GuidegenResult result = TakeValid(RenderGuides(now, camera, {next, camera}, Drawn(32, 32, {Layer::kMotion})));
+    return result.guides.Plane(Layer::kMotion)[std::size_t(row) * 32 + std::size_t(column)];
+  };
+  const float moved = motion(scene, scene, 16, 16);
+  EXPECT_GT(moved, 1.0f);
+  for (const auto& [column, row] : {std::pair(14, 12), std::pair(18, 19)}) {
+    EXPECT_FLOAT_EQ(motion(scene, more, column, row), moved);
+    EXPECT_FLOAT_EQ(motion(more, scene, column, row), moved);
+  }
+  more.instances.front().world_from_object = Moved(0.0, 0.0, 1.0);
+  EXPECT_EQ(motion(more, scene, 16, 16), 0.0f) << "gone in the next frame";
+}
+
 TEST(RayScene, CastsFromSeveralThreadsAtOnce) {
   const Scene scene = MixedScene();
   const RayScene reused = Ready(scene, MixedCamera());
