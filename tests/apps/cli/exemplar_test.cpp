@@ -166,6 +166,7 @@ TEST_F(CliExemplar, CheckReportsDirectionsAndRepeats) {
     const float values[3] = {i % 64 < 32 ? -0.6f : 0.6f, 0.0f, 0.8f};
     for (int c = 0; c < 3; ++c)
       wedge.Plane(Layer::kNormal, c)[i] = wedge.Plane(Layer::kCoverage)[i] > 0 ? values[c] : 0.0f;
+    if (wedge.Plane(Layer::kCoverage)[i] > 0) wedge.Plane(Layer::kDepth)[i] = 5.0f;  // of a ball no more
   }
   fs::create_directory(At("wedge"));
   WriteGuideFile("wedge/wedge.exr", wedge);
