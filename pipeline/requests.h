@@ -96,8 +96,9 @@ struct StyleRequest {
 
 // What becomes of the paint: a picture file.
 struct PictureRequest {
-  std::string output;  // .png .tif .exr .jpg
-  std::string over;    // a picture underneath, of the same size; empty: none
+  std::string output;                // .png .tif .exr .jpg
+  std::string over;                  // a picture underneath, of the same size; empty: none
+  std::string over_view_layer = {};  // where `over` is a render of several
   int bits = 8;
   int png_level = 6;
   bool fast_io = false;

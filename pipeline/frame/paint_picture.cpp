@@ -85,7 +85,7 @@ bool LooksAtLightWhenPrepared(const PreparedStyle& style) {
 Expected<const Picture*> OverFor(const PictureRequest& request, const GuideSet& guides, const std::string& guides_name,
                                  PictureState& state) {
   if (request.over.empty()) return static_cast<const Picture*>(nullptr);
-  SCUMBLE_RETURN_IF_ERROR(ReadOver(request.over, state));
+  SCUMBLE_RETURN_IF_ERROR(ReadOver(request, state));
   const Picture& over = *state.over;
   if (over.width != guides.width() || over.height != guides.height()) {
     return InputError(fmt::format("--over {} is {}×{}, {} {} {}×{}: render both at one size", request.over, over.width,
@@ -187,11 +187,11 @@ void MeasureFinishOf(const StyleSet& styles, const GuideSet& guides, const RunCo
   context.Note("finish: --finish-measures " + MeasuresText(*state.finish_measures) + " repeats what was measured");
 }
 
-Status ReadOver(const std::string& file, PictureState& state) {
-  if (state.over && state.over_file == file) return Ok();
+Status ReadOver(const PictureRequest& request, PictureState& state) {
+  if (state.over && state.over_file == request.over) return Ok();
   state.over.reset();
-  SCUMBLE_ASSIGN(state.over, ReadPicture(file));
-  state.over_file = file;
+  SCUMBLE_ASSIGN(state.over, ReadPicture(request.over, request.over_view_layer));
+  state.over_file = request.over;
   return Ok();
 }
 

@@ -54,7 +54,7 @@ struct PictureState {
 };
 
 // Reads PictureRequest::over, unless `state` has it already.
-Status ReadOver(const std::string& file, PictureState& state);
+Status ReadOver(const PictureRequest& request, PictureState& state);
 
 // Measures what finishing passes look at, unless `state` has it already, and tells it. Nothing where none looks.
 void MeasureFinishOf(const StyleSet& styles, const GuideSet& guides, const RunContext& context, PictureState& state);

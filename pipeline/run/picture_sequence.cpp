@@ -53,7 +53,7 @@ Status PictureSequence::Begin(const Sequence& sequence, int width, int height, c
 Status PictureSequence::ReadOverOfAll(int width, int height) {
   SCUMBLE_ASSIGN(const FrameName over, FrameName::Parse(request_.over));
   if (request_.over.empty() || over.has_place()) return Ok();
-  SCUMBLE_RETURN_IF_ERROR(ReadOver(request_.over, state_));
+  SCUMBLE_RETURN_IF_ERROR(ReadOver(request_, state_));
   if (width == 0 || (state_.over->width == width && state_.over->height == height)) return Ok();
   return InputError(fmt::format("--over {} is {}×{}, the frames are {}×{}: render both at one size", request_.over,
                                 state_.over->width, state_.over->height, width, height));

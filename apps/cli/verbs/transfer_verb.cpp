@@ -28,6 +28,7 @@ Expected<TransferRequest> ToRequest(const CLI::App& sub, const TransferVerb& ver
   }
   TransferRequest request{verb.guides, verb.view_layer, verb.light_layer, verb.camera, verb.style, {}, {}, {}};
   SCUMBLE_ASSIGN(request.picture, ToRequest(verb.picture, globals));
+  request.picture.over_view_layer = verb.view_layer;
   SCUMBLE_ASSIGN(request.budget, ToRequest(sub, verb.budget));
   SCUMBLE_ASSIGN(request.sequence, ToRequest(verb.sequence));
   return request;
@@ -47,7 +48,7 @@ void AddTransferVerb(CLI::App& app, Globals& globals, Action& chosen) {
   CLI::App* sub =
       app.add_subcommand("transfer", "guides + style -> picture, from a guide file of guidegen or a Blender render");
   sub->add_option("guides", verb->guides, "guide file: .exr")->type_name("FILE")->required();
-  sub->add_option("--view-layer", verb->view_layer, "which view layer of a multilayer file")->type_name("NAME");
+  sub->add_option("--view-layer", verb->view_layer, "which view layer of a multilayer file, and of --over")->type_name("NAME");
   sub->add_option("--light-layer", verb->light_layer,
                   "the view layer of a Blender render whose passes Diffuse Direct and Shadow give the light, as one "
                   "with a white material override; left out: that of all else")

@@ -215,8 +215,9 @@ Status SeekPicture(OIIO::ImageInput& input, const std::string& file, const std::
   if (chosen < 0 && !view_layer.empty() && !combined.empty() && !has_composite)
     return InputError(file + " has no view layer '" + view_layer + "'; it has " + NamesOf(combined));
   if (chosen < 0 && usual < 0 && combined.size() > 1) {
-    return InputError(file + " holds the pictures of several view layers, " + NamesOf(combined) +
-                      ": expected one; write it by itself, or choose it with `scumble finish --view-layer`");
+    return InputError(
+        file + " holds the pictures of several view layers, " + NamesOf(combined) +
+        ": expected one; write it by itself, or choose it with --view-layer of `scumble transfer` or `finish`");
   }
   input.seek_subimage(chosen >= 0 ? chosen : usual >= 0 ? usual : std::max(0, found), 0);
   return Ok();
