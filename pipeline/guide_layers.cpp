@@ -1,8 +1,10 @@
 #include "pipeline/guide_layers.h"
 
+#include <filesystem>
 #include <utility>
 
 #include "core/io/guide_file.h"
+#include "core/io/library.h"
 #include "core/io/picture_file.h"
 
 namespace scumble {
@@ -28,6 +30,11 @@ LayerSet GuideLayers::layers() const { return state_->guides->layers(); }
 std::span<const float> GuideLayers::Plane(Layer layer, int component) const {
   if (!state_->guides->Has(layer) || component < 0 || component >= ChannelCount(layer)) return {};
   return state_->guides->Plane(layer, component);
+}
+
+bool internal::UseDataFolder(const char* folder) {
+  SetModuleFolder(std::filesystem::path(folder) / "../../lib/scumble");
+  return true;
 }
 
 Expected<Picture> LoadPicture(const std::string& file) { return ReadPicture(file); }

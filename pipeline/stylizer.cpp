@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "core/io/library.h"
 #include "pipeline/guide_layers.h"
 #include "pipeline/workspace.h"
 
@@ -20,7 +19,7 @@ RunContext ContextOf(const StylizerOptions& options) {
   context.temporary_folder = options.temporary_folder;
   if (!options.data_folder.empty()) {
     context.data_roots.emplace_back(options.data_folder);
-    SetModuleFolder(std::filesystem::path(options.data_folder) / "../../lib/scumble");
+    internal::UseDataFolder(options.data_folder.c_str());
   }
   if (options.message) {
     context.on_message = [tell = options.message](const Message& message) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "scumble/data_folder.h"
 #include "scumble/status.h"
 
 namespace scumble {
