@@ -59,9 +59,9 @@ Expected<SceneRequest> RequestOf(const SceneSettings& settings) {
   request.blender.frame = settings.frame;
   request.blender.scene = settings.blender_scene, request.blender.view_layer = settings.view_layer;
   if (settings.frames_per_second != 0.0) {
-    const double thousandths = settings.frames_per_second * 1000.0;
-    if (!(thousandths >= 0.5 && thousandths <= 1e8)) return UsageError("frames_per_second must be above 0, up to 1e5");
-    request.fps = FrameRate{static_cast<std::int64_t>(thousandths + 0.5), 1000};
+    const double fps = settings.frames_per_second;
+    if (!(fps >= 0.001 && fps <= 1e5)) return UsageError("frames_per_second must be 0.001 to 1e5, or 0");
+    request.fps = NearestFrameRate(fps);
   }
   request.aa = settings.coverage_samples;
   if (settings.light_samples != 0) request.samples = settings.light_samples, request.samples_given = true;
