@@ -103,7 +103,9 @@ Expected<GuideLayers> Stylizer::Guides(const SceneSettings& scene, const LayerSe
   return GuideLayers(std::make_shared<const GuideLayers::State>(GuideLayers::State{std::move(guides)}));
 }
 
-void Stylizer::Cancel() { state_->workspace.Cancel(); }
+void Stylizer::Cancel() {
+  if (state_) state_->workspace.Cancel();
+}
 
 StylizerCounters Stylizer::counters() const {
   const WorkspaceCounters counters = state_->workspace.counters();
