@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cmath>
 
 namespace scumble {
 
@@ -19,6 +20,16 @@ Expected<FrameRate> ParseFrameRate(const std::string& text) {
     return UsageError("--fps " + text + ": expected frames a second, as 24, 23.976 or 24000/1001");
   }
   return FrameRate{static_cast<std::int64_t>(above * 1000.0 + 0.5), static_cast<std::int64_t>(below * 1000.0 + 0.5)};
+}
+
+FrameRate NearestFrameRate(double fps) {
+  const auto distance = [fps](const FrameRate& rate) {
+    return std::fabs(double(rate.numerator) / double(rate.denominator) - fps);
+  };
+  const FrameRate plain{static_cast<std::int64_t>(fps * 1000.0 + 0.5), 1000};
+  if (fps > 100.0) return plain;  // N · 1000 would be more than ParseFrameRate takes
+  const FrameRate television{static_cast<std::int64_t>(fps * 1.001 + 0.5) * 1'000'000, 1'001'000};
+  return television.numerator > 0 && distance(television) < distance(plain) ? television : plain;
 }
 
 std::string FrameRateToText(const FrameRate& rate) {

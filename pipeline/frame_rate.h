@@ -19,6 +19,10 @@ struct FrameRate {
 // Reads "24", "23.976" or "24000/1001"; up to 1e5 above, and from 1 to 1e5 below. A kUsage error names --fps.
 Expected<FrameRate> ParseFrameRate(const std::string& text);
 
+// The rate of frames a second from 0.001 to 1e5: N · 1000/1001 where that is nearer than thousandths, as for
+// 24000.0 / 1001, and N at most 100.
+FrameRate NearestFrameRate(double fps);
+
 // The shortest text that ParseFrameRate reads as this rate.
 std::string FrameRateToText(const FrameRate& rate);
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "core/io/library.h"
 #include "pipeline/guide_layers.h"
 #include "pipeline/workspace.h"
 
@@ -20,7 +19,7 @@ RunContext ContextOf(const StylizerOptions& options) {
   context.temporary_folder = options.temporary_folder;
   if (!options.data_folder.empty()) {
     context.data_roots.emplace_back(options.data_folder);
-    SetModuleFolder(std::filesystem::path(options.data_folder) / "../../lib/scumble");
+    internal::UseDataFolder(options.data_folder.c_str());
   }
   if (options.message) {
     context.on_message = [tell = options.message](const Message& message) {
@@ -60,9 +59,9 @@ Expected<SceneRequest> RequestOf(const SceneSettings& settings) {
   request.blender.frame = settings.frame;
   request.blender.scene = settings.blender_scene, request.blender.view_layer = settings.view_layer;
   if (settings.frames_per_second != 0.0) {
-    const double thousandths = settings.frames_per_second * 1000.0;
-    if (!(thousandths >= 0.5 && thousandths <= 1e8)) return UsageError("frames_per_second must be above 0, up to 1e5");
-    request.fps = FrameRate{static_cast<std::int64_t>(thousandths + 0.5), 1000};
+    const double fps = settings.frames_per_second;
+    if (!(fps >= 0.001 && fps <= 1e5)) return UsageError("frames_per_second must be 0.001 to 1e5, or 0");
+    request.fps = NearestFrameRate(fps);
   }
   request.aa = settings.coverage_samples;
   if (settings.light_samples != 0) request.samples = settings.light_samples, request.samples_given = true;
@@ -104,7 +103,9 @@ Expected<GuideLayers> Stylizer::Guides(const SceneSettings& scene, const LayerSe
   return GuideLayers(std::make_shared<const GuideLayers::State>(GuideLayers::State{std::move(guides)}));
 }
 
-void Stylizer::Cancel() { state_->workspace.Cancel(); }
+void Stylizer::Cancel() {
+  if (state_) state_->workspace.Cancel();
+}
 
 StylizerCounters Stylizer::counters() const {
   const WorkspaceCounters counters = state_->workspace.counters();

@@ -112,9 +112,9 @@ std::string TextOf(const StyleRequest& request) {
                      fmt::join(request.assigned, "\n"), request.scene_styles, fmt::join(request.finishes, "\n"));
 }
 
-Status CheckArguments(const SceneRequest& scene, std::optional<int> frame) {
+Status CheckArguments(const SceneRequest& scene, std::optional<int> frame, bool motion = false) {
   SCUMBLE_RETURN_IF_ERROR(CheckSceneRequest(scene));
-  return frame ? Ok() : CheckAtRest(scene, false);
+  return frame ? Ok() : CheckAtRest(scene, motion);
 }
 
 // Whether exemplars that were prepared for one style serve another: they have the same paint, and their settings differ
@@ -197,6 +197,7 @@ struct Workspace::State {
   void CloseStylesOfScene();
   Status LoadScene(const SceneRequest& request, std::optional<int> frame);
   Status Pose(const SceneRequest& request, std::optional<int> frame, const LayersFor& layers_for);
+  Expected<StaticScene> PoseNext(const SceneRequest& request, int frame) const;
   Status Cast(SceneRequest request, std::optional<int> frame, const LayersFor& layers_for, const Progress& progress);
   Expected<PaintedFrame> Paint(SceneRequest scene, const StyleRequest& style, PictureRequest picture,
                                BudgetRequest budget);
@@ -327,6 +328,18 @@ Status Workspace::State::Pose(const SceneRequest& request, std::optional<int> fr
   return Ok();
 }
 
+// The frame after this one, which the layer motion is measured against: its shapes and its camera alone. Of a .blend
+// Blender exports it.
+Expected<StaticScene> Workspace::State::PoseNext(const SceneRequest& request, int frame) const {
+  const int after = frame < kMaxFrame ? frame + 1 : frame;
+  const RunContext silent = context.WithoutNotes();
+  const LayersFor known = [&](const SceneStyleRequests&) -> Expected<LayerSet> { return posed->layers; };
+  SCUMBLE_ASSIGN(StaticScene next, animation ? PoseScene(*animation, after, request, known, silent, false)
+                                             : OpenSceneAt(after, request, known, silent, false));
+  next.scene.textures.clear(), next.scene.encoded_textures.clear();
+  return next;
+}
+
 Status Workspace::State::Cast(SceneRequest request, std::optional<int> frame, const LayersFor& layers_for,
                               const Progress& progress) {
   request.more_memory = [&, more = request.more_memory](const Size& size, const LayerSet& layers, MemoryNeed& need) {
@@ -341,8 +354,14 @@ Status Workspace::State::Cast(SceneRequest request, std::optional<int> frame, co
                   request.half, request.time_budget_seconds, seen_key);
   if (guides && key == guides_key && guides->guides.layers().Contains(posed->layers)) return Ok();
   guides_key.clear();
-  SCUMBLE_ASSIGN(SceneGuides made, CastScene(posed->scene, posed->view.camera, nullptr, request, posed->layers, context,
-                                             progress, false, &rays));
+  std::optional<StaticScene> following;
+  if (frame && posed->layers.Has(Layer::kMotion)) {
+    SCUMBLE_ASSIGN(following, PoseNext(request, *frame));
+    SCUMBLE_RETURN_IF_ERROR(context.CheckNotCancelled());
+  }
+  const auto next = following ? std::optional(NextFrame{following->scene, following->view.camera}) : std::nullopt;
+  SCUMBLE_ASSIGN(SceneGuides made, CastScene(posed->scene, posed->view.camera, next ? &*next : nullptr, request,
+                                             posed->layers, context, progress, false, &rays));
   ++counters.guides_cast;
   counters.structures_built += std::size_t(made.builds);
   StoreFrameRate(request, posed->animation, made.guides);
@@ -479,7 +498,7 @@ Expected<SceneDescription> Workspace::Describe(const SceneRequest& scene, std::o
 Expected<std::shared_ptr<const GuideSet>> Workspace::Guides(const SceneRequest& scene, std::optional<int> frame,
                                                             const LayerSet& layers) {
   const State::Running running(*state_);
-  SCUMBLE_RETURN_IF_ERROR(CheckArguments(scene, frame));
+  SCUMBLE_RETURN_IF_ERROR(CheckArguments(scene, frame, layers.Has(Layer::kMotion)));
   const LayersFor layers_for = [&](const SceneStyleRequests&) -> Expected<LayerSet> { return layers; };
   SCUMBLE_RETURN_IF_ERROR(state_->Cast(scene, frame, layers_for, state_->context.StartProgress("guides")));
   return std::shared_ptr<const GuideSet>(state_->guides, &state_->guides->guides);

@@ -91,7 +91,7 @@ class Workspace {
   // Loads and poses the scene if it is stale; casts no ray.
   Expected<SceneDescription> Describe(const SceneRequest& scene, std::optional<int> frame);
 
-  // The guides of a scene: the layers that every guide set holds, and these.
+  // The guides of a scene: the layers that every guide set holds, and these; motion needs a frame's number.
   Expected<std::shared_ptr<const GuideSet>> Guides(const SceneRequest& scene, std::optional<int> frame,
                                                    const LayerSet& layers);
 

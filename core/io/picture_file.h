@@ -42,7 +42,7 @@ Expected<std::uint64_t> CountPixels(std::span<const std::byte> bytes, const std:
 Expected<Picture> DecodePicture(std::span<const std::byte> bytes, const std::string& name);
 
 struct PictureWriteOptions {
-  int bits = 8;       // 8 or 16 per channel; JPEG takes 8 alone; EXR is half floats, or floats at 32
+  int bits = 8;       // 8 or 16 per channel; JPEG takes 8 alone; EXR takes 8, 16 and 32: half floats, or floats at 32
   int png_level = 6;  // 0 … 9, zlib's compression level
   int jpeg_quality = 92;
   int dpi = 0;                // pixels an inch on paper, noted in PNG, TIFF and JPEG; 0: none is noted

@@ -37,6 +37,10 @@ Status CheckPictureTarget(const std::filesystem::path& path, const PictureWriteO
     return UsageError(path.string() + ": " + std::to_string(options.bits) +
                       " bits asked for, and JPEG has 8: name it .png, .tif or .exr, or leave --bits out");
   }
+  if (ending == ".EXR" && options.bits != 8 && options.bits != 16 && options.bits != 32) {
+    return UsageError(path.string() + ": " + std::to_string(options.bits) +
+                      " bits asked for; .exr takes 16, half floats, or 32, floats");
+  }
   if (ending != ".EXR" && options.bits != 8 && options.bits != 16) {
     return UsageError(path.string() + ": " + std::to_string(options.bits) + " bits asked for; " +
                       path.extension().string() + " takes 8 or 16, and only .exr takes 32");

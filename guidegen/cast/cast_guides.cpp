@@ -220,9 +220,8 @@ Status CheckOptions(const GuidegenOptions& options, bool has_next_frame) {
     return UsageError("threads " + std::to_string(options.threads) + " is out of range: expected 0 (all) or more");
   }
   if (options.layers.Has(Layer::kMotion) && !has_next_frame) {
-    return UnavailableError(
-        "layer " + std::string(Info(Layer::kMotion).name) +
-        " is not built from one frame alone, it needs the next one: leave it out, or take it from " + "Blender");
+    return UnavailableError("layer " + std::string(Info(Layer::kMotion).name) +
+                            " needs the next frame, too: leave it out, or give the number of a frame");
   }
   return CheckSampling(options);
 }

@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 
+#include "scumble/data_folder.h"
 #include "scumble/layers.h"
 #include "scumble/status.h"
 

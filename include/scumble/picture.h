@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "scumble/data_folder.h"
 #include "scumble/status.h"
 
 namespace scumble {
@@ -29,8 +30,9 @@ struct Picture {
 // and are encoded. A kInput error says what is wrong with the file.
 Expected<Picture> LoadPicture(const std::string& file);
 
-// Writes .png, .tif, .exr or .jpg; `bits` a channel: 8 or 16, of EXR 16 or 32. The file appears whole under its name,
-// or not at all: a kOutput error leaves an older file as it was.
+// Writes .png, .tif, .exr or .jpg; `bits` a channel: 8 or 16, of JPEG 8, of EXR 16 (as for 8) or 32. The file appears
+// whole under its name, or not at all: a kOutput error leaves an older file as it was. kUsage where the name's ending
+// or the bits cannot be, or where width, height and rgba of the picture do not fit.
 Status SavePicture(const std::string& file, const Picture& picture, int bits = 8);
 
 }  // namespace scumble

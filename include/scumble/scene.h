@@ -32,7 +32,9 @@ struct SceneSettings {
   std::string animation;            // by name, where a file has several; "*": all; empty: the first
   std::string blender_scene;        // of a .blend, by name; empty: the one that was open when it was saved
   std::string view_layer;           // of a .blend, by name; empty: the first one that is rendered
-  double frames_per_second = 0.0;   // 0: a .blend's own, otherwise 24
+  // 0.001 … 1e5, rounded to thousandths, or to N · 1000/1001 where that is nearer (N up to 100), as for 24000.0 / 1001.
+  // 0: a .blend's own, otherwise 24.
+  double frames_per_second = 0.0;
   // Degrees between faces, 0 … 180, up to which they are smooth where the file gives no normals; 0: flat. Empty: glTF
   // is flat, OBJ as its smoothing groups say, other OBJ and PLY smooth up to 60.
   std::optional<double> auto_smooth;

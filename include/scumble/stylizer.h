@@ -54,6 +54,7 @@ class Stylizer {
  public:
   explicit Stylizer(StylizerOptions options = {});
   ~Stylizer();
+  // One that was moved from may be destroyed, cancelled or assigned to; nothing else.
   Stylizer(Stylizer&&) noexcept;
   Stylizer& operator=(Stylizer&&) noexcept;
 
@@ -61,7 +62,8 @@ class Stylizer {
   // that make no sense, kInput for files, kUnavailable where Blender is missing, kMemory, kCancelled.
   Expected<Picture> Paint(const SceneSettings& scene, const StyleSettings& style, const PaintSettings& paint = {});
 
-  // The guides of a scene: A, normal, depth, object, material, and the layers asked for.
+  // The guides of a scene: A, normal, depth, object, material, and the layers asked for. The layer
+  // motion needs SceneSettings::frame, from which it is measured to the next frame.
   Expected<GuideLayers> Guides(const SceneSettings& scene, const LayerSet& layers = {});
 
   // Cancels the call that runs at this moment, which then returns kCancelled. It has no effect on a call that starts

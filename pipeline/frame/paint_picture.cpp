@@ -196,9 +196,20 @@ Status ReadOver(const PictureRequest& request, PictureState& state) {
 }
 
 PictureSettings SettingsOf(const PictureRequest& request, std::optional<FrameRate> fps, std::optional<double> exposure,
-                           const std::string& samples) {
-  return {request.seed, !request.over.empty(), request.show, request.upsample,   request.upscale, fps,
-          exposure,     !request.exposure,     samples,      request.show_finish};
+                           const std::string& samples, const std::string& guides) {
+  return {request.seed,
+          !request.over.empty(),
+          request.show,
+          request.upsample,
+          request.upscale,
+          fps,
+          exposure,
+          !request.exposure,
+          samples,
+          request.show_finish,
+          {},
+          {},
+          guides};
 }
 
 std::string SamplesAsked(const std::map<std::string, std::string>& attributes) {
@@ -350,7 +361,8 @@ Expected<PaintedPicture> PaintInMemory(StyleSet& styles, const GuideSet& given, 
 
   made.write = {request.bits, request.png_level};
   made.write.fast = request.fast_io;
-  PictureSettings made_with = SettingsOf(request, settings.fps, settings.exposure, SamplesAsked(given.attributes));
+  PictureSettings made_with = SettingsOf(request, settings.fps, settings.exposure, SamplesAsked(given.attributes),
+                                         GuidesText(given.attributes, source.chosen));
   if (state.finish_measures) made_with.finish_measures = MeasuresText(*state.finish_measures);
   made_with.finish_measured = !styles.options.finish_measures;
   made.write.settings = SettingsText(styles, made_with, state.hashes);

@@ -21,10 +21,10 @@
 
 namespace scumble {
 
-// Settings that --resume compares, of styles that are at the picture's frame. Rate, exposure and the samples of the
-// guides' light where they are known already.
+// Settings that --resume compares, of styles that are at the picture's frame. Rate, exposure, the samples of the
+// guides' light and the guides' GuidesText where they are known already.
 PictureSettings SettingsOf(const PictureRequest& request, std::optional<FrameRate> fps, std::optional<double> exposure,
-                           const std::string& samples);
+                           const std::string& samples, const std::string& guides);
 
 // The value of the attribute kSamplesKey; empty where guides do not have it.
 std::string SamplesAsked(const std::map<std::string, std::string>& attributes);
@@ -36,6 +36,7 @@ struct GuideSource {
   std::vector<PlanItem> plan;          // reported unless it is empty
   std::optional<SceneCost> cost = {};  // of casting them, where they were cast
   MemoryNeed memory = {};              // of the whole run
+  std::string chosen = {};             // of the layers in their file, for GuidesText
 };
 
 // What a sequence keeps from frame to frame.

@@ -7,6 +7,7 @@
 
 #include "core/image/hash.h"
 #include "core/io/existing_output.h"
+#include "core/io/format_dispatch.h"
 #include "core/style/finish_keys.h"
 #include "pipeline/frame/finish_layers.h"
 #include "pipeline/style/finish_set.h"
@@ -26,6 +27,14 @@ std::uint64_t HashOfGuides(const GuideSet& guides) {
 
 std::uint64_t HashOfPicture(const Picture& picture) {
   return Hash(picture.width, picture.height, HashBytes(std::span<const std::uint16_t>(picture.rgba)));
+}
+
+// A text of settings without one of its parts.
+std::string WithoutPart(std::string text, const std::string& name) {
+  const std::size_t begin = text.find("; " + name + " ");
+  if (begin == std::string::npos) return text;
+  const std::size_t end = text.find(';', begin + 1);
+  return text.erase(begin, end == std::string::npos ? end : end - begin);
 }
 
 std::uint64_t HashOfExemplar(const Exemplar& exemplar) {
@@ -93,9 +102,14 @@ std::string FinishMeasuresPart(const std::string& measures, std::optional<bool> 
                      measured ? *measured ? "yes" : "no" : kAnySetting);
 }
 
+std::string GuidesText(const std::map<std::string, std::string>& attributes, const std::string& chosen) {
+  const auto settings = attributes.find(kSettingsKey);
+  return (settings == attributes.end() ? "of another program" : settings->second) + chosen;
+}
+
 std::string SettingsText(const StyleSet& styles, const PictureSettings& settings, ExemplarHashes& known) {
   const auto& [seed, over, show, upsample, upscale, fps, exposure, measured, samples, show_finish, finish_measures,
-               finish_measured] = settings;  // all: each makes another picture
+               finish_measured, guides] = settings;  // all: each makes another picture
   std::string text = fmt::format("scumble {}; style {:016x}; seed {}; over {}; show {}; upsample {}", SCUMBLE_VERSION,
                                  HashOfStyles(styles, styles.chosen, known), seed, over ? "a picture" : "nothing",
                                  !show_finish.empty() ? kShowFinish + show_finish
@@ -104,7 +118,12 @@ std::string SettingsText(const StyleSet& styles, const PictureSettings& settings
                                  upsample);
   if (upscale) text += " with --upscale";
   const auto chosen = std::span(styles.styles).first(styles.chosen);
-  if (!samples.empty() && std::any_of(chosen.begin(), chosen.end(), AsksForLight)) text += "; samples " + samples;
+  const bool asks_for_light = std::any_of(chosen.begin(), chosen.end(), AsksForLight);
+  if (!samples.empty() && asks_for_light) text += "; samples " + samples;
+  // Samples are told above, and their noise shows in light alone.
+  std::string made = WithoutPart(guides, "samples");
+  if (!asks_for_light) made = WithoutPart(std::move(made), "seed");
+  text += "; guides " + (made.empty() ? kAnySetting : fmt::format("{:016x}", HashText(made)));
   text += "; fps " + (fps ? fmt::format("{}", double(fps->numerator) / double(fps->denominator)) : kAnySetting);
   if (EverLooksAtMeasures(styles)) text += FinishMeasuresPart(finish_measures, finish_measured);
   if (std::none_of(chosen.begin(), chosen.end(), LooksAtLight)) return text;

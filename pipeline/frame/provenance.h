@@ -33,7 +33,12 @@ struct PictureSettings {
   // does whether it was measured; empty: the numbers alone count.
   std::string finish_measures = {};
   std::optional<bool> finish_measured = {};
+  std::string guides = {};  // how they were made and chosen, as GuidesText has it; empty: unknown
 };
+
+// Of guides with these attributes: their attribute scumble:settings, and the layers chosen in their file, "; view_layer
+// 'X'". Never empty.
+std::string GuidesText(const std::map<std::string, std::string>& attributes, const std::string& chosen);
 
 // All settings of the transfer, as text: equal texts, equal settings.
 std::string TextOf(const TransferSettings& settings);

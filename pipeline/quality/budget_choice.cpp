@@ -138,7 +138,7 @@ std::string CommonCircumstances(StyleSet& styles, const PictureRequest& picture,
   ExemplarHashes hashes;
   const std::size_t all = styles.styles.size();
   const std::uint64_t tracks = HashOfTracks(styles);
-  PictureSettings settings = SettingsOf(picture, {}, {}, "");
+  PictureSettings settings = SettingsOf(picture, {}, {}, "", "");
   settings.measured.reset();  // stops that were measured before take as long as those that are measured now
   return fmt::format(
       "{}; {}{}{}{}{}", MachineName(context.threads), SettingsText(styles, settings, hashes),

@@ -60,12 +60,12 @@ Status PictureSequence::ReadOverOfAll(int width, int height) {
 }
 
 Status PictureSequence::Check(int frame, const std::string& output, int width, int height, std::optional<FrameRate> fps,
-                              const std::string& samples) {
+                              const std::string& samples, const std::string& guides) {
   for (Style& style : styles_.styles) SCUMBLE_RETURN_IF_ERROR(SetStyleFrame(style, frame));
   SCUMBLE_RETURN_IF_ERROR(SetFinishFrame(styles_.finish, frame));
   const std::optional<double> exposure = request_.exposure;
   PictureShape shape{width, height, PictureChannels(output), PictureBits(output, {request_.bits}), {}};
-  PictureSettings settings = SettingsOf(request_, fps, exposure, samples);
+  PictureSettings settings = SettingsOf(request_, fps, exposure, samples, guides);
   if (exposure) settings.measured.reset();  // stops that were measured may be given to go on with
   // What was measured may be given to go on with.
   const std::optional<FinishMeasures>& given = styles_.options.finish_measures;

@@ -37,9 +37,9 @@ class PictureSequence {
   Status ReadOverOfAll(int width, int height);
 
   // Whether a picture that is there is one that Make would make, as far as can be told without its guides. `samples`:
-  // of its guides' light, where that is known.
+  // of its guides' light, where that is known; `guides`: their GuidesText, likewise.
   Status Check(int frame, const std::string& output, int width, int height, std::optional<FrameRate> fps,
-               const std::string& samples);
+               const std::string& samples, const std::string& guides);
   bool MustLookAhead(const Sequence& sequence) const;
 
   Expected<FrameWrite> Make(int frame, const std::string& output, const GuidesAt& guides_at, double guides_share,

@@ -3,10 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <fstream>
 #include <memory>
 #include <optional>
+#include <span>
+#include <string>
 #include <utility>
+#include <vector>
 
+#include "core/image/hash.h"
 #include "core/image/stopwatch.h"
 #include "core/io/existing_output.h"
 #include "core/io/file/atomic_file.h"
@@ -62,13 +67,27 @@ FrameRate RateFor(const FinishRequest& request, const std::string& guides) {
   return info ? RateOf({}, info->header) : FrameRate();
 }
 
-// `measures`: those that were given or measured; empty: not known yet. `measured`: see PictureSettings.
-std::string SettingsText(const FinishRequest& request, const FinishChain& chain,
+// Of the picture's file: a repainted picture is another one.
+Expected<std::string> HashOfFile(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::vector<char> block(std::size_t(1) << 20);  // files with many layers are larger than their picture
+  std::uint64_t hash = 0;
+  while (stream) {
+    stream.read(block.data(), std::streamsize(block.size()));
+    hash = HashOn(hash, HashBytes(std::span<const char>(block).first(std::size_t(stream.gcount()))));
+  }
+  if (!stream.eof()) return InputError(file + " cannot be read: check its permissions and its disk");
+  return fmt::format("{:016x}", hash);
+}
+
+// `picture`: its HashOfFile. `measures`: those that were given or measured; empty: not known yet. `measured`: see
+// PictureSettings.
+std::string SettingsText(const FinishRequest& request, const FinishChain& chain, const std::string& picture,
                          const std::optional<FinishMeasures>& measures, std::optional<bool> measured, FrameRate fps) {
   std::string text;
   for (const FinishPass& pass : chain.passes) text += (text.empty() ? "" : ", ") + FinishText(pass);
-  text = fmt::format("scumble {}; finish {}; seed {}; height {}", SCUMBLE_VERSION, text, request.seed,
-                     request.reference_height);
+  text = fmt::format("scumble {}; finish {}; seed {}; height {}; picture {}", SCUMBLE_VERSION, text, request.seed,
+                     request.reference_height, picture);
   if (std::any_of(chain.passes.begin(), chain.passes.end(), Jitters)) text += "; fps " + FrameRateToText(fps);
   if (EverLooksAtMeasures(chain)) text += FinishMeasuresPart(measures ? MeasuresText(*measures) : "", measured);
   if (!request.view_layer.empty()) text += "; view_layer " + request.view_layer;
@@ -120,6 +139,7 @@ Expected<FrameWrite> Finish(const FinishRequest& request, const FrameFiles& file
   Stopwatch watch;
   const auto picture = std::make_shared<Picture>();
   SCUMBLE_ASSIGN(*picture, ReadPicture(files.picture, request.view_layer));
+  SCUMBLE_ASSIGN(const std::string picture_hash, HashOfFile(files.picture));
   std::optional<GuideSet> guides;
   if (!files.guides.empty() && state.required.empty()) SCUMBLE_RETURN_IF_ERROR(InspectGuides(files.guides));
   if (!files.guides.empty() && !state.required.empty()) {
@@ -156,7 +176,7 @@ Expected<FrameWrite> Finish(const FinishRequest& request, const FrameFiles& file
   context.EndStage("finish");
   PictureWriteOptions write{request.bits, request.png_level};
   write.fast = request.fast_io,
-  write.settings = SettingsText(request, state.chain, state.measures, !request.measures, fps);
+  write.settings = SettingsText(request, state.chain, picture_hash, state.measures, !request.measures, fps);
   PictureReport report{files.output, picture->width, picture->height, 1, false, 1, request.seed, {}, {}, {}, {}};
   for (const auto& [name, ms] : times) report.steps.push_back({name, ms, ms, ms});
   report.layers_output = files.layers;
@@ -243,9 +263,10 @@ Expected<RunReport> RunFinish(FinishRequest request, const SequenceListener& lis
     if (!header) return header.error();
     SCUMBLE_RETURN_IF_ERROR(SetFinishFrame(state.chain, frame));
     PictureWriteOptions write{request.bits, request.png_level};
+    SCUMBLE_ASSIGN(const std::string picture_hash, HashOfFile(picture.At(frame)));
     const std::string settings =
-        SettingsText(request, state.chain, request.measures, request.measures ? std::optional<bool>() : true,
-                     RateFor(request, guides.At(frame)));
+        SettingsText(request, state.chain, picture_hash, request.measures,
+                     request.measures ? std::optional<bool>() : true, RateFor(request, guides.At(frame)));
     SCUMBLE_RETURN_IF_ERROR(CheckWholePicture(
         output, {header->width, header->height, PictureChannels(output), PictureBits(output, write), settings}));
     if (request.layers_out.empty()) return Ok();

@@ -6,6 +6,7 @@
 
 #include "core/image/stopwatch.h"
 #include "core/io/blender/blender_camera.h"
+#include "core/io/format_dispatch.h"
 #include "core/io/guide_file.h"
 #include "core/io/picture_file.h"
 #include "pipeline/memory/memory_estimate.h"
@@ -68,7 +69,8 @@ Expected<RunReport> StylizeSequence(const StylizeRequest& request, const Sequenc
   if (!fps && !IsBlenderScene(options.scene)) fps = FrameRate();
   const int width = size.width * request.picture.upsample, height = size.height * request.picture.upsample;
   work.check = [&](int frame, const std::string& output) {
-    return pictures.Check(frame, output, width, height, fps, SamplesText(options));
+    return pictures.Check(frame, output, width, height, fps, SamplesText(options),
+                          GuidesText({{kSettingsKey, GuideSettings(options)}}, ""));
   };
   work.begin = [&](std::span<const int> frames, const Progress& progress) -> Status {
     std::vector<int> wanted(frames.begin(), frames.end());

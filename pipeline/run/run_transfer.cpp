@@ -27,6 +27,14 @@ GuideReadOptions ReadOptions(const TransferRequest& request, const StyleSet& sty
   return read;
 }
 
+// For GuidesText.
+std::string ChosenOf(const TransferRequest& request) {
+  std::string text;
+  if (!request.view_layer.empty()) text += "; view_layer '" + request.view_layer + "'";
+  if (!request.light_layer.empty()) text += "; light_layer '" + request.light_layer + "'";
+  return text;
+}
+
 // Adds what the styles read, those included that the scene of a guide file asks for. A file that cannot be read asks
 // for nothing here; reading it is an error later. Layers of names are optional: a render may have one of them.
 Status RequireOfFile(StyleSet& styles, const std::string& file, int upsample, GuideReadOptions& read) {
@@ -70,7 +78,7 @@ Expected<RunReport> TransferSequence(const TransferRequest& request, const Seque
   GuideCasters casters(context);
   const GuidesAt guides_at = [&](int frame, const Progress&) -> Expected<FrameGuides> {
     const std::string file = guides_name.At(frame);
-    if (guides && file == guides_file) return FrameGuides{&*guides, {file, {}, {}, {}, memory}};
+    if (guides && file == guides_file) return FrameGuides{&*guides, {file, {}, {}, {}, memory, ChosenOf(request)}};
     guides.reset();
     GuideReadOptions one = read;
     SCUMBLE_RETURN_IF_ERROR(RequireOfFile(styles, file, request.picture.GuideFactor(), one));
@@ -82,18 +90,19 @@ Expected<RunReport> TransferSequence(const TransferRequest& request, const Seque
     context.EndStage("read");
     guides_file = file;
     casters.Add(frame, guides->attributes);
-    return FrameGuides{&*guides, {file, {{"read", watch.Lap()}}, {}, {}, memory}};
+    return FrameGuides{&*guides, {file, {{"read", watch.Lap()}}, {}, {}, memory, ChosenOf(request)}};
   };
   SequenceWork work;
   work.check = [&](int frame, const std::string& output) -> Status {
     // Guides that are gone do not tell the size of their picture, nor its rate.
     const auto info = InspectGuides(guides_name.At(frame));
-    if (!info) return pictures.Check(frame, output, 0, 0, {}, {});
+    if (!info) return pictures.Check(frame, output, 0, 0, {}, {}, {});
     casters.Add(frame, info->header.attributes);
     const FrameRate fps = RateOf(request.picture.fps, info->header);
     const int factor = request.picture.upsample;
     return pictures.Check(frame, output, info->width * factor, info->height * factor, fps,
-                          SamplesAsked(info->header.attributes));
+                          SamplesAsked(info->header.attributes),
+                          GuidesText(info->header.attributes, ChosenOf(request)));
   };
   work.begin = [&](std::span<const int> frames, const Progress& progress) -> Status {
     if (!request.camera.empty() && !camera.has_place()) SCUMBLE_RETURN_IF_ERROR(ReadBlenderCamera(request.camera));
@@ -180,7 +189,7 @@ Expected<RunReport> RunTransfer(TransferRequest request, const SequenceListener&
   context.EndStage("read");
   SCUMBLE_ASSIGN(auto choice, ChooseForGuides(request.budget, guides, request.picture.frame, request.guides,
                                               request.picture.over, styles, request.picture, context));
-  const GuideSource source{request.guides, {{"read", read_ms}}, {}, {}, memory};
+  const GuideSource source{request.guides, {{"read", read_ms}}, {}, {}, memory, ChosenOf(request)};
   SCUMBLE_ASSIGN(RunReport report,
                  RunOnePicture(styles, guides, source, request.picture, context, context.StartProgress("transfer")));
   report.choice = std::move(choice);

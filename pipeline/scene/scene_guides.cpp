@@ -207,9 +207,10 @@ Expected<SceneGuides> CastScene(Scene& scene, const Camera& camera, const NextFr
   if (rays && !*rays) {
     SCUMBLE_ASSIGN(*rays, RayScene::Make(scene, camera));
   }
-  SCUMBLE_ASSIGN(GuidegenResult rendered, rays && !next ? RenderGuides(**rays, guidegen)
-                                          : next        ? RenderGuides(scene, camera, *next, guidegen)
-                                                        : RenderGuides(scene, camera, guidegen));
+  SCUMBLE_ASSIGN(GuidegenResult rendered, rays && next ? RenderGuides(**rays, *next, guidegen)
+                                          : rays       ? RenderGuides(**rays, guidegen)
+                                          : next       ? RenderGuides(scene, camera, *next, guidegen)
+                                                       : RenderGuides(scene, camera, guidegen));
   result.times.emplace_back("build", rendered.build_ms);
   result.times.emplace_back("rays", rendered.render_ms);
   result.guides = std::move(rendered.guides);

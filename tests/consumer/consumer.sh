@@ -10,7 +10,7 @@ trap 'rm -rf "$work"' EXIT
 
 cmake --install "$build" --prefix "$work/prefix" > "$work/log" 2>&1 || { cat "$work/log"; exit 1; }
 mkdir "$work/project"
-cp "$source/tests/consumer/main.cpp" "$source/tests/consumer/CMakeLists.txt" "$work/project/"
+cp "$source/tests/consumer/"*.cpp "$source/tests/consumer/CMakeLists.txt" "$work/project/"
 cp "$source/scenes/suzanne.glb" "$work/"
 cd "$work"
 cmake -S project -B by-cmake -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$work/prefix" > log 2>&1 &&
@@ -25,6 +25,9 @@ by-cmake/paint suzanne.glb oil one.png
 for picture in one.png two.png; do
   prefix/bin/scumble compare wanted.png $picture --quiet > log || { echo "$picture differs"; cat log; exit 1; }
 done
+by-cmake/formats one.png three.jpg && by-cmake/formats three.jpg three.tif ||
+  { echo "without a Stylizer no JPEG is written or read"; exit 1; }
+rm three.*
 for style in prefix/share/scumble/exemplars/*/style.toml; do
   style=$(basename "$(dirname "$style")")
   prefix/bin/scumble stylize suzanne.glb --style "$style" --size 32x18 --samples 1 --quiet -o style.png > log 2>&1 ||

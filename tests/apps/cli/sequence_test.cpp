@@ -7,6 +7,7 @@
 
 #include "core/io/existing_output.h"
 #include "tests/support/cli_harness.h"
+#include "tests/support/guide_files.h"
 
 namespace scumble {
 namespace {
@@ -149,6 +150,84 @@ TEST_F(CliSequence, ResumeComparesTheExposure) {
   EXPECT_EQ(kept("5"), 2);
   EXPECT_EQ(kept("auto"), 0) << "measured it would be another";
   EXPECT_EQ(kept("auto"), 2);
+}
+
+// A picture of guides that are seen, lit or cast otherwise is another picture.
+TEST_F(CliSequence, ResumeComparesHowTheGuidesWereMade) {
+  WriteStyle("style");
+  const Arguments size = {"--size", "32", "--frames", "1-2"};
+  const Arguments stylize = With({"stylize", Scene("stilllife.glb"), "--style", "style", "-o", "p#.png"}, size);
+  const auto kept = [&](const Arguments& run, const Arguments& more) {
+    return RunOk(With(With(run, {"--resume", "--json"}), more)).Json()["kept"].get<int>();
+  };
+  EXPECT_EQ(kept(stylize, {}), 0);
+  EXPECT_EQ(kept(stylize, {}), 2);
+  for (const Arguments& other : {Arguments{"--view", "80,5"},
+                                 {"--light", "90,0"},
+                                 {"--aa", "2"},
+                                 {"--raw-normals"},
+                                 {"--normal-frame", "eye"},
+                                 {"--no-robust"},
+                                 {"--max-bounces", "1"}}) {
+    EXPECT_EQ(kept(stylize, other), 0) << other[0];
+    EXPECT_EQ(kept(stylize, other), 2) << other[0];
+  }
+  const Arguments guidegen = With({"guidegen", Scene("stilllife.glb"), "--style", "style", "-o", "g#.exr"}, size);
+  const Arguments transfer = {"transfer", "g#.exr", "--style", "style", "--frames", "1-2", "-o", "t#.png"};
+  RunOk(guidegen);
+  EXPECT_EQ(kept(transfer, {}), 0);
+  RunOk(With(guidegen, {"--seed", "3", "--samples", "4"}));
+  EXPECT_EQ(kept(transfer, {}), 2) << "the style does not look at light";
+  RunOk(With(guidegen, {"--view", "80,5"}));
+  EXPECT_EQ(kept(transfer, {}), 0);
+  RunOk(With(stylize, {"--view", "80,5"}));
+  EXPECT_EQ(Bytes("p2.png"), Bytes("t2.png"));
+  EXPECT_EQ(kept({"transfer", "g#.exr", "--style", "style", "--frames", "1-2", "-o", "p#.png"}, {}), 2)
+      << "stylize and transfer go on with each other's frames";
+  for (const char* const name : {"g1.exr", "g2.exr"}) fs::remove(At(name));
+  EXPECT_EQ(kept(transfer, {}), 2) << "what is gone is not compared";
+}
+
+TEST_F(CliSequence, ResumeComparesTheViewLayer) {
+  WriteStyle("style");
+  const GuideSet guides = Ball(24);
+  std::vector<std::string> names;
+  std::vector<std::vector<float>> planes;
+  for (const std::string view_layer : {"Front", "Back"}) {
+    for (const LayerInfo& info : AllLayers()) {
+      if (!guides.Has(info.layer)) continue;
+      for (int c = 0; c < ChannelCount(info.layer); ++c) {
+        const auto plane = guides.Plane(info.layer, c);
+        names.push_back(view_layer + "." + std::string(info.channels[std::size_t(c)]));
+        planes.emplace_back(plane.begin(), plane.end());
+      }
+    }
+  }
+  WriteExr(At("g.exr"), OIIO::ImageSpec(24, 24, 1, OIIO::TypeDesc::FLOAT), names,
+           [&](std::size_t c, std::size_t i) { return planes[c][i]; });
+  const auto kept = [&](const std::string& view_layer) {
+    return RunOk({"transfer", "g.exr", "--style", "style", "--frames", "1-2", "-o", "p#.png", "--resume", "--json",
+                  "--view-layer", view_layer})
+        .Json()["kept"]
+        .get<int>();
+  };
+  EXPECT_EQ(kept("Front"), 0);
+  EXPECT_EQ(kept("Front"), 2);
+  EXPECT_EQ(kept("Back"), 0);
+  EXPECT_EQ(kept("Back"), 2);
+}
+
+TEST_F(CliSequence, ResumeFinishesARepaintedPictureAgain) {
+  for (const char* const name : {"p1.png", "p2.png"}) WritePainted(name, 32, 32);
+  const Arguments finish = {"finish", "p#.png", "--finish", "grade",    "--frames",
+                            "1-2",    "-o",     "f#.png",   "--resume", "--json"};
+  EXPECT_EQ(RunOk(finish).Json()["kept"], 0);
+  EXPECT_EQ(RunOk(finish).Json()["kept"], 2);
+  ASSERT_TRUE(WritePicture(At("p2.png"), Picture(32, 32)));
+  const nlohmann::json report = RunOk(finish).Json();
+  EXPECT_EQ(report["kept"], 1);
+  EXPECT_EQ(report["frames"][1]["state"], "made");
+  EXPECT_EQ(RunOk(finish).Json()["kept"], 2);
 }
 
 // Pictures of older versions lack some settings. Settings with a known old value count as that value, unknown ones

@@ -442,6 +442,13 @@ TEST(PictureFile, WhatCannotBeWrittenIsSaid) {
   ASSERT_FALSE(bits);
   EXPECT_EQ(static_cast<int>(bits.error().kind), static_cast<int>(ErrorKind::kUsage));
   EXPECT_NE(bits.error().message.find("32 bits"), std::string::npos);
+  for (const char* name : {"p.png", "p.tif", "p.jpg", "p.exr"}) {
+    for (const int wrong : {-16, 0, 7, 24, 64}) {
+      const Status status = CheckPictureTarget(name, {wrong});
+      ASSERT_FALSE(status) << name << " " << wrong;
+      EXPECT_EQ(static_cast<int>(status.error().kind), static_cast<int>(ErrorKind::kUsage));
+    }
+  }
   for (const char* name : {"p.png", "p.tif", "p.jpg", "p.exr"})
     EXPECT_FALSE(WritePicture(folder / name, Picture())) << name;
   EXPECT_TRUE(folder.List().empty());

@@ -1,0 +1,94 @@
+// What the installed API does with values that its callers may get wrong.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "pipeline/scene/scene_sequence.h"
+#include "scumble/scumble.h"
+#include "tests/support/temporary_folder.h"
+
+namespace scumble {
+namespace {
+
+TEST(Library, APictureWhoseMembersDoNotFitIsAnError) {
+  const TemporaryFolder folder;
+  for (const char* const name : {"p.png", "p.tif", "p.exr", "p.jpg"}) {
+    const std::string file = (folder / name).string();
+    const auto refuses = [&](const Picture& picture, const std::string& words) {
+      const Status status = SavePicture(file, picture);
+      ASSERT_FALSE(status) << name << " " << words;
+      EXPECT_EQ(status.error().kind, ErrorKind::kUsage);
+      EXPECT_NE(status.error().message.find(name), std::string::npos) << status.error().message;
+      EXPECT_NE(status.error().message.find(words), std::string::npos) << status.error().message;
+      EXPECT_FALSE(std::filesystem::exists(file));
+    };
+    Picture large(4, 4);
+    large.width = large.height = 6000;
+    refuses(large, "6000×6000 with 64 values in rgba; expected 144000000");
+    Picture bare(4, 4);
+    bare.rgba.clear();
+    refuses(bare, "4×4 with 0 values");
+    Picture more(4, 4);
+    more.rgba.push_back(0);
+    refuses(more, "with 65 values in rgba; expected 64");
+    Picture negative(4, 4);
+    negative.width = -3;
+    refuses(negative, "-3×4");
+    negative.height = -4;
+    refuses(negative, "-3×-4");
+    refuses(Picture(), "at least 1×1");
+  }
+  EXPECT_TRUE(SavePicture((folder / "p.png").string(), Picture(4, 4)));
+}
+
+// Measured as guidegen does, with and without what the Stylizer has kept.
+TEST(Library, MotionIsThatOfGuidegen) {
+  SceneSettings scene;
+  scene.file = std::string(SCUMBLE_SOURCE_DIR) + "/scenes/toys.glb";
+  scene.width = 32, scene.height = 18;
+  Stylizer stylizer;
+  const auto at_rest = stylizer.Guides(scene, {Layer::kMotion});
+  ASSERT_FALSE(at_rest);
+  EXPECT_EQ(at_rest.error().kind, ErrorKind::kUsage);
+  EXPECT_NE(at_rest.error().message.find("from one frame to the next"), std::string::npos) << at_rest.error().message;
+  const LayersFor layers_for = [](const SceneStyleRequests&) -> Expected<LayerSet> { return LayerSet{Layer::kMotion}; };
+  SceneRequest request;
+  request.scene = scene.file, request.size = {scene.width, scene.height};
+  for (const int frame : {10, 11}) {
+    scene.frame = frame;
+    if (frame == 11) {
+      ASSERT_TRUE(stylizer.Guides(scene)) << "its rays are kept";
+    }
+    const auto found = stylizer.Guides(scene, {Layer::kMotion});
+    ASSERT_TRUE(found) << found.error().message;
+    const auto expected = MakeGuidesAt(frame, request, layers_for, true, {}, {});
+    ASSERT_TRUE(expected) << expected.error().message;
+    double moved = 0.0;
+    for (const int component : {0, 1}) {
+      const auto here = found->Plane(Layer::kMotion, component);
+      const auto there = expected->guides.Plane(Layer::kMotion, component);
+      EXPECT_TRUE(std::equal(here.begin(), here.end(), there.begin(), there.end())) << frame << " " << component;
+      for (const float value : here) moved += std::fabs(value);
+    }
+    EXPECT_GT(moved, 1.0) << "something moves";
+  }
+  scene.frame = std::numeric_limits<int>::max();
+  EXPECT_TRUE(stylizer.Guides(scene, {Layer::kMotion}));
+}
+
+TEST(Library, WhatWasMovedFromMayBeCancelled) {
+  Stylizer first;
+  Stylizer second(std::move(first));
+  first.Cancel();
+  second.Cancel();
+  first = Stylizer();
+  EXPECT_EQ(first.counters().scenes_loaded, 0u);
+}
+
+}  // namespace
+}  // namespace scumble
