@@ -48,7 +48,8 @@ void AddTransferVerb(CLI::App& app, Globals& globals, Action& chosen) {
   CLI::App* sub =
       app.add_subcommand("transfer", "guides + style -> picture, from a guide file of guidegen or a Blender render");
   sub->add_option("guides", verb->guides, "guide file: .exr")->type_name("FILE")->required();
-  sub->add_option("--view-layer", verb->view_layer, "which view layer of a multilayer file, and of --over")->type_name("NAME");
+  sub->add_option("--view-layer", verb->view_layer, "which view layer of a multilayer file, and of --over")
+      ->type_name("NAME");
   sub->add_option("--light-layer", verb->light_layer,
                   "the view layer of a Blender render whose passes Diffuse Direct and Shadow give the light, as one "
                   "with a white material override; left out: that of all else")
