@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 #include <optional>
 
 #include "core/filter/edge_test.h"
@@ -74,8 +76,8 @@ class Classifier {
         only_(only),
         guides_(guides),
         give_(guides, kDepthTolerance),
-        crease_(EdgeRules::CreaseCosine(pass.crease_angle)),
-        weak_crease_(EdgeRules::CreaseCosine(pass.crease_angle * (IsOn(LineClass::kCrease) ? kCreaseGoesOn : 1.0))),
+        crease_(pass.crease_angle < 180.0 ? glm::radians(pass.crease_angle) : std::numeric_limits<double>::infinity()),
+        weak_crease_(crease_ * (IsOn(LineClass::kCrease) ? kCreaseGoesOn : 1.0)),
         owner_(guides),
         coverage_(guides.Plane(Layer::kCoverage)),
         depth_(guides.Plane(Layer::kDepth)),
@@ -94,7 +96,8 @@ class Classifier {
     // Where a layer is not looked at, the object's values stand in, which are compared anyway.
     const auto or_object = [&](std::span<const float> plane) { return (plane.empty() ? object_ : plane).data(); };
     FindDoubts({coverage_.data(), depth_.data(), object_.data(), or_object(material_), or_object(shadow_), normal(0),
-                normal(1), normal(2), give_.share, give_.fixed, weak_crease_},
+                normal(1), normal(2), give_.share, give_.fixed,
+                static_cast<float>(std::cos(std::min(weak_crease_, std::numbers::pi)))},
                first, step, count, doubts);
   }
 
@@ -107,7 +110,7 @@ class Classifier {
     if (!only_.empty() && !IsWanted(p, q)) return 0;
     const std::optional<LineClass> line = covers_p == covers_q ? Inside(before, p, q, after) : LineClass::kSilhouette;
     if (line) return IsOn(*line) ? CodeOf(*line) : 0;
-    return IsOn(LineClass::kCrease) && !(CosineBetween(p, q) > weak_crease_) ? kWeakCrease : 0;
+    return IsOn(LineClass::kCrease) && CreaseBetween(before, p, q, after) >= weak_crease_ ? kWeakCrease : 0;
   }
 
  private:
@@ -134,9 +137,20 @@ class Classifier {
            (has_after && fits(depth_[*after] - depth_[q], !has_before));
   }
 
-  float CosineBetween(std::size_t p, std::size_t q) const {
-    const glm::vec3 a = guides_.Vec3(Layer::kNormal, p), b = guides_.Vec3(Layer::kNormal, q);
-    return a.x * b.x + a.y * b.y + a.z * b.z;
+  double AngleBetween(std::size_t p, std::size_t q) const {
+    const glm::dvec3 a(guides_.Vec3(Layer::kNormal, p)), b(guides_.Vec3(Layer::kNormal, q));
+    return 2.0 * std::asin(std::min(1.0, 0.5 * glm::length(a - b)));
+  }
+
+  // The angle between the normals of p and q, less what the surface bends on both sides of them anyway: a round fold is
+  // no crease, however few pixels it has.
+  double CreaseBetween(std::optional<std::size_t> before, std::size_t p, std::size_t q,
+                       std::optional<std::size_t> after) const {
+    const auto bend = [&](std::optional<std::size_t> beyond, std::size_t pixel) {
+      const bool goes_on = beyond && coverage_[*beyond] > 0.0f && object_[*beyond] == object_[pixel];
+      return goes_on ? AngleBetween(*beyond, pixel) : 0.0;
+    };
+    return AngleBetween(p, q) - std::min(bend(before, p), bend(after, q));
   }
 
   // Both pixels are covered.
@@ -144,7 +158,7 @@ class Classifier {
                                   std::optional<std::size_t> after) const {
     if (object_[p] != object_[q]) return LineClass::kObject;
     if (!DepthGoesOn(before, p, q, after)) return LineClass::kOcclusion;
-    if (!(CosineBetween(p, q) > crease_)) return LineClass::kCrease;
+    if (CreaseBetween(before, p, q, after) >= crease_) return LineClass::kCrease;
     if (!material_.empty() && material_[p] != material_[q]) return LineClass::kMaterial;
     if (!shadow_.empty() && (shadow_[p] >= 0.5f) != (shadow_[q] >= 0.5f)) return LineClass::kShadow;
     if (!colors_.empty()) {
@@ -159,7 +173,7 @@ class Classifier {
   std::span<const std::uint8_t> only_;
   const GuideSet& guides_;
   DepthTolerance give_;
-  float crease_, weak_crease_;
+  double crease_, weak_crease_;  // radians
   BorderOwner owner_;
   std::span<const float> coverage_, depth_, object_, material_, shadow_;
   std::vector<glm::vec3> colors_;

@@ -207,6 +207,21 @@ TEST(Outline, CreaseIsOneLine) {
   EXPECT_EQ(Sum(InkOf(pass, CreaseGuides())), 0.0);
 }
 
+// Normals that turn by 45 degrees a pixel over half a circle: a fold of four pixels, and no edge.
+TEST(Outline, ARoundFoldIsNoCreaseHoweverSmall) {
+  OutlinePass pass;
+  pass.of_class[std::size_t(LineClass::kCrease)] = 1.0;
+  const auto bent = [](float per_pixel) {
+    return GuidesOf(120, 80, [=](glm::vec2 at) {
+      const double turn = std::clamp(double(per_pixel) * (at.x - 60.0), -90.0, 90.0) * std::numbers::pi / 180.0;
+      return SeenPoint{true, {float(std::sin(turn)), 0.0f, float(std::cos(turn))}, 5.0f, 1.0f};
+    });
+  };
+  EXPECT_EQ(Sum(InkOf(pass, bent(45.0f))), 0.0);
+  EXPECT_EQ(Sum(InkOf(pass, bent(10.0f))), 0.0);
+  EXPECT_GT(Sum(InkOf(pass, bent(170.0f))), 80.0) << "two pixels, from one side to the other";
+}
+
 // A fold whose angle falls from 50 degrees at the left to 20 at the right, and one of 30 degrees by itself: the crease
 // goes on from where it reaches 40 to where it falls below two thirds of that, and does not begin without.
 TEST(Outline, ACreaseGoesOnToTwoThirdsOfItsAngle) {
