@@ -154,9 +154,10 @@ def note_limits(thing, shown, view_layer, unsupported):
         unsupported.add(f"object '{thing.name}': is invisible to {', '.join(rays)} rays, which is ignored")
     if thing.is_holdout or shown.holdout_get(view_layer=view_layer):
         unsupported.add(f"object '{thing.name}': is a holdout, which is ignored")
-    levels = export_viewport.diced_levels(thing, view_layer.id_data)
-    if levels > 0:
-        unsupported.add(f"object '{thing.name}': its adaptive subdivision is taken for {levels} levels more")
+    levels = export_viewport.diced_levels(thing.original, view_layer.id_data)
+    if levels is not None:
+        more = f"{levels} levels more than its modifier's" if levels > 0 else "its modifier's own levels"
+        unsupported.add(f"object '{thing.name}': its adaptive subdivision is taken for {more}")
     if getattr(thing, "is_shadow_catcher", False) and not isinstance(thing.get("scumble_style"), str):
         unsupported.add(f"object '{thing.name}': is a shadow catcher: pictures leave it out, and with --set "
                         "transfer.shadow=paint they have the shadows on it")
@@ -165,7 +166,9 @@ def note_limits(thing, shown, view_layer, unsupported):
 def note_seen_lamp(thing, unsupported):
     """A lamp with a size, which a render shows itself."""
     lamp = thing.data
-    if thing.visible_camera and lamp.type != "SUN" and (lamp.type == "AREA" or lamp.shadow_soft_size > 0.0):
+    is_dark = lamp.energy == 0.0 or getattr(getattr(lamp, "cycles", None), "is_portal", False)
+    size = lamp.size if lamp.type == "AREA" else lamp.shadow_soft_size
+    if thing.visible_camera and lamp.type != "SUN" and size > 0.0 and not is_dark:
         unsupported.add(f"lamp '{thing.name}': is visible to the camera, which is ignored: take a surface that emits")
 
 
@@ -240,7 +243,9 @@ def add_mesh(flat, number, instance, depsgraph, unsupported):
 
 def add_material(flat, material, mesh):
     flat.materials.setdefault(material_key(material), material)
-    flat.shown_maps.setdefault(material_key(material), set()).add(export_maps.shown_map(mesh))
+    shown = flat.shown_maps.setdefault(material_key(material), set())
+    if export_maps.shown_map(mesh):  # what has no map shows none
+        shown.add(export_maps.shown_map(mesh))
 
 
 def place_mesh(flat, meshes, placed, instance, depsgraph, unsupported):

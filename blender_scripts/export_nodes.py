@@ -93,6 +93,7 @@ def image_fault(node, spaces):
     space, is_float = node.image.colorspace_settings.name, node.image.is_float
     is_colour = space == "sRGB"
     known = {"colour": is_colour and not is_float, "data": not is_colour and keeps_its_depth(node.image),
+             "alpha": True,  # is not managed
              "any": (is_colour and not is_float) or
                     (space in {"Non-Color", "Raw", "Linear", "Linear Rec.709"} and keeps_its_depth(node.image))}
     if not known[spaces]:
@@ -108,7 +109,7 @@ def placement_of(node, shown_map):
     if source is not None and source.node.type == "MAPPING":
         at, turn, scale = (source.node.inputs[key].default_value for key in ("Location", "Rotation", "Scale"))
         numbers = (at[0], at[1], turn[2], scale[0], scale[1])
-    return name, node.extension, node.interpolation == "Closest", *(round(number, 6) for number in numbers)
+    return name, *(round(number, 6) for number in numbers)
 
 
 def one_texture(first, second, shown_map):

@@ -17,6 +17,13 @@ DATA = (("resolution_u", "render_resolution_u"), ("resolution_v", "render_resolu
         ("resolution", "render_resolution"))
 DICED = "scumble.diced"  # the modifier that stands for an adaptive subdivision
 MOST_DICED, MOST_LEVELS = 40_000, 6  # its faces, unless the object's own modifier makes more
+MOST_DICED_IN_ALL = 250_000  # of all objects of the scene
+# Modifiers that leave as many faces as there were.
+KEEPS_FACES = {"ARMATURE", "CAST", "CLOTH", "CORRECTIVE_SMOOTH", "CURVE", "DATA_TRANSFER", "DISPLACE", "HOOK",
+               "LAPLACIANDEFORM", "LAPLACIANSMOOTH", "LATTICE", "MESH_CACHE", "MESH_DEFORM", "MESH_SEQUENCE_CACHE",
+               "NORMAL_EDIT", "SHRINKWRAP", "SIMPLE_DEFORM", "SMOOTH", "SOFT_BODY", "SURFACE", "SURFACE_DEFORM",
+               "UV_PROJECT", "UV_WARP", "VERTEX_WEIGHT_EDIT", "VERTEX_WEIGHT_MIX", "VERTEX_WEIGHT_PROXIMITY", "WARP",
+               "WAVE", "WEIGHTED_NORMAL"}
 # Paths of properties that are the viewport's. The resolution of an Ocean is the render's.
 OF_VIEWPORT = re.compile(r"(hide_viewport|show_viewport|\.levels|\.steps|viewport_resolution|^resolution(_u|_v)?"
                          r"|show_instancer_for_viewport|display_percentage|display_step|child_nbr|child_percent)$")
@@ -51,19 +58,30 @@ def use_render_particles(settings):
     put(settings, "display_step", settings.render_step)
 
 
-def diced_levels(thing, scene):
-    """The levels that stand for Cycles' adaptive subdivision of an object, whatever its view, so that all frames have
-    equal triangles; 0 where there is none. Cycles subdivides what the modifier has subdivided once more."""
+def is_adaptive(thing, scene):
     of_scene, of_object = getattr(scene, "cycles", None), getattr(thing, "cycles", None)
     if getattr(of_scene, "feature_set", "") != "EXPERIMENTAL" or not getattr(of_object, "use_adaptive_subdivision", 0):
-        return 0
+        return False
     own = [modifier for modifier in thing.modifiers if modifier.name != DICED]
     if thing.type != "MESH" or not own or own[-1].type != "SUBSURF" or not own[-1].show_render:
-        return 0
-    if own[-1].subdivision_type != "CATMULL_CLARK":
-        return 0  # more faces, but no other surface
-    faces = max(len(thing.data.polygons), 1) * 4 ** own[-1].render_levels
-    return min(max(math.floor(math.log(MOST_DICED / faces, 4)), 0), MOST_LEVELS)
+        return False
+    return own[-1].subdivision_type == "CATMULL_CLARK"  # the other kind makes more faces, and no other surface
+
+
+def diced_levels(thing, scene):
+    """The levels that stand for Cycles' adaptive subdivision of an object, whatever its view, so that all frames have
+    equal triangles; None where there is none. Cycles subdivides what the modifier has subdivided once more."""
+    if not is_adaptive(thing, scene):
+        return None
+    own = [modifier for modifier in thing.modifiers if modifier.name != DICED]
+    if any(modifier.show_render and modifier.type not in KEEPS_FACES for modifier in own[:-1]):
+        return 0  # nobody knows how many faces there are
+    render = scene.render
+    allowed = render.simplify_subdivision_render if render.use_simplify else MOST_LEVELS
+    faces = max(len(thing.data.polygons), 1) * 4 ** min(own[-1].render_levels, allowed)
+    others = sum(is_adaptive(other, scene) for other in scene.objects)
+    most = min(MOST_DICED, MOST_DICED_IN_ALL / max(others, 1))
+    return min(max(math.floor(math.log(most / faces, 4)), 0), allowed, MOST_LEVELS)
 
 
 def dice(thing, levels):
@@ -71,6 +89,7 @@ def dice(thing, levels):
     more = thing.modifiers.new(DICED, "SUBSURF")
     more.levels = more.render_levels = levels
     more.uv_smooth, more.boundary_smooth = last.uv_smooth, last.boundary_smooth
+    more.use_creases, more.use_limit_surface = last.use_creases, last.use_limit_surface
 
 
 def use_render_modifiers(thing, scene):
@@ -80,7 +99,7 @@ def use_render_modifiers(thing, scene):
             viewport, render = MODIFIERS[modifier.type]
             put(modifier, viewport, getattr(modifier, render))
     levels = diced_levels(thing, scene)
-    if levels > 0 and DICED not in thing.modifiers:
+    if levels and DICED not in thing.modifiers:
         dice(thing, levels)
     for system in thing.particle_systems:
         use_render_particles(system.settings)
@@ -123,7 +142,9 @@ def take_settings(scene, view_layer):
             use_render_nodes(tree)
     for thing in bpy.data.objects:
         release(thing)
-        put(thing, "hide_viewport", thing.hide_render and thing.type != "CAMERA")  # cameras are never rendered
+        # Cameras are never rendered; those of instanced collections stay hidden.
+        is_camera = thing.type == "CAMERA" and thing.name in scene.objects
+        put(thing, "hide_viewport", thing.hide_render and not is_camera)
         put(thing, "show_instancer_for_viewport", thing.show_instancer_for_render)
         use_render_modifiers(thing, scene)
         if thing.data is not None:

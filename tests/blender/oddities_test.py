@@ -27,7 +27,7 @@ LOST = ["lamp 'Panel': is visible to the camera",
         "material 'glass': its alpha 0.3 is cut at one half: the surface is left out",
         "material 'tilted': node 'Mapping'",
         "material 'two': node 'Image Texture.001' at other places than the roughness",
-        "object 'Diced': its adaptive subdivision is taken for 4 levels more"]
+        "object 'Diced': its adaptive subdivision is taken for 4 levels more than its modifier's"]
 
 
 def blender_run(blender, *arguments):

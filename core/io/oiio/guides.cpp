@@ -11,6 +11,7 @@
 #include "core/io/guides/guide_header.h"
 #include "core/io/guides/guide_storage.h"
 #include "core/io/oiio/oiio.h"
+#include "core/io/picture_rules.h"
 
 namespace scumble::formats {
 namespace {
@@ -70,10 +71,18 @@ std::string FullName(const std::string& part, const std::string& channel) {
   return is_known || (of_full && !ParseChannelName(channel)) ? full : channel;
 }
 
+// Names that a colour may have as well: they count where no other of the file means the same.
+bool IsAlsoColor(const std::string& channel, const ChannelMeaning& meaning) {
+  const std::string name = internal::Upper(channel);
+  if (meaning.layer == Layer::kCoverage) return name.ends_with("C.A");
+  return meaning.layer == Layer::kNormal && std::string_view("RGB").find(name.back()) != std::string_view::npos;
+}
+
 Expected<FileContents> Survey(OIIO::ImageInput& input, const std::string& name) {
   FileContents contents;
   contents.spec = input.spec(0);
   std::vector<std::string> names;
+  std::vector<FoundChannel> of_colors;
   for (int subimage = 0; input.seek_subimage(subimage, 0); ++subimage) {
     const OIIO::ImageSpec spec = input.spec(subimage);
     SCUMBLE_RETURN_IF_ERROR(internal::CheckSize(spec, name));
@@ -81,7 +90,7 @@ Expected<FileContents> Survey(OIIO::ImageInput& input, const std::string& name) 
       return InputError(name + ": its parts differ in size; write all guides at one size");
     }
     const std::string compression(spec.get_string_attribute("compression"));
-    if (compression.starts_with("dwa")) contents.dwa = compression;
+    bool has_exact = false;  // what lossy numbers make useless
     for (int c = 0; c < spec.nchannels; ++c) {
       const std::string part(spec.get_string_attribute("oiio:subimagename"));
       const std::string channel = FullName(part, spec.channelnames[c]);
@@ -91,14 +100,18 @@ Expected<FileContents> Survey(OIIO::ImageInput& input, const std::string& name) 
       if (auto matte = ParseMatteChannel(channel)) {
         const bool is_float = spec.channelformat(c) == OIIO::TypeDesc::FLOAT;
         contents.mattes.push_back({subimage, c, is_float, compression == "pxr24", *matte});
+        has_exact = true;
       } else if (auto meaning = ParseChannelName(channel)) {
-        contents.channels.push_back({subimage, c, *meaning});
+        (IsAlsoColor(channel, *meaning) ? of_colors : contents.channels).push_back({subimage, c, *meaning});
+        has_exact = has_exact || meaning->layer == Layer::kPosition || meaning->layer == Layer::kDepth;
       } else if (auto light = ParseLightChannel(channel)) {
         contents.lights.push_back({subimage, c, *light});
       }
     }
+    if (has_exact && compression.starts_with("dwa")) contents.dwa = compression;
     FindManifests(spec, contents);
   }
+  contents.channels.insert(contents.channels.end(), of_colors.begin(), of_colors.end());
   contents.all_names = internal::ListOfChannels(names);
   if (contents.spec.get_string_attribute("Software").substr(0, 7) == "Blender") contents.from_blender = true;
   if (!contents.spec.get_string_attribute("scumble:generator").empty()) contents.from_blender = false;
