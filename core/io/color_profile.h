@@ -10,8 +10,9 @@ namespace scumble::internal {
 
 // Converts a picture's codes from the profile's to sRGB's, by Little CMS, relative colorimetric with black point
 // compensation. Colours that sRGB does not have become its nearest. Alpha stays. Where the profile is sRGB, to half a
-// code of 8 bits, the codes stay. A profile that is broken, or for other than RGB and grey, is not applied, as in web
-// browsers. `picture` holds what the file has in each channel; of grey files, three times the same.
+// code of 8 bits, the codes stay. A profile that is broken, for other than RGB and grey, or a grey one of a
+// picture with colours is not applied, as in web browsers. `picture` holds what the file has in each channel; of grey
+// files, three times the same.
 void ConvertToSrgb(std::span<const std::byte> profile, Picture& picture);
 
 }  // namespace scumble::internal

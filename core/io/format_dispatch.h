@@ -36,8 +36,8 @@ namespace formats {
 
 // The library's versions of the functions of these names outside of this namespace. The module writes no file itself:
 // it would have its own copy of WriteFileAtomically, whose temporary files no signal handler removes.
-Expected<Picture> ReadPicture(const std::filesystem::path& path, const std::string& view_layer);
-Expected<Picture> DecodePicture(std::span<const std::byte> bytes, const std::string& name);
+Expected<Picture> ReadPicture(const std::filesystem::path& path, const std::string& view_layer, Profiles profiles);
+Expected<Picture> DecodePicture(std::span<const std::byte> bytes, const std::string& name, Profiles profiles);
 Expected<PictureHeader> InspectPicture(const std::filesystem::path& path);
 Expected<PictureHeader> InspectEncoded(std::span<const std::byte> bytes, const std::string& name);  // in memory
 Expected<StoredPicture> InspectStored(const std::filesystem::path& path);

@@ -21,9 +21,9 @@ namespace scumble {
 namespace {
 
 // Reads a complete plain PNG only.
-std::optional<Picture> ReadIfPlainPng(std::span<const std::byte> bytes, const std::string& name) {
+std::optional<Picture> ReadIfPlainPng(std::span<const std::byte> bytes, const std::string& name, Profiles profiles) {
   if (!internal::IsPng(bytes) || !internal::CheckPngIntegrity(bytes, name)) return std::nullopt;
-  return internal::ReadPlainPng(bytes);
+  return internal::ReadPlainPng(bytes, profiles);
 }
 
 Expected<std::uint64_t> PixelsOf(std::int64_t width, std::int64_t height, const std::string& name) {
@@ -67,14 +67,14 @@ Expected<std::vector<std::byte>> Exr(const std::string& name, const Picture& pic
 
 }  // namespace
 
-Expected<Picture> ReadPicture(const std::filesystem::path& path, const std::string& view_layer) {
+Expected<Picture> ReadPicture(const std::filesystem::path& path, const std::string& view_layer, Profiles profiles) {
   if (IsZip(path)) return ReadMergedLayers(path);
   if (internal::IsPngFile(path)) {
     SCUMBLE_ASSIGN(const auto bytes, ReadWholeFile(path));
-    if (auto picture = ReadIfPlainPng(bytes, path.string())) return *std::move(picture);
+    if (auto picture = ReadIfPlainPng(bytes, path.string(), profiles)) return *std::move(picture);
   }
   SCUMBLE_ASSIGN(const Formats* const formats, LoadFormatsToRead(path));
-  return formats->read_picture(path, view_layer);
+  return formats->read_picture(path, view_layer, profiles);
 }
 
 Expected<PictureHeader> InspectPicture(const std::filesystem::path& path) {
@@ -94,11 +94,11 @@ Expected<PictureHeader> InspectPicture(const std::filesystem::path& path) {
   return formats->inspect_picture(path);
 }
 
-Expected<Picture> DecodePicture(std::span<const std::byte> bytes, const std::string& name) {
+Expected<Picture> DecodePicture(std::span<const std::byte> bytes, const std::string& name, Profiles profiles) {
   if (bytes.empty()) return InputError("cannot read " + name + ": it is empty");
-  if (auto picture = ReadIfPlainPng(bytes, name)) return *std::move(picture);
+  if (auto picture = ReadIfPlainPng(bytes, name, profiles)) return *std::move(picture);
   SCUMBLE_ASSIGN(const Formats* const formats, LoadFormats(name));
-  return formats->decode_picture(bytes, name);
+  return formats->decode_picture(bytes, name, profiles);
 }
 
 Expected<std::uint64_t> CountPixels(const std::filesystem::path& path) {

@@ -14,6 +14,9 @@
 
 namespace scumble {
 
+// What becomes of an ICC profile in a file. Textures of scenes ignore it, as glTF 2.0 demands and Blender does.
+enum class Profiles { kApply, kIgnore };
+
 // Reads any picture as 16-bit sRGB-encoded RGBA with straight alpha. 8-bit values v become v · 257, 16-bit values are
 // kept; float files (EXR, HDR) are taken as linear and associated, unpremultiplied, clamped to [0, 1] and encoded.
 // Grey is spread over the three colours; a missing alpha is opaque, a NaN one transparent. A photograph is
@@ -21,7 +24,8 @@ namespace scumble {
 // an error, JPEG included. Of a file of layers (.ora, Krita's .kra) the picture of all that are visible is read, of an
 // EXR of several parts the one that holds R, G and B, and of a render of several view layers that of `view_layer`.
 // Thread-safe.
-Expected<Picture> ReadPicture(const std::filesystem::path& path, const std::string& view_layer = {});
+Expected<Picture> ReadPicture(const std::filesystem::path& path, const std::string& view_layer = {},
+                              Profiles profiles = Profiles::kApply);
 
 // The header of a file, without its pixels. Of a file of layers, that of the merged picture. Thread-safe.
 struct PictureHeader {
@@ -39,7 +43,8 @@ Expected<std::uint64_t> CountPixels(std::span<const std::byte> bytes, const std:
 
 // ReadPicture from memory, for pictures inside .glb files, which have no orientation. `name` stands for the picture in
 // messages.
-Expected<Picture> DecodePicture(std::span<const std::byte> bytes, const std::string& name);
+Expected<Picture> DecodePicture(std::span<const std::byte> bytes, const std::string& name,
+                                Profiles profiles = Profiles::kApply);
 
 struct PictureWriteOptions {
   int bits = 8;       // 8 or 16 per channel; JPEG takes 8 alone; EXR takes 8, 16 and 32: half floats, or floats at 32

@@ -138,6 +138,7 @@ namespace {
 HWY_EXPORT(EvenRowHere);
 
 constexpr std::array<int, 5> kSteps = {1, 2, 4, 8, 16};
+constexpr int kNear = 4;     // steps up to this one have the whole range
 constexpr int kVector = 16;  // values of a vector, which may reach so far beyond a row
 
 // Calls row(y) from several threads.
@@ -201,8 +202,8 @@ FloatPlane EvenedLight(std::span<const float> light, const LitSurface& surface, 
     const int step = of_samples * apart;
     ForEachEvenRow(0, height, [&](int y) {
       HWY_DYNAMIC_DISPATCH(EvenRowHere)
-      (from.Around(y, step), keys.Around(y, step), step, of_samples == 1, range / static_cast<float>(of_samples),
-       columns, to.Row(y));
+      (from.Around(y, step), keys.Around(y, step), step, of_samples == 1,
+       of_samples > kNear ? range / static_cast<float>(of_samples) : range, columns, to.Row(y));
       std::fill_n(to.Row(y) + columns, kVector, kNothing);  // what a vector has written beyond the row
       if (step == pad) std::copy_n(to.Row(y), columns, result.begin() + std::ptrdiff_t(columns) * y);
     });

@@ -439,7 +439,7 @@ class ObjLoader {
     const auto users = std::make_shared<std::vector<std::size_t>>(1, material);
     users_.push_back(users);
     auto texture = std::make_shared<EncodedTexture>();
-    texture->decode = [file = BesideScene(path_, name)] { return ReadPicture(file); };
+    texture->decode = [file = BesideScene(path_, name)] { return ReadPicture(file, {}, Profiles::kIgnore); };
     texture->count_pixels = [file = BesideScene(path_, name)] { return CountPixels(file); };
     texture->leave_out = [mtl = mtl_, users](Scene& scene) {
       for (std::size_t i : *users) {

@@ -187,10 +187,15 @@ void MeasureFinishOf(const StyleSet& styles, const GuideSet& guides, const RunCo
   context.Note("finish: --finish-measures " + MeasuresText(*state.finish_measures) + " repeats what was measured");
 }
 
+Expected<Picture> ReadUnderneath(const std::string& file, const std::string& view_layer) {
+  auto picture = ReadPicture(file, view_layer);
+  return picture || view_layer.empty() ? std::move(picture) : ReadPicture(file);
+}
+
 Status ReadOver(const PictureRequest& request, PictureState& state) {
   if (state.over && state.over_file == request.over) return Ok();
   state.over.reset();
-  SCUMBLE_ASSIGN(state.over, ReadPicture(request.over, request.over_view_layer));
+  SCUMBLE_ASSIGN(state.over, ReadUnderneath(request.over, request.over_view_layer));
   state.over_file = request.over;
   return Ok();
 }

@@ -54,6 +54,9 @@ struct PictureState {
   bool warned_of_size = false;
 };
 
+// The picture underneath: that of the view layer where it has one of that name, else the only one.
+Expected<Picture> ReadUnderneath(const std::string& file, const std::string& view_layer);
+
 // Reads PictureRequest::over, unless `state` has it already.
 Status ReadOver(const PictureRequest& request, PictureState& state);
 

@@ -4,6 +4,7 @@
 #include "core/io/picture_file.h"
 #include "core/style/style_keyframes.h"
 #include "pipeline/frame/frame_painter.h"
+#include "pipeline/frame/paint_picture.h"
 #include "pipeline/style/finish_set.h"
 #include "pipeline/variant/quality_ladder.h"
 #include "transfer/upsample_guides.h"
@@ -30,7 +31,7 @@ Status TrialPainter::Prepare(const Variant& variant, const GuideSet& guides, int
 Expected<const Picture*> TrialPainter::Over(const GuideSet& guides) {
   if (over_file_.empty()) return static_cast<const Picture*>(nullptr);
   if (!over_) {
-    SCUMBLE_ASSIGN(over_, ReadPicture(over_file_));
+    SCUMBLE_ASSIGN(over_, ReadUnderneath(over_file_, picture_.over_view_layer));
   }
   const bool fits = over_->width == guides.width() && over_->height == guides.height();
   return fits ? &*over_ : nullptr;

@@ -89,14 +89,19 @@ bool HasColorStep(const Picture& picture, const Circle& circle) {
   constexpr int kDirections = kOutlineDirections / kStepSectors;
   int seen = 0, steps = 0;
   for (int sector = 0; sector < kStepSectors; ++sector) {
-    glm::dvec4 inside(0.0), outside(0.0);
+    glm::dvec4 inside(0.0), outside(0.0), line(0.0);
     for (int i = sector * kDirections; i < (sector + 1) * kDirections; ++i) {
       AddBand(picture, circle, i, circle.radius - gap - band, circle.radius - gap, inside);
       AddBand(picture, circle, i, circle.radius + gap, circle.radius + gap + band, outside);
+      AddBand(picture, circle, i, circle.radius - gap, circle.radius, line);
     }
     if (inside.w == 0.0 || outside.w == 0.0) continue;
-    const glm::dvec3 apart = glm::abs(glm::dvec3(inside) / inside.w - glm::dvec3(outside) / outside.w);
-    ++seen, steps += std::max({apart.x, apart.y, apart.z}) >= kLeastStep;
+    // A drawn line is a step by itself, where it is thinner than what lies between the bands.
+    const auto is_step = [&](const glm::dvec4& from) {
+      const glm::dvec3 apart = glm::abs(glm::dvec3(from) / from.w - glm::dvec3(outside) / outside.w);
+      return from.w > 0.0 && std::max({apart.x, apart.y, apart.z}) >= kLeastStep;
+    };
+    ++seen, steps += is_step(inside) || is_step(line);
   }
   return steps >= kLeastStepSectors * seen;
 }

@@ -16,6 +16,7 @@ double NormalsAgainstDepth(const GuideSet& guides) {
   // Across the view, of a unit normal, and of the surface by its depth: the tangent of its slant, at about a radian of
   // view. What faces the eye and has bumps by its normals alone tells nothing.
   constexpr double kSlanted = 0.3;
+  constexpr double kMostBend = 0.2;      // of the slope
   constexpr double kMostOfDepth = 0.05;  // two neighbours are of one surface
   const auto depth = guides.Plane(Layer::kDepth), coverage = guides.Plane(Layer::kCoverage);
   const auto object = guides.Plane(Layer::kObject);
@@ -34,6 +35,10 @@ double NormalsAgainstDepth(const GuideSet& guides) {
       const glm::dvec3 normal(guides.Vec3(Layer::kNormal, i));
       const double rise_x = 1.0 / depth[left] - 1.0 / depth[right], rise_y = 1.0 / depth[down] - 1.0 / depth[up];
       const double across = std::hypot(normal.x, normal.y), rise = std::hypot(rise_x, rise_y);
+      // Where it is a plane nearly, 1 / Z has no bend. Blades of grass beside each other have, and noise.
+      const double bend_x = 1.0 / depth[left] + 1.0 / depth[right] - 2.0 / here,
+                   bend_y = 1.0 / depth[up] + 1.0 / depth[down] - 2.0 / here;
+      if (std::hypot(bend_x, bend_y) > kMostBend * rise) continue;
       if (!(across > kSlanted) || !(rise * here * guides.width() > 2.0 * kSlanted)) continue;
       const double cosine = (normal.x * rise_x + normal.y * rise_y) / (across * rise);
       turned.push_back(std::acos(std::clamp(cosine, -1.0, 1.0)) * 57.29577951308232);
@@ -52,8 +57,9 @@ Status CheckNormalSpace(const GuideSet& guides, const std::string& name) {
   if (degrees <= kMostDegrees) return Ok();
   return InputError(name + ": its normals do not fit its depth, and are turned away from it by " +
                     std::to_string(std::lround(degrees)) +
-                    " degrees: expected normals in view space, x to the right, y up and z towards the eye; these may " +
-                    "be in world space, which renderers often write as N: write camera space normals, or turn them");
+                    " degrees: expected normals in view space, x to the right, y up and z towards the eye, and depth " +
+                    "that grows with the distance; these normals may be in world space, which renderers often write " +
+                    "as N, or this depth inverted: write camera space normals, and Z");
 }
 
 }  // namespace scumble::internal

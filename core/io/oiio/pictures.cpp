@@ -225,7 +225,8 @@ Status SeekPicture(OIIO::ImageInput& input, const std::string& file, const std::
 
 // Pixels of the display window outside an EXR's data window are transparent; those of the data window beyond the
 // display window are cut off.
-Expected<Picture> ReadFrom(OIIO::ImageInput& input, const std::string& name, const std::string& view_layer = {}) {
+Expected<Picture> ReadFrom(OIIO::ImageInput& input, const std::string& name, const std::string& view_layer,
+                           Profiles profiles) {
   SCUMBLE_RETURN_IF_ERROR(SeekPicture(input, name, view_layer));
   const OIIO::ImageSpec spec = input.spec();
   SCUMBLE_RETURN_IF_ERROR(internal::CheckSize(spec, name));
@@ -247,7 +248,8 @@ Expected<Picture> ReadFrom(OIIO::ImageInput& input, const std::string& name, con
   auto picture =
       ReadPixels<std::uint16_t>(input, name, OIIO::TypeDesc::UINT16, range,
                                 [&](const std::uint16_t* pixel, std::uint16_t* out) { decoder.Encoded(pixel, out); });
-  if (const auto profile = ProfileOf(spec); picture && !profile.empty()) internal::ConvertToSrgb(profile, *picture);
+  const auto profile = ProfileOf(spec);
+  if (picture && !profile.empty() && profiles == Profiles::kApply) internal::ConvertToSrgb(profile, *picture);
   return picture;
 }
 
@@ -288,13 +290,13 @@ PictureHeader HeaderOf(const OIIO::ImageSpec& spec) {
 
 }  // namespace
 
-Expected<Picture> ReadPicture(const std::filesystem::path& path, const std::string& view_layer) {
+Expected<Picture> ReadPicture(const std::filesystem::path& path, const std::string& view_layer, Profiles profiles) {
   SCUMBLE_ASSIGN(auto input, internal::OpenInput(path));
   if (input->format_name() == std::string("jpeg")) {
     SCUMBLE_ASSIGN(const auto bytes, ReadWholeFile(path));
     SCUMBLE_RETURN_IF_ERROR(CheckJpegIntegrity(bytes, path.string()));
   }
-  SCUMBLE_ASSIGN(Picture stored, ReadFrom(*input, path.string(), view_layer));
+  SCUMBLE_ASSIGN(Picture stored, ReadFrom(*input, path.string(), view_layer, profiles));
   return Upright(std::move(stored), input->spec().get_int_attribute("Orientation", 1));
 }
 
@@ -310,11 +312,11 @@ Expected<PictureHeader> InspectEncoded(std::span<const std::byte> bytes, const s
   return HeaderOf(input->spec());
 }
 
-Expected<Picture> DecodePicture(std::span<const std::byte> bytes, const std::string& name) {
+Expected<Picture> DecodePicture(std::span<const std::byte> bytes, const std::string& name, Profiles profiles) {
   OIIO::Filesystem::IOMemReader proxy(const_cast<std::byte*>(bytes.data()), bytes.size());
   SCUMBLE_ASSIGN(auto input, internal::OpenInput(proxy, name));
   if (input->format_name() == std::string("jpeg")) SCUMBLE_RETURN_IF_ERROR(CheckJpegIntegrity(bytes, name));
-  return ReadFrom(*input, name);
+  return ReadFrom(*input, name, {}, profiles);
 }
 
 Expected<StoredPicture> InspectStored(const std::filesystem::path& path) {

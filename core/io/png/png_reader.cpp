@@ -159,7 +159,7 @@ bool Begin(Source& source, Reading& reading, Picture& picture) {
 
 }  // namespace
 
-std::optional<Picture> ReadPlainPng(std::span<const std::byte> bytes) {
+std::optional<Picture> ReadPlainPng(std::span<const std::byte> bytes, Profiles profiles) {
   Source source{bytes};
   Reading reading;
   Picture picture;
@@ -170,7 +170,7 @@ std::optional<Picture> ReadPlainPng(std::span<const std::byte> bytes) {
     Spread(samples, reading.channels, From8, picture);
   else
     Spread(samples, reading.channels, From16, picture);
-  if (!reading.profile.empty()) ConvertToSrgb(reading.profile, picture);
+  if (!reading.profile.empty() && profiles == Profiles::kApply) ConvertToSrgb(reading.profile, picture);
   return picture;
 }
 

@@ -16,7 +16,7 @@ namespace scumble::internal {
 // The picture in a complete PNG file (CheckPngIntegrity), as ReadPicture gives it. Empty if the file is damaged,
 // exceeds the largest picture, or needs the picture library: for Exif, XMP, an offset, a linear gamma, or texts about
 // colour spaces. That library then reads it, or reports the error. Thread-safe.
-std::optional<Picture> ReadPlainPng(std::span<const std::byte> bytes);
+std::optional<Picture> ReadPlainPng(std::span<const std::byte> bytes, Profiles profiles = Profiles::kApply);
 
 // Its channels, as ReadChannels gives them. `name` is the image's.
 std::optional<ChannelImage> ReadPlainPngChannels(std::span<const std::byte> bytes, const std::string& name);

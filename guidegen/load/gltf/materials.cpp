@@ -197,7 +197,8 @@ class TextureLoader {
     const auto kept = std::make_shared<const EncodedPicture>(std::move(encoded));
     using Bytes = std::span<const std::byte>;
     kept_texture->decode = [kept] {
-      return ReadWith(*kept, [](Bytes bytes, const std::string& name) { return DecodePicture(bytes, name); });
+      return ReadWith(
+          *kept, [](Bytes bytes, const std::string& name) { return DecodePicture(bytes, name, Profiles::kIgnore); });
     };
     kept_texture->count_pixels = [kept] {
       if (!kept->beside.empty()) return CountPixels(kept->beside);

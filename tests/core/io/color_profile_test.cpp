@@ -65,6 +65,13 @@ double SrgbCode(double linear) {
   return clamped <= 0.0031308 ? 12.92 * clamped : 1.055 * std::pow(clamped, 1.0 / 2.4) - 0.055;
 }
 
+ProfileBytes LinearGrey() {
+  cmsToneCurve* const curve = cmsBuildGamma(nullptr, 1.0);
+  ProfileBytes bytes = Saved(cmsCreateGrayProfile(cmsD50_xyY(), curve));
+  cmsFreeToneCurve(curve);
+  return bytes;
+}
+
 // Colours all over the cube, alpha among them.
 Picture Cube() {
   constexpr int kLevels = 9;
@@ -108,14 +115,17 @@ TEST(ColorProfile, AdobeRgbBecomesSrgbByTheFormulas) {
 TEST(ColorProfile, GreyFollowsItsOwnCurve) {
   Picture given(256, 1);
   for (int x = 0; x < 256; ++x) std::fill_n(given.At(x, 0), 3, static_cast<std::uint16_t>(257 * x));
-  cmsToneCurve* const curve = cmsBuildGamma(nullptr, 1.0);
-  const ProfileBytes profile = Saved(cmsCreateGrayProfile(cmsD50_xyY(), curve));
-  cmsFreeToneCurve(curve);
   Picture picture = given;
-  internal::ConvertToSrgb(profile, picture);
+  internal::ConvertToSrgb(LinearGrey(), picture);
   ExpectCodes(
       picture, given, [](glm::dvec3 grey) { return glm::dvec3(SrgbCode(grey.x), SrgbCode(grey.y), SrgbCode(grey.z)); },
       0.5 * kCode);
+}
+
+TEST(ColorProfile, AGreyProfileOfAColouredPictureIsNone) {
+  Picture picture = Cube();
+  internal::ConvertToSrgb(LinearGrey(), picture);
+  EXPECT_EQ(picture.rgba, Cube().rgba);
 }
 
 TEST(ColorProfile, SrgbAndWhatIsNoProfileOfColoursKeepTheCodes) {
@@ -153,7 +163,12 @@ TEST(ColorProfile, EveryFormatThatCarriesOneIsConverted) {
     const auto picture = ReadPicture(folder / name);
     ASSERT_TRUE(picture) << picture.error().message;
     SCOPED_TRACE(name);
-    ExpectCodes(*picture, given, SrgbFromAdobe, std::string(name) == "a.jpg" ? 3 * kCode : 0.6 * kCode);
+    const double most = std::string(name) == "a.jpg" ? 3 * kCode : 0.6 * kCode;
+    ExpectCodes(*picture, given, SrgbFromAdobe, most);
+    const auto stored = ReadPicture(folder / name, {}, Profiles::kIgnore);
+    ASSERT_TRUE(stored) << stored.error().message;
+    ExpectCodes(
+        *stored, given, [](glm::dvec3 code) { return code; }, most);
   }
 }
 

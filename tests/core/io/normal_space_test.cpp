@@ -62,6 +62,16 @@ TEST(NormalSpace, WhatTheWorldOrAnotherAxisMakesOfThemIsFar) {
             60.0);
 }
 
+// Blades of grass of one object beside each other: their depths jump, and their normals are right.
+TEST(NormalSpace, DepthsThatJumpTellNothing) {
+  GuideSet guides = BallOnFloor(glm::dmat3(1.0));
+  for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
+    guides.Plane(Layer::kDepth)[i] *= 1.0f + 0.03f * static_cast<float>(i * 7 % 5);
+    guides.Plane(Layer::kObject)[i] = 1.0f;
+  }
+  EXPECT_TRUE(internal::CheckNormalSpace(guides, "grass.exr"));
+}
+
 TEST(NormalSpace, FewPixelsTellNothing) {
   GuideSet guides(4, 4);
   for (const Layer layer : {Layer::kCoverage, Layer::kNormal, Layer::kDepth, Layer::kObject}) guides.Add(layer);
