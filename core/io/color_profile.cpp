@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include "core/io/format_dispatch.h"
@@ -67,6 +68,45 @@ bool HasColors(const Picture& picture) {
   return false;
 }
 
+// The number at an offset, its lowest byte first or last.
+std::size_t NumberAt(std::span<const std::byte> bytes, std::size_t at, bool lowest_first) {
+  std::size_t number = 0;
+  for (std::size_t i = 0; i < 4; ++i)
+    number = number << 8 | std::to_integer<std::size_t>(bytes[at + (lowest_first ? 3 - i : i)]);
+  return number;
+}
+
+bool HasText(std::span<const std::byte> bytes, std::size_t at, std::string_view text) {
+  if (at + text.size() > bytes.size()) return false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (std::to_integer<char>(bytes[at + i]) != text[i]) return false;
+  }
+  return true;
+}
+
+// Chunks of a RIFF: a name, the length of the data, the data, and a byte more where that is odd.
+std::span<const std::byte> ProfileOfWebp(std::span<const std::byte> file) {
+  for (std::size_t at = 12; at + 8 <= file.size();) {
+    const std::size_t length = NumberAt(file, at + 4, true);
+    if (length > file.size() - at - 8) break;
+    if (HasText(file, at, "ICCP")) return file.subspan(at + 8, length);
+    at += 8 + length + length % 2;
+  }
+  return {};
+}
+
+// The box `colr` (ISO/IEC 14496-12, 12.1.5): its length, its name, the kind, and a profile. It lies some boxes deep,
+// near the file's beginning.
+std::span<const std::byte> ProfileOfHeif(std::span<const std::byte> file) {
+  constexpr std::size_t kMost = 1 << 20, kHead = 12;
+  for (std::size_t at = 4; at + 8 < std::min(file.size(), kMost); ++at) {
+    if (!HasText(file, at, "colrprof") && !HasText(file, at, "colrrICC")) continue;
+    const std::size_t length = NumberAt(file, at - 4, false);
+    if (length > kHead && length - 4 <= file.size() - at) return file.subspan(at + 8, length - kHead);
+  }
+  return {};
+}
+
 }  // namespace
 
 void ConvertToSrgb(std::span<const std::byte> bytes, Picture& picture) {
@@ -86,6 +126,11 @@ void ConvertToSrgb(std::span<const std::byte> bytes, Picture& picture) {
   void* const transform = may_be_quick ? quick.get() : exact.get();
   ForEachIndex(picture.height, IoThreads(),
                [&](int y) { Convert(transform, is_grey, picture.At(0, y), static_cast<std::size_t>(picture.width)); });
+}
+
+std::span<const std::byte> EmbeddedProfile(std::span<const std::byte> file) {
+  if (HasText(file, 0, "RIFF") && HasText(file, 8, "WEBP")) return ProfileOfWebp(file);
+  return HasText(file, 4, "ftyp") ? ProfileOfHeif(file) : std::span<const std::byte>();
 }
 
 }  // namespace scumble::internal

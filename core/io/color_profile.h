@@ -15,4 +15,7 @@ namespace scumble::internal {
 // files, three times the same.
 void ConvertToSrgb(std::span<const std::byte> profile, Picture& picture);
 
+// The ICC profile in the bytes of a WebP or HEIF file, whose readers do not always give it. Empty: none.
+std::span<const std::byte> EmbeddedProfile(std::span<const std::byte> file);
+
 }  // namespace scumble::internal

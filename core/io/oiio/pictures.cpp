@@ -3,9 +3,11 @@
 #include <array>
 #include <cctype>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "core/image/color.h"
 #include "core/io/color_profile.h"
@@ -79,6 +81,12 @@ std::span<const std::byte> ProfileOf(const OIIO::ImageSpec& spec) {
   const OIIO::ParamValue* const found = spec.find_attribute("ICCProfile");
   if (!found || found->type().basetype != OIIO::TypeDesc::UINT8) return {};
   return {static_cast<const std::byte*>(found->data()), found->type().size()};
+}
+
+// OpenImageIO 2.4 does not give the profiles of these.
+bool HidesProfile(const OIIO::ImageInput& input) {
+  const std::string_view reader = input.format_name();
+  return reader == "webp" || reader == "heif";
 }
 
 bool IsLinear(const OIIO::ImageSpec& spec) {
@@ -223,10 +231,11 @@ Status SeekPicture(OIIO::ImageInput& input, const std::string& file, const std::
   return Ok();
 }
 
+// `embedded`: the profile that the file's bytes hold, for where its reader gives none; nothing: profiles are ignored.
 // Pixels of the display window outside an EXR's data window are transparent; those of the data window beyond the
 // display window are cut off.
 Expected<Picture> ReadFrom(OIIO::ImageInput& input, const std::string& name, const std::string& view_layer,
-                           Profiles profiles) {
+                           std::optional<std::span<const std::byte>> embedded) {
   SCUMBLE_RETURN_IF_ERROR(SeekPicture(input, name, view_layer));
   const OIIO::ImageSpec spec = input.spec();
   SCUMBLE_RETURN_IF_ERROR(internal::CheckSize(spec, name));
@@ -248,8 +257,9 @@ Expected<Picture> ReadFrom(OIIO::ImageInput& input, const std::string& name, con
   auto picture =
       ReadPixels<std::uint16_t>(input, name, OIIO::TypeDesc::UINT16, range,
                                 [&](const std::uint16_t* pixel, std::uint16_t* out) { decoder.Encoded(pixel, out); });
-  const auto profile = ProfileOf(spec);
-  if (picture && !profile.empty() && profiles == Profiles::kApply) internal::ConvertToSrgb(profile, *picture);
+  if (!picture || !embedded) return picture;
+  const auto of_spec = ProfileOf(spec), profile = of_spec.empty() ? *embedded : of_spec;
+  if (!profile.empty()) internal::ConvertToSrgb(profile, *picture);
   return picture;
 }
 
@@ -296,7 +306,14 @@ Expected<Picture> ReadPicture(const std::filesystem::path& path, const std::stri
     SCUMBLE_ASSIGN(const auto bytes, ReadWholeFile(path));
     SCUMBLE_RETURN_IF_ERROR(CheckJpegIntegrity(bytes, path.string()));
   }
-  SCUMBLE_ASSIGN(Picture stored, ReadFrom(*input, path.string(), view_layer, profiles));
+  std::optional<std::span<const std::byte>> embedded;
+  std::vector<std::byte> bytes;
+  if (profiles == Profiles::kApply) embedded.emplace();
+  if (embedded && HidesProfile(*input)) {
+    SCUMBLE_ASSIGN(bytes, ReadWholeFile(path));
+    embedded = internal::EmbeddedProfile(bytes);
+  }
+  SCUMBLE_ASSIGN(Picture stored, ReadFrom(*input, path.string(), view_layer, embedded));
   return Upright(std::move(stored), input->spec().get_int_attribute("Orientation", 1));
 }
 
@@ -316,7 +333,10 @@ Expected<Picture> DecodePicture(std::span<const std::byte> bytes, const std::str
   OIIO::Filesystem::IOMemReader proxy(const_cast<std::byte*>(bytes.data()), bytes.size());
   SCUMBLE_ASSIGN(auto input, internal::OpenInput(proxy, name));
   if (input->format_name() == std::string("jpeg")) SCUMBLE_RETURN_IF_ERROR(CheckJpegIntegrity(bytes, name));
-  return ReadFrom(*input, name, {}, profiles);
+  std::optional<std::span<const std::byte>> embedded;
+  if (profiles == Profiles::kApply)
+    embedded = HidesProfile(*input) ? internal::EmbeddedProfile(bytes) : std::span<const std::byte>();
+  return ReadFrom(*input, name, {}, embedded);
 }
 
 Expected<StoredPicture> InspectStored(const std::filesystem::path& path) {

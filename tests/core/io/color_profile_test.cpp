@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <functional>
 #include <glm/glm.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -170,6 +171,57 @@ TEST(ColorProfile, EveryFormatThatCarriesOneIsConverted) {
     ExpectCodes(
         *stored, given, [](glm::dvec3 code) { return code; }, most);
   }
+}
+
+std::string TextOf(const ProfileBytes& bytes) { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
+
+std::string Digits(std::size_t number, bool lowest_first) {
+  std::string text;
+  for (int i = 0; i < 4; ++i) text += static_cast<char>(number >> 8 * (lowest_first ? i : 3 - i));
+  return text;
+}
+
+std::string EmbeddedIn(const std::string& file) {
+  const auto found = internal::EmbeddedProfile(std::as_bytes(std::span(file)));
+  return {reinterpret_cast<const char*>(found.data()), found.size()};
+}
+
+// What OpenImageIO writes, with a profile before it.
+TEST(ColorProfile, WebpIsConvertedToo) {
+  const TemporaryFolder folder;
+  OIIO::ImageSpec spec(16, 16, 3, OIIO::TypeDesc::UINT8);
+  std::vector<std::uint8_t> pixels;
+  for (int i = 0; i < 256; ++i) pixels.insert(pixels.end(), {120, 180, 90});
+  auto output = OIIO::ImageOutput::create("a.webp");
+  ASSERT_TRUE(output && output->open((folder / "a.webp").string(), spec));
+  ASSERT_TRUE(output->write_image(OIIO::TypeDesc::UINT8, pixels.data()) && output->close());
+  const std::string plain = TextOf(*ReadWholeFile(folder / "a.webp")), profile = TextOf(ProfileOf(kAdobeRgb));
+  const std::string size{15, 0, 0, 15, 0, 0};
+  std::string body = "WEBPVP8X" + Digits(10, true) + ' ' + std::string(3, 0) + size + "ICCP" +
+                     Digits(profile.size(), true) + profile + std::string(profile.size() % 2, 0) + plain.substr(12);
+  const std::string file = "RIFF" + Digits(body.size(), true) + body;
+  EXPECT_EQ(EmbeddedIn(file), profile);
+  EXPECT_EQ(EmbeddedIn(plain), "");
+  EXPECT_EQ(EmbeddedIn(file.substr(0, 100)), "");
+  Picture given(16, 16);
+  const std::uint16_t color[] = {120 * 257, 180 * 257, 90 * 257, 65535};
+  for (int i = 0; i < 256; ++i) std::copy_n(color, 4, given.rgba.data() + 4 * i);
+  for (const bool is_decoded : {false, true}) {
+    ASSERT_TRUE(WriteFileAtomically(folder / "b.webp", std::as_bytes(std::span(file))));
+    const auto picture =
+        is_decoded ? DecodePicture(std::as_bytes(std::span(file)), "b.webp") : ReadPicture(folder / "b.webp");
+    ASSERT_TRUE(picture) << picture.error().message;
+    ExpectCodes(*picture, given, SrgbFromAdobe, 4 * kCode);
+  }
+}
+
+TEST(ColorProfile, OfHeifIsFoundInItsBox) {
+  const std::string profile = TextOf(ProfileOf(kAdobeRgb));
+  const std::string box = Digits(12 + profile.size(), false) + "colrprof" + profile;
+  const std::string file = Digits(24, false) + "ftypheic" + std::string(12, 0) + "ipco" + box + "ispe";
+  EXPECT_EQ(EmbeddedIn(file), profile);
+  EXPECT_EQ(EmbeddedIn(file.substr(0, 60)), "") << "the file ends in it";
+  EXPECT_EQ(EmbeddedIn(Digits(24, false) + "ftypheic" + "colrnclx" + std::string(9, 0)), "");
 }
 
 }  // namespace
