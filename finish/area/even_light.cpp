@@ -27,7 +27,7 @@ namespace scumble::internal {
 
 // What a pixel is part of: its object, folded to 16 bits, below them the normal's x and y, 8 bits each.
 using SurfaceKey = std::uint32_t;
-constexpr float kNormalSteps = 127.0f;
+constexpr long kNormalSteps = 127;
 // Of normals that may be of one surface, x and y each: up to 14 degrees where they face the eye.
 constexpr SurfaceKey kMostNormalSteps = 30;
 
@@ -174,8 +174,8 @@ class PaddedPlane {
 SurfaceKey KeyOf(float object, float normal_x, float normal_y) {
   const auto bits = std::bit_cast<std::uint32_t>(object) * 2654435761u;  // Knuth's multiplicative hash
   const auto steps = [](float x) {
-    return static_cast<SurfaceKey>(kNormalSteps +
-                                   (std::isfinite(x) ? std::clamp(x, -1.0f, 1.0f) : 0.0f) * kNormalSteps);
+    const float inside = std::isfinite(x) ? std::clamp(x, -1.0f, 1.0f) : 0.0f;
+    return static_cast<SurfaceKey>(kNormalSteps + std::lround(inside * float(kNormalSteps)));  // mirrored alike
   };
   return (bits >> 16) << 16 | steps(normal_x) << 8 | steps(normal_y);
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/finish/finish_fixtures.h"
+#include "tests/support/every_instruction_set.h"
 
 namespace scumble {
 namespace {
@@ -97,6 +98,28 @@ TEST(EvenLight, CreasesStaySharp) {
   const FloatPlane normal_y = PlaneOf([](int, int) { return 0.0f; });
   EXPECT_EQ(EvenedLight(light, {kOneObject, normal_x, normal_y}, kWide, kHigh, kLightNoise), light);
   EXPECT_NE(EvenedLight(light, {kOneObject}, kWide, kHigh, kLightNoise), light);
+}
+
+// Noise on two objects of several normals, and what its mirror image gives.
+TEST(EvenLight, MirroredAndOnEveryInstructionSetTheSame) {
+  std::mt19937 random(5);
+  std::normal_distribution<float> noise(0.0f, 0.02f);
+  const auto mirrored = [](const FloatPlane& plane, float sign) {
+    return PlaneOf([&](int x, int y) { return sign * plane[std::size_t(y) * kWide + std::size_t(kWide - 1 - x)]; });
+  };
+  const FloatPlane light = PlaneOf([&](int x, int) { return 0.4f + 0.002f * float(x) + noise(random); });
+  const FloatPlane object = PlaneOf([](int x, int y) { return x + y < 50 ? 1.0f : 2.0f; });
+  const FloatPlane normal_x = PlaneOf([](int x, int) { return 0.03f * float(x) - 0.9f; });
+  const FloatPlane normal_y = PlaneOf([](int, int y) { return 0.01f * float(y); });
+  const FloatPlane even = EvenedLight(light, {object, normal_x, normal_y}, kWide, kHigh, kLightNoise);
+  const FloatPlane other_object = mirrored(object, 1.0f), other_x = mirrored(normal_x, -1.0f),
+                   other_y = mirrored(normal_y, 1.0f);
+  EXPECT_EQ(
+      mirrored(EvenedLight(mirrored(light, 1.0f), {other_object, other_x, other_y}, kWide, kHigh, kLightNoise), 1.0f),
+      even);
+  testing::OnEveryInstructionSet([&] {
+    EXPECT_EQ(EvenedLight(light, {object, normal_x, normal_y}, kWide, kHigh, kLightNoise), even);
+  });
 }
 
 // Islands of two pixels do not change their places.

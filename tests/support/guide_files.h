@@ -85,4 +85,25 @@ inline void WriteExr(const std::filesystem::path& path, OIIO::ImageSpec spec, co
   ASSERT_TRUE(output->close());
 }
 
+// An EXR of guides with all of their channels for each view layer, "Front.normal.X". `change` may alter a plane.
+inline void WriteViewLayers(
+    const std::filesystem::path& path, const GuideSet& guides, const std::vector<std::string>& view_layers,
+    const std::function<void(const std::string& view_layer, Layer layer, std::vector<float>& plane)>& change = {}) {
+  std::vector<std::string> names;
+  std::vector<std::vector<float>> planes;
+  for (const std::string& view_layer : view_layers) {
+    for (const LayerInfo& info : AllLayers()) {
+      if (!guides.Has(info.layer)) continue;
+      for (int c = 0; c < ChannelCount(info.layer); ++c) {
+        const auto plane = guides.Plane(info.layer, c);
+        names.push_back(view_layer + "." + std::string(info.channels[std::size_t(c)]));
+        planes.emplace_back(plane.begin(), plane.end());
+        if (change) change(view_layer, info.layer, planes.back());
+      }
+    }
+  }
+  WriteExr(path, OIIO::ImageSpec(guides.width(), guides.height(), 1, OIIO::TypeDesc::FLOAT), names,
+           [&](std::size_t c, std::size_t i) { return planes[c][i]; });
+}
+
 }  // namespace scumble

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/glm.hpp>
 #include <numeric>
 #include <vector>
 
@@ -41,7 +42,7 @@ double NormalsAgainstDepth(const GuideSet& guides) {
       if (std::hypot(bend_x, bend_y) > kMostBend * rise) continue;
       if (!(across > kSlanted) || !(rise * here * guides.width() > 2.0 * kSlanted)) continue;
       const double cosine = (normal.x * rise_x + normal.y * rise_y) / (across * rise);
-      turned.push_back(std::acos(std::clamp(cosine, -1.0, 1.0)) * 57.29577951308232);
+      turned.push_back(glm::degrees(std::acos(std::clamp(cosine, -1.0, 1.0))));
     }
   }
   if (turned.size() < kEnoughPixels) return -1.0;

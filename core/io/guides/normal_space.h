@@ -8,7 +8,7 @@
 
 namespace scumble::internal {
 
-// By how many degrees the way in which depth falls is turned from the way in which normals point, in the picture: the
+// By how many degrees the way in which depth grows is turned from the way in which normals point, in the picture: the
 // mean over pixels that are not seen from the front. Under any camera, perspective or orthographic, both are one way
 // where normals are in view space and face the eye; 0 to a few degrees as surfaces are smoothed or bumpy. -1 where too
 // few pixels tell. The guides hold normals and depths.

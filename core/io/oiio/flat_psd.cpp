@@ -129,7 +129,7 @@ std::string Resource(Size id, const std::string& bytes) {
 }
 
 // Keeps three resources: the resolution, the colour profile and an indexed picture's transparent colour. Without the
-// latter OpenImageIO 2.4 reports alpha but writes none. A colour that no pixel has makes it write 1.
+// last OpenImageIO 2.4 reports alpha but writes none. A colour that no pixel has makes it write 1.
 std::string KeptResources(IOProxy& file, const Header& header, Size at, Size end) {
   constexpr Size kResolution = 1005, kProfile = 1039, kTransparent = 1047, kNoColor = 256;
   std::string resolution, profile, transparent = Resource(kTransparent, AsBytes(kNoColor, 2));

@@ -46,7 +46,7 @@ struct FileContents {
   std::vector<FoundLight> lights;
   std::map<std::string, std::string> manifests;  // by the matte's name: "ViewLayer.CryptoObject"
   std::string all_names;                         // for messages
-  std::string dwa;                               // dwaa or dwab, where a part is compressed so
+  std::string dwa;  // dwaa or dwab, where a part with depth, position or a matte has that compression
   bool has_half = false;
   bool from_blender = false;
 };

@@ -3,7 +3,6 @@
 #include <array>
 #include <cctype>
 #include <cstddef>
-#include <optional>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -76,17 +75,11 @@ bool IsStraight(const OIIO::ImageSpec& spec, std::string_view reader) {
   return is_silent || spec.get_int_attribute("oiio:UnassociatedAlpha", 0) != 0;
 }
 
-// The file's ICC profile; empty: none.
-std::span<const std::byte> ProfileOf(const OIIO::ImageSpec& spec) {
+// The file's ICC profile, as its reader gives it, or from its `bytes`; empty: none.
+std::span<const std::byte> ProfileOf(const OIIO::ImageSpec& spec, std::span<const std::byte> bytes) {
   const OIIO::ParamValue* const found = spec.find_attribute("ICCProfile");
-  if (!found || found->type().basetype != OIIO::TypeDesc::UINT8) return {};
+  if (!found || found->type().basetype != OIIO::TypeDesc::UINT8) return internal::EmbeddedProfile(bytes);
   return {static_cast<const std::byte*>(found->data()), found->type().size()};
-}
-
-// OpenImageIO 2.4 does not give the profiles of these.
-bool HidesProfile(const OIIO::ImageInput& input) {
-  const std::string_view reader = input.format_name();
-  return reader == "webp" || reader == "heif";
 }
 
 bool IsLinear(const OIIO::ImageSpec& spec) {
@@ -231,38 +224,6 @@ Status SeekPicture(OIIO::ImageInput& input, const std::string& file, const std::
   return Ok();
 }
 
-// `embedded`: the profile that the file's bytes hold, for where its reader gives none; nothing: profiles are ignored.
-// Pixels of the display window outside an EXR's data window are transparent; those of the data window beyond the
-// display window are cut off.
-Expected<Picture> ReadFrom(OIIO::ImageInput& input, const std::string& name, const std::string& view_layer,
-                           std::optional<std::span<const std::byte>> embedded) {
-  SCUMBLE_RETURN_IF_ERROR(SeekPicture(input, name, view_layer));
-  const OIIO::ImageSpec spec = input.spec();
-  SCUMBLE_RETURN_IF_ERROR(internal::CheckSize(spec, name));
-  OIIO::ImageSpec display = spec;
-  display.width = spec.full_width, display.height = spec.full_height;
-  SCUMBLE_RETURN_IF_ERROR(internal::CheckSize(display, name));
-  SCUMBLE_ASSIGN(const ColorChannels channels, FindColorChannels(spec, name, view_layer));
-  const ChannelRange range = RangeOf(channels);
-  // Read in one call, up to four channels of the largest picture.
-  if (std::int64_t(range.count()) * spec.width * spec.height > 4 * kMaxPicturePixels) {
-    return InputError(name + " has its colours " + std::to_string(range.count()) +
-                      " channels apart, too many for its size; write R, G, B and A side by side");
-  }
-  const Decoder decoder{Within(channels, range), channels.a < 0 || IsStraight(spec, input.format_name())};
-  if (IsLinear(spec)) {
-    return ReadPixels<float>(input, name, OIIO::TypeDesc::FLOAT, range,
-                             [&](const float* pixel, std::uint16_t* out) { decoder.Linear(pixel, out); });
-  }
-  auto picture =
-      ReadPixels<std::uint16_t>(input, name, OIIO::TypeDesc::UINT16, range,
-                                [&](const std::uint16_t* pixel, std::uint16_t* out) { decoder.Encoded(pixel, out); });
-  if (!picture || !embedded) return picture;
-  const auto of_spec = ProfileOf(spec), profile = of_spec.empty() ? *embedded : of_spec;
-  if (!profile.empty()) internal::ConvertToSrgb(profile, *picture);
-  return picture;
-}
-
 // The JPEG reader fills missing data with grey and reports no error. So the markers are followed here, from segment to
 // segment and through the coded data, up to the end marker (ITU-T T.81, annex B).
 Status CheckJpegIntegrity(std::span<const std::byte> bytes, const std::string& name) {
@@ -286,6 +247,46 @@ Status CheckJpegIntegrity(std::span<const std::byte> bytes, const std::string& n
   return InputError("cannot read " + name + ": the JPEG file ends before its picture does; copy or save it again");
 }
 
+bool IsJpeg(const OIIO::ImageInput& input) { return input.format_name() == std::string_view("jpeg"); }
+
+// Whether the file's bytes are looked at besides: by CheckJpegIntegrity, or for a profile, which OpenImageIO 2.4 does
+// not give of WebP and HEIF.
+bool NeedsBytes(const OIIO::ImageInput& input) {
+  const std::string_view reader = input.format_name();
+  return IsJpeg(input) || reader == "webp" || reader == "heif";
+}
+
+// `bytes`: all of the file, if NeedsBytes. Pixels of the display window outside an EXR's data window are transparent;
+// those of the data window beyond the display window are cut off.
+Expected<Picture> ReadFrom(OIIO::ImageInput& input, std::span<const std::byte> bytes, const std::string& name,
+                           const std::string& view_layer, Profiles profiles) {
+  if (IsJpeg(input)) SCUMBLE_RETURN_IF_ERROR(CheckJpegIntegrity(bytes, name));
+  SCUMBLE_RETURN_IF_ERROR(SeekPicture(input, name, view_layer));
+  const OIIO::ImageSpec spec = input.spec();
+  SCUMBLE_RETURN_IF_ERROR(internal::CheckSize(spec, name));
+  OIIO::ImageSpec display = spec;
+  display.width = spec.full_width, display.height = spec.full_height;
+  SCUMBLE_RETURN_IF_ERROR(internal::CheckSize(display, name));
+  SCUMBLE_ASSIGN(const ColorChannels channels, FindColorChannels(spec, name, view_layer));
+  const ChannelRange range = RangeOf(channels);
+  // Read in one call, up to four channels of the largest picture.
+  if (std::int64_t(range.count()) * spec.width * spec.height > 4 * kMaxPicturePixels) {
+    return InputError(name + " has its colours " + std::to_string(range.count()) +
+                      " channels apart, too many for its size; write R, G, B and A side by side");
+  }
+  const Decoder decoder{Within(channels, range), channels.a < 0 || IsStraight(spec, input.format_name())};
+  if (IsLinear(spec)) {
+    return ReadPixels<float>(input, name, OIIO::TypeDesc::FLOAT, range,
+                             [&](const float* pixel, std::uint16_t* out) { decoder.Linear(pixel, out); });
+  }
+  auto picture =
+      ReadPixels<std::uint16_t>(input, name, OIIO::TypeDesc::UINT16, range,
+                                [&](const std::uint16_t* pixel, std::uint16_t* out) { decoder.Encoded(pixel, out); });
+  if (!picture || profiles == Profiles::kIgnore) return picture;
+  if (const auto profile = ProfileOf(spec, bytes); !profile.empty()) internal::ConvertToSrgb(profile, *picture);
+  return picture;
+}
+
 PictureHeader HeaderOf(const OIIO::ImageSpec& spec) {
   const double per_unit = spec.get_float_attribute("XResolution", 0.0f);
   const std::string unit(spec.get_string_attribute("ResolutionUnit"));
@@ -302,18 +303,11 @@ PictureHeader HeaderOf(const OIIO::ImageSpec& spec) {
 
 Expected<Picture> ReadPicture(const std::filesystem::path& path, const std::string& view_layer, Profiles profiles) {
   SCUMBLE_ASSIGN(auto input, internal::OpenInput(path));
-  if (input->format_name() == std::string("jpeg")) {
-    SCUMBLE_ASSIGN(const auto bytes, ReadWholeFile(path));
-    SCUMBLE_RETURN_IF_ERROR(CheckJpegIntegrity(bytes, path.string()));
-  }
-  std::optional<std::span<const std::byte>> embedded;
   std::vector<std::byte> bytes;
-  if (profiles == Profiles::kApply) embedded.emplace();
-  if (embedded && HidesProfile(*input)) {
+  if (NeedsBytes(*input)) {
     SCUMBLE_ASSIGN(bytes, ReadWholeFile(path));
-    embedded = internal::EmbeddedProfile(bytes);
   }
-  SCUMBLE_ASSIGN(Picture stored, ReadFrom(*input, path.string(), view_layer, embedded));
+  SCUMBLE_ASSIGN(Picture stored, ReadFrom(*input, bytes, path.string(), view_layer, profiles));
   return Upright(std::move(stored), input->spec().get_int_attribute("Orientation", 1));
 }
 
@@ -332,11 +326,7 @@ Expected<PictureHeader> InspectEncoded(std::span<const std::byte> bytes, const s
 Expected<Picture> DecodePicture(std::span<const std::byte> bytes, const std::string& name, Profiles profiles) {
   OIIO::Filesystem::IOMemReader proxy(const_cast<std::byte*>(bytes.data()), bytes.size());
   SCUMBLE_ASSIGN(auto input, internal::OpenInput(proxy, name));
-  if (input->format_name() == std::string("jpeg")) SCUMBLE_RETURN_IF_ERROR(CheckJpegIntegrity(bytes, name));
-  std::optional<std::span<const std::byte>> embedded;
-  if (profiles == Profiles::kApply)
-    embedded = HidesProfile(*input) ? internal::EmbeddedProfile(bytes) : std::span<const std::byte>();
-  return ReadFrom(*input, name, {}, embedded);
+  return ReadFrom(*input, bytes, name, {}, profiles);
 }
 
 Expected<StoredPicture> InspectStored(const std::filesystem::path& path) {

@@ -15,22 +15,11 @@ class CliCompareFiles : public CliTest {
   // The guides of a sphere, with the channels of each view layer; those of "Far" are a metre farther away.
   void WriteLayers(const std::string& file, const std::vector<std::string>& view_layers) {
     const GuideSet guides = Ball(24);
-    std::vector<std::string> names;
-    std::vector<std::vector<float>> planes;
-    for (const std::string& view_layer : view_layers) {
-      for (const LayerInfo& info : AllLayers()) {
-        if (!guides.Has(info.layer)) continue;
-        for (int c = 0; c < ChannelCount(info.layer); ++c) {
-          const auto plane = guides.Plane(info.layer, c);
-          names.push_back(view_layer + "." + std::string(info.channels[std::size_t(c)]));
-          planes.emplace_back(plane.begin(), plane.end());
-          if (info.layer != Layer::kDepth || view_layer != "Far") continue;
-          for (float& depth : planes.back()) depth += 1.0f;
-        }
-      }
-    }
-    WriteExr(At(file), OIIO::ImageSpec(24, 24, 1, OIIO::TypeDesc::FLOAT), names,
-             [&](std::size_t c, std::size_t i) { return planes[c][i]; });
+    WriteViewLayers(At(file), guides, view_layers,
+                    [](const std::string& view_layer, Layer layer, std::vector<float>& plane) {
+                      if (layer != Layer::kDepth || view_layer != "Far") return;
+                      for (float& depth : plane) depth += 1.0f;
+                    });
     WriteGuideFile("ours.exr", guides);
   }
 };

@@ -190,21 +190,7 @@ TEST_F(CliSequence, ResumeComparesHowTheGuidesWereMade) {
 
 TEST_F(CliSequence, ResumeComparesTheViewLayer) {
   WriteStyle("style");
-  const GuideSet guides = Ball(24);
-  std::vector<std::string> names;
-  std::vector<std::vector<float>> planes;
-  for (const std::string view_layer : {"Front", "Back"}) {
-    for (const LayerInfo& info : AllLayers()) {
-      if (!guides.Has(info.layer)) continue;
-      for (int c = 0; c < ChannelCount(info.layer); ++c) {
-        const auto plane = guides.Plane(info.layer, c);
-        names.push_back(view_layer + "." + std::string(info.channels[std::size_t(c)]));
-        planes.emplace_back(plane.begin(), plane.end());
-      }
-    }
-  }
-  WriteExr(At("g.exr"), OIIO::ImageSpec(24, 24, 1, OIIO::TypeDesc::FLOAT), names,
-           [&](std::size_t c, std::size_t i) { return planes[c][i]; });
+  WriteViewLayers(At("g.exr"), Ball(24), {"Front", "Back"});
   const auto kept = [&](const std::string& view_layer) {
     return RunOk({"transfer", "g.exr", "--style", "style", "--frames", "1-2", "-o", "p#.png", "--resume", "--json",
                   "--view-layer", view_layer})
