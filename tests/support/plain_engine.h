@@ -77,7 +77,7 @@ inline std::uint64_t SeedThatReaches(int level, const GuideSet& guides) {
   return 0;
 }
 
-// Every neighbour inside the window votes; nothing stops at edges.
+// Every neighbour inside the window votes, over at most one cell of its grid; nothing stops at edges.
 inline Picture PlainEngine(const Style& style, const GuideSet& guides) {
   const PreparedExemplar exemplar(style.exemplars[0].picture, style.transfer.rim, style.exemplars[0].picture.width);
   const auto coverage = guides.Plane(Layer::kCoverage);
@@ -98,6 +98,7 @@ inline Picture PlainEngine(const Style& style, const GuideSet& guides) {
         for (int u = std::max(0, x - radius); u <= std::min(guides.width() - 1, x + radius); ++u) {
           const std::size_t q = guides.Index(u, v);
           if (!(coverage[q] > 0.0f)) continue;
+          if (std::max(std::abs(u - x), std::abs(v - y)) > 1 << sources[q].level) continue;
           const int sx = sources[q].x + x - u, sy = sources[q].y + y - v;
           if (!exemplar.Usable(sx, sy)) continue;
           for (int c = 0; c < 3; ++c) sum[c] += exemplar.picture().At(sx, sy)[c];

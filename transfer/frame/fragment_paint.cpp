@@ -136,6 +136,7 @@ void FragmentPaint::ForEachVote(const FragmentStyle& style, const VoteInput& vot
   for (int v = std::max(0, y - radius); v <= std::min(guides.height() - 1, y + radius); ++v) {
     for (int u = std::max(0, x - radius); u <= std::min(guides.width() - 1, x + radius); ++u) {
       if ((u == x && v == y) || !votes.active[field.Index(u, v)]) continue;
+      if (std::max(std::abs(u - x), std::abs(v - y)) > VoteReach(field.level[field.Index(u, v)], radius)) continue;
       const std::size_t q = guides.Index(u, v);
       if (style.edge_aware) {
         if (guides.Plane(Layer::kObject)[q] != fragments_->values.Plane(Layer::kObject)[fragment]) continue;

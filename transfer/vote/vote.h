@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstdlib>
 #include <functional>
 #include <span>
 
@@ -28,14 +29,19 @@ struct VoteInput {
   std::function<void(int y, int x0, int x1)> finished = {};
 };
 
+// How far a pixel votes: at most over one cell of the seed grid that settled it, so that chunks of a few pixels do not
+// blur what lies around them, and cost no more votes than large ones.
+inline int VoteReach(int level, int radius) { return std::min(radius, 1 << std::max(0, level)); }
+
 // Calls visit(exemplar, source) for each vote on the colour of an active pixel (x, y). Each active pixel q of the
 // (2·radius + 1)² window, or of its support region if `regions` is given, votes for the texel S(q) + (p - q) if that is
-// usable. `regions` must be of the input's radius and hold (x, y). The pixel's own vote is always among them.
+// usable and p is within the reach of q. `regions` must be of the input's radius and hold (x, y). The pixel's own vote
+// is always among them.
 template <class Visit>
 void ForEachVote(const VoteInput& input, const SupportRegions* regions, int x, int y, const Visit& visit) {
   const SourceField& field = input.field;
   const auto offer = [&](std::size_t q, int dx, int dy) {
-    if (!input.active[q]) return;
+    if (!input.active[q] || std::max(std::abs(dx), std::abs(dy)) > VoteReach(field.level[q], input.radius)) return;
     const Source source{field.x[q] - dx, field.y[q] - dy};
     if (input.exemplar.Usable(source.x, source.y)) visit(int(field.exemplar[q]), source);
   };

@@ -80,6 +80,7 @@ Picture PlainVote(const GuideSet& guides, const SourceField& field, const Prepar
         for (int u = std::max(0, x - radius); u <= std::min(field.width - 1, x + radius); ++u) {
           const std::size_t q = field.Index(u, v);
           if (!(guides.Plane(Layer::kCoverage)[q] > 0.0f)) continue;
+          if (std::max(std::abs(u - x), std::abs(v - y)) > 1 << field.level[q]) continue;
           const int sx = field.x[q] + x - u, sy = field.y[q] + y - v;
           if (!exemplar.Usable(sx, sy) || (limits && !Joined(guides, *limits, x, y, u, v))) continue;
           const std::uint16_t* texel = exemplar.picture(field.exemplar[q]).At(sx, sy);

@@ -254,6 +254,7 @@ TEST(Hybrid, IsTheOwnTonePlusTheMeanOfTheTexturesVotedFor) {
             const std::size_t q = field.Index(u, v);
             const int sx = field.x[q] + x - u, sy = field.y[q] + y - v;
             if (field.level[q] == SourceField::kNoSource || !exemplar.Usable(sx, sy)) continue;
+            if (std::max(std::abs(u - x), std::abs(v - y)) > 1 << field.level[q]) continue;
             const std::uint16_t* paint = exemplar.picture(field.exemplar[q]).At(sx, sy);
             for (int c = 0; c < 4; ++c) {
               const double value = c < 3 ? paint[c] * double(paint[3]) / 65535 : paint[3];

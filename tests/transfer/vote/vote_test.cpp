@@ -61,6 +61,7 @@ TEST(Vote, IsTheRoundedMeanOfTheNeighboursOffers) {
             if (u < 0 || v < 0 || u >= 70 || v >= 60) continue;
             const std::size_t q = result.field.Index(u, v);
             if (result.field.level[q] == SourceField::kNoSource) continue;
+            if (std::max(std::abs(u - x), std::abs(v - y)) > 1 << result.field.level[q]) continue;
             const int sx = result.field.x[q] + x - u, sy = result.field.y[q] + y - v;
             if (!prepared->exemplar->Usable(sx, sy)) continue;
             sum += prepared->exemplar->picture().At(sx, sy)[0], ++count;
@@ -109,7 +110,8 @@ TEST(EdgeAware, VotesDoNotCrossObjectBorders) {
     style.transfer.edge_aware = true;
     EXPECT_EQ(GreyPixels(MustTransfer(style, guides).picture), 0u);
     style.transfer.edge_aware = false;
-    EXPECT_EQ(GreyPixels(MustTransfer(style, guides).picture), 2u * radius * 32u) << "plain voting mixes, as it should";
+    // Single pixels beside the border may belong to small chunks, which do not vote as far.
+    EXPECT_NEAR(GreyPixels(MustTransfer(style, guides).picture), 2 * radius * 32, radius) << "plain voting mixes";
   }
 }
 
@@ -239,7 +241,7 @@ TEST(EdgeAware, NoGhostingAtAnyTolerance) {
   const Ghosting ghosting(guides);
   internal::LazyDepthGradient slopes(guides);
   for (const int radius : {1, 8}) {
-    EXPECT_GT(ghosting.Count(radius, nullptr), radius == 8 ? 20000u : 5000u) << "plain voting mixes, as it should";
+    EXPECT_GT(ghosting.Count(radius, nullptr), radius == 8 ? 7000u : 5000u) << "plain voting mixes, as it should";
     for (const double tolerance : {0.0, 1e-4, 3e-4, 1e-3, 2e-3, 1e-2, 3e-2, 1e-1, 1.0}) {
       for (const double crease : {60.0, 180.0}) {
         const internal::EdgeRules edges{guides, slopes, crease, tolerance};
@@ -353,9 +355,9 @@ TEST(EdgeAware, TheCreaseAngleIsWhatItSays) {
     style.transfer.crease = angle - 1.0;
     EXPECT_EQ(GreyPixels(MustTransfer(style, guides).picture), 0u) << angle;
     style.transfer.crease = angle + 1.0;
-    EXPECT_EQ(GreyPixels(MustTransfer(style, guides).picture), 6u * 32u) << angle;
+    EXPECT_NEAR(GreyPixels(MustTransfer(style, guides).picture), 6 * 32, 6) << angle;
     style.transfer.crease = 180.0;
-    EXPECT_EQ(GreyPixels(MustTransfer(style, guides).picture), 6u * 32u) << angle;
+    EXPECT_NEAR(GreyPixels(MustTransfer(style, guides).picture), 6 * 32, 6) << angle;
   }
 }
 

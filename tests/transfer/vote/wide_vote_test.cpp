@@ -81,7 +81,8 @@ void FillField(WideCase& all, Pieces pieces, int size, int exemplars, int holes)
       // A pixel's own source is usable, by the contract of matching.
       while (!all.exemplar.Usable(source.x, source.y)) source = {(source.x + size / 2) / 2, (source.y + size / 2) / 2};
       const std::size_t i = all.field.Index(x, y);
-      all.field.Set(i, source.x, source.y, exemplars > 1 ? int(Hash(x / 31, y / 23, 6) % exemplars) : 0, 1);
+      all.field.Set(i, source.x, source.y, exemplars > 1 ? int(Hash(x / 31, y / 23, 6) % exemplars) : 0,
+                    int(Hash(x / 17, y / 19, 7) % 9));
       all.active[i] = 1;
     }
   }
@@ -116,6 +117,31 @@ WideCase MakeCase(int width, int height, Pieces pieces, int size, int exemplars,
 }
 
 Region Whole(const WideCase& all) { return {0, 0, all.guides.width(), all.guides.height()}; }
+
+// White paint at one pixel of a black chunk.
+TEST(WideVote, AChunkVotesOverOneCellOfItsGrid) {
+  Picture paint(64, 64);
+  std::fill(paint.rgba.begin(), paint.rgba.end(), std::uint16_t{65535});
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 0; x < 32; ++x) std::fill_n(paint.At(x, y), 3, std::uint16_t{0});
+  }
+  for (int level = 0; level <= 4; ++level) {
+    WideCase all{GuideSet(31, 31), {}, std::vector<std::uint8_t>(31 * 31, 1), Prepared({paint}, 0.0)};
+    all.field.Reset(31, 31);
+    for (int i = 0; i < 31 * 31; ++i) all.field.Set(std::size_t(i), i % 31, i / 31, 0, 6);
+    all.field.Set(all.field.Index(15, 15), 50, 15, 0, level);
+    for (const int radius : {2, 3, 8}) {
+      const Picture painted = WideVotes(all.Input(radius, Whole(all)));
+      const int reach = std::min(radius, 1 << level);
+      for (int y = 0; y < 31; ++y) {
+        for (int x = 0; x < 31; ++x) {
+          const bool reached = std::max(std::abs(x - 15), std::abs(y - 15)) <= reach;
+          ASSERT_EQ(painted.At(x, y)[0] > 0, reached) << x << ", " << y << ", level " << level << ", radius " << radius;
+        }
+      }
+    }
+  }
+}
 
 TEST(WideVote, EqualsTheDefinitionForEveryRadius) {
   const WideCase all = MakeCase(83, 71, Pieces::kLarge, 200, 1, true, 9);

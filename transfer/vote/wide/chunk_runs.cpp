@@ -29,6 +29,8 @@ bool WideTile::Read(const VoteInput& input, const Region& area) {
     std::fill(table_.begin(), table_.end(), Entry{});
     stamp_ = 1;
   }
+  std::int8_t full_level = 0;
+  while (VoteReach(full_level, radius_) < radius_) ++full_level;
   for (int row = 0; row < rows; ++row) {
     const std::size_t i = field.Index(surround_.x0, surround_.y0 + row);
     // Prefetches the next tile to the right: its rows are too short for the hardware prefetcher.
@@ -39,7 +41,12 @@ bool WideTile::Read(const VoteInput& input, const Region& area) {
       }
       hwy::Prefetch(field.exemplar.data() + next), hwy::Prefetch(input.active.data() + next);
     }
-    const FieldRow source{field.x.data() + i, field.y.data() + i, field.exemplar.data() + i, input.active.data() + i,
+    const FieldRow source{field.x.data() + i,
+                          field.y.data() + i,
+                          field.exemplar.data() + i,
+                          field.level.data() + i,
+                          input.active.data() + i,
+                          full_level,
                           columns};
     MarkRuns(source, votes_.data() + std::size_t(row) * words_, changes_.data() + std::size_t(row) * words_);
     ReadRow(field, row);
@@ -76,18 +83,20 @@ void WideTile::ReadRow(const SourceField& field, int row) {
 void WideTile::AddRun(const SourceField& field, int row, int begin, int end) {
   const int left = surround_.x0 - area_.x0, y = row + surround_.y0 - area_.y0;
   const std::size_t i = field.Index(surround_.x0 + begin, surround_.y0 + row);
-  const std::uint32_t chunk = FindChunk(field.x[i] - (left + begin), field.y[i] - y, field.exemplar[i]);
+  const std::uint32_t chunk =
+      FindChunk(field.x[i] - (left + begin), field.y[i] - y, field.exemplar[i], VoteReach(field.level[i], radius_));
   ++chunks_[chunk].count;
   found_.push_back(
       {{static_cast<std::int16_t>(y), static_cast<std::int16_t>(left + begin), static_cast<std::int16_t>(left + end)},
        chunk});
 }
 
-std::uint32_t WideTile::FindChunk(int shift_x, int shift_y, int exemplar) {
-  // Shifts are 17 bits and a sign.
+std::uint32_t WideTile::FindChunk(int shift_x, int shift_y, int exemplar, int reach) {
+  // Shifts are 17 bits and a sign, a reach 7 bits.
   const std::uint64_t x = static_cast<std::uint32_t>(shift_x) & 0xfffff,
                       y = static_cast<std::uint32_t>(shift_y) & 0xfffff;
-  const std::uint64_t key = x << 28 | y << 8 | static_cast<std::uint64_t>(exemplar);
+  const std::uint64_t key =
+      static_cast<std::uint64_t>(reach) << 48 | x << 28 | y << 8 | static_cast<std::uint64_t>(exemplar);
   const std::size_t mask = table_.size() - 1;
   std::size_t slot = Mix64(key) & mask;
   while (table_[slot].stamp == stamp_) {
@@ -96,7 +105,7 @@ std::uint32_t WideTile::FindChunk(int shift_x, int shift_y, int exemplar) {
   }
   const auto chunk = static_cast<std::uint32_t>(chunks_.size());
   table_[slot] = {key, chunk, stamp_};
-  chunks_.push_back({shift_x, shift_y, exemplar, 0, 0});
+  chunks_.push_back({shift_x, shift_y, exemplar, reach, 0, 0});
   if (2 * chunks_.size() > table_.size()) GrowTable();
   return chunk;
 }

@@ -22,9 +22,10 @@ struct ChunkRun {
   std::int16_t row, begin, end;
 };
 
-// All runs in and around a tile that have one exemplar and one offset.
+// All runs in and around a tile that have one exemplar, one offset, and one reach.
 struct Chunk {
   int shift_x = 0, shift_y = 0, exemplar = 0;  // texel = column and row in the tile + shift
+  int reach = 0;                               // VoteReach
   std::uint32_t first = 0, count = 0;          // of WideTile::runs, from the top down
 };
 
@@ -72,7 +73,7 @@ class WideTile {
 
   void ReadRow(const SourceField& field, int row);
   void AddRun(const SourceField& field, int row, int begin, int end);
-  std::uint32_t FindChunk(int shift_x, int shift_y, int exemplar);
+  std::uint32_t FindChunk(int shift_x, int shift_y, int exemplar, int reach);
   void GrowTable();
 
   Region area_, surround_;

@@ -24,14 +24,20 @@ HWY_INLINE std::uint64_t Bits(D d, M mask) {
 HWY_ATTR void MarkBlock(const FieldRow& row, int at, std::uint64_t& votes, std::uint64_t& changes) {
   const HWY_CAPPED(std::int16_t, 32) d16;
   const HWY_CAPPED(std::uint8_t, 64) d8;
+  const hn::RebindToSigned<decltype(d8)> s8;
   const auto one = hn::Set(d16, std::int16_t{1});
+  const auto full = hn::Set(s8, row.full_level);
   const auto none = hn::Zero(d8);
   std::uint64_t active = 0, before = 0, same = 0, follows = 0;
   for (std::size_t i = 0; i < 64; i += hn::Lanes(d8)) {
     const std::size_t k = std::size_t(at) + i;
     active |= Bits(d8, hn::Ne(hn::LoadU(d8, row.active + k), none)) << i;
     before |= Bits(d8, hn::Ne(hn::LoadU(d8, row.active + k - 1), none)) << i;
-    same |= Bits(d8, hn::Eq(hn::LoadU(d8, row.exemplar + k), hn::LoadU(d8, row.exemplar + k - 1))) << i;
+    const auto here = hn::Min(hn::LoadU(s8, row.level + k), full),
+               last = hn::Min(hn::LoadU(s8, row.level + k - 1), full);
+    same |= Bits(d8, hn::And(hn::Eq(hn::LoadU(d8, row.exemplar + k), hn::LoadU(d8, row.exemplar + k - 1)),
+                             hn::RebindMask(d8, hn::Eq(here, last))))
+            << i;
   }
   for (std::size_t i = 0; i < 64; i += hn::Lanes(d16)) {
     const std::size_t k = std::size_t(at) + i;
@@ -63,8 +69,9 @@ HWY_ATTR void MarkRunsTarget(const FieldRow& row, std::uint64_t* votes, std::uin
   }
   for (; at < row.count; ++at) {
     const bool active = row.active[at] != 0, before = row.active[at - 1] != 0;
-    const bool same = row.exemplar[at] == row.exemplar[at - 1] && row.y[at] == row.y[at - 1] &&
-                      static_cast<std::int16_t>(row.x[at] - row.x[at - 1]) == 1;
+    const bool same = row.exemplar[at] == row.exemplar[at - 1] &&
+                      std::min(row.level[at], row.full_level) == std::min(row.level[at - 1], row.full_level) &&
+                      row.y[at] == row.y[at - 1] && static_cast<std::int16_t>(row.x[at] - row.x[at - 1]) == 1;
     if (active) put(votes, at, 1);
     if ((active || before) && !(active && before && same)) put(changes, at, 1);
   }

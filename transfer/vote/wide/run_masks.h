@@ -10,7 +10,9 @@ struct FieldRow {
   const std::int16_t* x;
   const std::int16_t* y;
   const std::uint8_t* exemplar;
+  const std::int8_t* level;
   const std::uint8_t* active;
+  std::int8_t full_level;  // levels from this one on vote over the whole radius and are one
   int count;
 };
 

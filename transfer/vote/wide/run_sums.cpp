@@ -26,15 +26,20 @@ struct Group {
   int x0, x1, y0, y1;  // the part of the tile that they reach
 };
 
-// Adds to counts[x] how many pixels of the run are on the horizontal arm of column x, for columns [x0, x1) and up to a
-// vector more. Counts are kept modulo 65536, sums of all runs fit.
-HWY_ATTR HWY_INLINE void CountRun(const ChunkRun& run, const WideArms& arms, int x0, int x1, std::uint16_t* counts) {
+// Adds to counts[x] how many pixels of the run are on the horizontal arm of column x and reach it, for columns [x0, x1)
+// and up to a vector more. Counts are kept modulo 65536, sums of all runs fit.
+HWY_ATTR HWY_INLINE void CountRun(const ChunkRun& run, const WideArms& arms, int reach, int x0, int x1,
+                                  std::uint16_t* counts) {
   const I16 d;
   const D16 u;
   const auto zero = hn::Zero(d), begin = hn::Set(d, run.begin), end = hn::Set(d, run.end);
   const std::int16_t *low = arms.Low(run.row), *high = arms.High(run.row);
   for (int x = x0; x < x1; x += static_cast<int>(hn::Lanes(d))) {
-    const auto first = hn::Max(begin, hn::LoadU(d, low + x)), last = hn::Min(end, hn::LoadU(d, high + x));
+    const auto at = hn::Add(hn::Set(d, static_cast<std::int16_t>(x)), hn::Iota(d, std::int16_t{0}));
+    const auto nearest = hn::Max(hn::LoadU(d, low + x), hn::Sub(at, hn::Set(d, static_cast<std::int16_t>(reach))));
+    const auto furthest =
+        hn::Min(hn::LoadU(d, high + x), hn::Add(at, hn::Set(d, static_cast<std::int16_t>(reach + 1))));
+    const auto first = hn::Max(begin, nearest), last = hn::Min(end, furthest);
     const auto met = hn::BitCast(u, hn::Max(zero, hn::Sub(last, first)));
     hn::StoreU(hn::Add(hn::LoadU(u, counts + x), met), u, counts + x);
   }
@@ -45,9 +50,9 @@ HWY_ATTR HWY_INLINE void CountRun(const ChunkRun& run, const WideArms& arms, int
 class PrefixRows {
  public:
   // For columns [x0, x1) of the tile and its rows [y0, y1); `storage` holds WideSums::CountedSize(radius).
-  HWY_ATTR PrefixRows(const Group& group, const WideArms& arms, std::uint16_t* storage)
-      : first_(group.y0 - arms.radius() - 1) {
-    const int radius = arms.radius(), rows = group.y1 - group.y0 + 2 * radius + 1;
+  HWY_ATTR PrefixRows(const Group& group, const WideArms& arms, int reach, std::uint16_t* storage)
+      : first_(group.y0 - reach - 1) {
+    const int rows = group.y1 - group.y0 + 2 * reach + 1;
     std::uint16_t* counts = storage;
     std::fill(counts + group.x0, counts + group.x1, std::uint16_t{0});
     const ChunkRun* run = group.first;
@@ -58,8 +63,8 @@ class PrefixRows {
         counts += WideSums::kCountedStride;
       }
       for (; run != group.last && run->row == first_ + k; ++run) {
-        const int x0 = std::max(group.x0, run->begin - radius), x1 = std::min(group.x1, run->end + radius);
-        CountRun(*run, arms, x0, x1, counts);
+        const int x0 = std::max(group.x0, run->begin - reach), x1 = std::min(group.x1, run->end + reach);
+        CountRun(*run, arms, reach, x0, x1, counts);
       }
       rows_[k] = counts;
     }
@@ -164,7 +169,7 @@ HWY_ATTR void AddWeighted(const std::uint16_t* counts, const std::uint16_t* texe
 template <bool kOpaque>
 HWY_ATTR void SumGroup(const Work& work, const Chunk& chunk, const Group& group, std::uint32_t* all) {
   HWY_ALIGN std::uint16_t counts[WideSums::kCountedStride];
-  const int radius = work.tile.radius();
+  const int reach = chunk.reach;
   const Picture& picture = work.exemplar.picture(chunk.exemplar);
   const std::uint16_t* texels_end = picture.rgba.data() + picture.rgba.size();
   const bool inside = work.usable.AllOf(
@@ -178,11 +183,11 @@ HWY_ATTR void SumGroup(const Work& work, const Chunk& chunk, const Group& group,
       AddWeighted(counts + x0, texels, x1 - x0, work.weighted + 4 * at, work.votes + at, all);
     }
   };
-  const PrefixRows prefix(group, work.arms, work.counted);
+  const PrefixRows prefix(group, work.arms, reach, work.counted);
   const std::uint64_t columns = BitRange(group.x0, group.x1);
   const D16 d;
   for (int y = group.y0; y < group.y1; ++y) {
-    const std::uint16_t *above = prefix.At(y - radius - 1), *below = prefix.At(y + radius);
+    const std::uint16_t *above = prefix.At(y - reach - 1), *below = prefix.At(y + reach);
     if (above == below) continue;
     std::uint64_t met = 0;  // columns whose window holds pixels of the chunk
     for (int x = group.x0; x < group.x1; x += static_cast<int>(hn::Lanes(d))) {
@@ -196,8 +201,8 @@ HWY_ATTR void SumGroup(const Work& work, const Chunk& chunk, const Group& group,
     }
     for (std::uint64_t cut = work.arms.Short(y) & columns & met; cut; cut &= cut - 1) {
       const int x = std::countr_zero(cut);
-      counts[x] =
-          static_cast<std::uint16_t>(prefix.At(y + work.arms.Down(x, y))[x] - prefix.At(y - work.arms.Up(x, y) - 1)[x]);
+      counts[x] = static_cast<std::uint16_t>(prefix.At(y + std::min(reach, work.arms.Down(x, y)))[x] -
+                                             prefix.At(y - std::min(reach, work.arms.Up(x, y)) - 1)[x]);
     }
     if (y + kAhead < group.y1) AskFor(picture, chunk, group.x0, group.x1, y + kAhead);
     if (inside) {
@@ -211,8 +216,8 @@ HWY_ATTR void SumGroup(const Work& work, const Chunk& chunk, const Group& group,
   }
 }
 
-Group GroupOf(const WideTile& tile, const ChunkRun* first, const ChunkRun* last) {
-  const int width = tile.area().x1 - tile.area().x0, height = tile.area().y1 - tile.area().y0, radius = tile.radius();
+Group GroupOf(const WideTile& tile, int reach, const ChunkRun* first, const ChunkRun* last) {
+  const int width = tile.area().x1 - tile.area().x0, height = tile.area().y1 - tile.area().y0;
   int begin = first->begin, end = first->end;
   for (const ChunkRun* run = first; run != last; ++run) {
     begin = std::min<int>(begin, run->begin), end = std::max<int>(end, run->end);
@@ -220,10 +225,10 @@ Group GroupOf(const WideTile& tile, const ChunkRun* first, const ChunkRun* last)
   // From whole vectors of four pixels to whole ones: then sums are aligned, and a row has no partial vector at its end.
   return {first,
           last,
-          std::max(0, begin - radius) & ~3,
-          (std::min(width, end + radius) + 3) & ~3,
-          std::max(0, first->row - radius),
-          std::min(height, (last - 1)->row + radius + 1)};
+          std::max(0, begin - reach) & ~3,
+          (std::min(width, end + reach) + 3) & ~3,
+          std::max(0, first->row - reach),
+          std::min(height, (last - 1)->row + reach + 1)};
 }
 
 // The cost of a group's sums in pixels, with a constant for each row.
@@ -236,21 +241,21 @@ template <bool kOpaque>
 HWY_ATTR void SumChunk(const Work& work, const Chunk& chunk, std::uint32_t* all) {
   const ChunkRun* first = work.tile.runs().data() + chunk.first;
   const ChunkRun* last = first + chunk.count;
-  const Group whole = GroupOf(work.tile, first, last);
+  const Group whole = GroupOf(work.tile, chunk.reach, first, last);
   const std::int64_t price = Price(whole);
   if (price == 0) return;
   // In noise, pixels far from each other share an offset by chance: then single runs are less work.
   std::int64_t apart = 0;
-  const int window = 2 * work.tile.radius() + 1;
+  const int window = 2 * chunk.reach + 1;
   if (std::int64_t(chunk.count) * window * window >= 2 * price) apart = price;
   for (const ChunkRun* run = first; run != last && apart < price; ++run)
-    apart += Price(GroupOf(work.tile, run, run + 1));
+    apart += Price(GroupOf(work.tile, chunk.reach, run, run + 1));
   if (apart >= price) {
     SumGroup<kOpaque>(work, chunk, whole, all);
     return;
   }
   for (const ChunkRun* run = first; run != last; ++run) {
-    const Group alone = GroupOf(work.tile, run, run + 1);
+    const Group alone = GroupOf(work.tile, chunk.reach, run, run + 1);
     if (Price(alone) > 0) SumGroup<kOpaque>(work, chunk, alone, all);
   }
 }
@@ -264,7 +269,7 @@ HWY_ATTR bool SumTile(const Work& work) {
     if (k + 1 < chunks.size()) {
       const Chunk& chunk = chunks[k + 1];
       const ChunkRun* first = work.tile.runs().data() + chunk.first;
-      const Group next = GroupOf(work.tile, first, first + chunk.count);
+      const Group next = GroupOf(work.tile, chunk.reach, first, first + chunk.count);
       for (int y = next.y0; y < std::min(next.y0 + kAhead, next.y1); ++y) {
         AskFor(work.exemplar.picture(chunk.exemplar), chunk, next.x0, next.x1, y);
       }
