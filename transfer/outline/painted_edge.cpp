@@ -110,22 +110,22 @@ class EdgePainter {
   // texels that it is shrunk from. Sums are of integers, like a vote's.
   static Texel RimAt(const RimPaint& rim, const RimSegments& segments, glm::vec2 at, float distance, float width) {
     const int samples = std::clamp(static_cast<int>(std::ceil(1.0f / width - 0.01f)), 1, 8);
-    std::uint64_t sum[4] = {0, 0, 0, 0}, total = 0;
+    RimPaint::Sum sum;
     for (std::size_t n = 0; n < segments.segment.size() && segments.weight[n] > 0.0f; ++n) {
       const glm::vec2 direction = segments.segment[n].DirectionAt(at, rim.radius());
       const auto weight = static_cast<std::uint64_t>(segments.weight[n] * 256.0f + 0.5f);
       for (int s = 0; s < samples; ++s) {
         const float off = (static_cast<float>(2 * s + 1 - samples) / static_cast<float>(2 * samples)) / width;
         const float radius = rim.radius() - distance + (samples > 1 ? off : 0.0f);
-        const std::uint16_t* texel = rim.At(direction.x * radius, direction.y * radius);
-        for (int c = 0; c < 3; ++c) sum[c] += weight * texel[3] * texel[c];
-        sum[3] += weight * texel[3], total += weight;
+        rim.Add(direction.x * radius, direction.y * radius, weight, sum);
       }
     }
     Texel texel{};
-    if (sum[3] == 0) return texel;
-    for (int c = 0; c < 3; ++c) texel[c] = static_cast<std::uint16_t>((sum[c] + sum[3] / 2) / sum[3]);
-    texel[3] = static_cast<std::uint16_t>((sum[3] + total / 2) / total);
+    if (sum.opacity == 0) return texel;
+    for (int c = 0; c < 3; ++c) {
+      texel[c] = static_cast<std::uint16_t>((sum.color[c] + sum.opacity / 2) / sum.opacity);
+    }
+    texel[3] = static_cast<std::uint16_t>((sum.opacity + sum.weight / 2) / sum.weight);
     return texel;
   }
 

@@ -88,13 +88,27 @@ RimPaint::RimPaint(const Picture& picture, int size)
   has_edge_ = paper.kind != BarePaper::Kind::kCovered && count > 0.0 && paint / count > kLeastPaintOnRing;
 }
 
-const std::uint16_t* RimPaint::At(float x, float y) const {
+const std::uint16_t* RimPaint::At(int x, int y) const {
   static constexpr std::uint16_t kNothing[4] = {0, 0, 0, 0};
-  const float half = 0.5f * static_cast<float>(paint_.width);
-  const int u = static_cast<int>(std::floor(x + half)), v = static_cast<int>(std::floor(y + half));
-  if (static_cast<unsigned>(u) >= static_cast<unsigned>(paint_.width)) return kNothing;
-  if (static_cast<unsigned>(v) >= static_cast<unsigned>(paint_.height)) return kNothing;
-  return paint_.At(u, v);
+  if (static_cast<unsigned>(x) >= static_cast<unsigned>(paint_.width)) return kNothing;
+  if (static_cast<unsigned>(y) >= static_cast<unsigned>(paint_.height)) return kNothing;
+  return paint_.At(x, y);
+}
+
+void RimPaint::Add(float x, float y, std::uint64_t weight, Sum& sum) const {
+  // In steps of 1/256 from the centre of the first texel.
+  const float half = 0.5f * static_cast<float>(paint_.width) - 0.5f;
+  const int u = static_cast<int>(std::floor((x + half) * 256.0f + 0.5f));
+  const int v = static_cast<int>(std::floor((y + half) * 256.0f + 0.5f));
+  for (int k = 0; k < 4; ++k) {
+    const int right = k % 2, down = k / 2;
+    const int across = right ? u & 255 : 256 - (u & 255), along = down ? v & 255 : 256 - (v & 255);
+    const std::uint64_t share = weight * static_cast<std::uint64_t>(across * along);
+    if (share == 0) continue;
+    const std::uint16_t* texel = At((u >> 8) + right, (v >> 8) + down);
+    for (int c = 0; c < 3; ++c) sum.color[c] += share * (std::uint64_t{texel[3]} * texel[c]);
+    sum.opacity += share * texel[3], sum.weight += share;
+  }
 }
 
 }  // namespace scumble

@@ -1,6 +1,8 @@
 // The paint around an exemplar's rim.
 #pragma once
 
+#include <cstdint>
+
 #include "scumble/picture.h"
 
 namespace scumble {
@@ -19,11 +21,17 @@ class RimPaint {
   float radius() const { return 0.5f * static_cast<float>(size_); }
   // The distance from the rim within which the edge is searched, pixels on either side; at least 1.
   int band() const { return band_; }
-  // Colour and, as alpha, opacity, at a position from the sphere's centre in pixels, y down. Transparent farther out
-  // than the band, and deeper inside than two bands.
-  const std::uint16_t* At(float x, float y) const;
+  // Sums of colour · opacity, of opacity, and of weights.
+  struct Sum {
+    std::uint64_t color[3] = {0, 0, 0}, opacity = 0, weight = 0;
+  };
+  // Adds the paint at a position from the sphere's centre in pixels, y down, interpolated between the four texels
+  // around it in steps of 1/256. Transparent farther out than the band, and deeper inside than two bands. Up to 256
+  // positions of weight 256 fit.
+  void Add(float x, float y, std::uint64_t weight, Sum& sum) const;
 
  private:
+  const std::uint16_t* At(int x, int y) const;  // transparent outside
   int size_ = 0, band_ = 1, margin_ = 2;
   bool has_edge_ = false;
   Picture paint_;  // the resized picture, with a margin on every side

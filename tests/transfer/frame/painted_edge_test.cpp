@@ -49,7 +49,7 @@ TEST(PaintedEdge, PaintPastTheRimGoesPastTheSilhouetteAsFar) {
   for (int y = 0; y < 180; ++y) {
     for (int x = 0; x < 200; ++x) {
       const double past = std::hypot(x + 0.5 - 100, y + 0.5 - 90) - 60.0;
-      if (past > 5.5) {
+      if (past > 6.0) {
         ASSERT_EQ(picture.At(x, y)[3], 0) << x << ", " << y;
       }
       if (past > 0.8 && past < 2.2) {
