@@ -419,11 +419,11 @@ class ObjLoader {
     mtl_->materials = std::move(contents_.materials);
     for (std::size_t i = 0; i < mtl_->materials.size(); ++i) {
       for (const std::string& name : TexturesOf(mtl_->materials[i])) KeepTexture(name, i);
-      WarnOfLeftOut(mtl_->materials[i], warnings_);
     }
     for (std::size_t i = 0; i < mtl_->materials.size(); ++i) {
       const std::string& name = mtl_->materials[i].name;
       scene_.materials.push_back(MakeMaterial(*mtl_, i, scene_));
+      WarnOfLeftOut(mtl_->materials[i], scene_.materials.back(), warnings_);
       scene_.materials.back().name = material_names_.Take(name.empty() ? "material_" + std::to_string(i) : name);
     }
   }

@@ -80,7 +80,9 @@ TEST_F(Misread, MtlThatMeansOpacityByTr) {
   const Scene scene = Load(Write("scene.obj", "mtllib scene.mtl\n" + kObjTriangle +
                                                   "usemtl opaque\nf 1 2 3\nusemtl glass\nf 1 2 3\n"
                                                   "usemtl hidden\nf 1 2 3\n"));
-  EXPECT_THAT(scene.warnings, ElementsAre(AllOf(HasSubstr("'Tr 1' is taken for opaque"), HasSubstr("'opaque'"))));
+  EXPECT_THAT(scene.warnings,
+              ElementsAre(AllOf(HasSubstr("'Tr 1' is taken for opaque"), HasSubstr("'opaque'")),
+                          AllOf(HasSubstr("below one half are left out"), HasSubstr("(material 'glass')"))));
   std::map<std::string, float> alphas;
   for (const Material& material : scene.materials) alphas[material.name] = material.base_color.a;
   EXPECT_EQ(alphas["opaque"], 1.0f);
@@ -253,6 +255,30 @@ TEST_F(Misread, Gltf1IsNamedFirst) {
   json new_one = keyed;
   new_one["asset"] = {{"version", "2.0"}, {"minVersion", "1.0"}, {"extras", {{"version", "1.0"}}}};
   EXPECT_THAT(refusal(new_one), Not(HasSubstr("glTF 1.0")));
+}
+
+TEST_F(Misread, GltfMaterialsThatAreSeenThrough) {
+  GltfBuilder b;
+  b.Triangle();
+  const auto add = [&](const char* name, const char* mode, double alpha, const json& extensions) {
+    b.Append("materials", {{"name", name},
+                           {"alphaMode", mode},
+                           {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, alpha}}}},
+                           {"extensions", extensions}});
+  };
+  const json glass = {{"KHR_materials_transmission", {{"transmissionFactor", 1}}}};
+  add("thin", "BLEND", 0.4, json::object());
+  add("thick", "BLEND", 0.6, json::object());
+  add("hidden", "BLEND", 0.0, json::object());
+  add("mask", "MASK", 0.4, json::object());
+  add("opaque", "OPAQUE", 0.4, {{"KHR_materials_transmission", {{"transmissionFactor", 0}}}});
+  add("glass", "OPAQUE", 1.0, glass);
+  add("flat", "OPAQUE", 1.0, {{"KHR_materials_unlit", json::object()}});
+  EXPECT_THAT(Load(Write("scene.glb", b.Glb())).warnings,
+              ElementsAre(AllOf(HasSubstr("below one half are left out"), HasSubstr("(material 0 'thin')")),
+                          AllOf(HasSubstr("are solid"), HasSubstr("(material 1 'thick')")),
+                          AllOf(HasSubstr("transmission"), HasSubstr("(material 5 'glass')")),
+                          AllOf(HasSubstr("unlit"), HasSubstr("(material 6 'flat')"))));
 }
 
 TEST_F(Misread, TexturesWithoutAnIndex) {
