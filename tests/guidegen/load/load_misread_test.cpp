@@ -206,6 +206,38 @@ TEST_F(Misread, WhatAnMtlCutsOut) {
                                                               AllOf(HasSubstr("map_Bump"), HasSubstr("'bark'"))));
 }
 
+TEST_F(Misread, AGroupOfAnObjGoesOnUnderItsName) {
+  const auto objects = [&](const std::string& sections) {
+    std::vector<std::string> names;
+    for (const Instance& instance : Load(Write("a.obj", kObjTriangle + sections)).instances) {
+      names.push_back(instance.object);
+    }
+    return names;
+  };
+  const std::string f = "\nf 1 2 3\n";
+  EXPECT_THAT(objects("g body" + f + "g trim" + f + "f 1 2 3\ng\tbody" + f + "g none\ng trim" + f),
+              ElementsAre("body", "trim", "body", "trim"));
+  EXPECT_THAT(objects("f 1 2 3\no A" + f + "o A" + f + "g A" + f), ElementsAre("shape_0", "A", "A#2", "A#3"));
+  EXPECT_THAT(objects("o A\ng x" + f + "g y" + f + "g x" + f + "o B\ng x" + f + "g x" + f),
+              ElementsAre("x", "y", "x", "x#2", "x#2"));
+}
+
+TEST_F(Misread, FilesOfAnObjInFolders) {
+  for (const char* folder : {"tex", "maps"}) std::filesystem::create_directory(Path(folder));
+  Write("tex/m.mtl", std::string("newmtl near\nmap_Kd a.png\nnewmtl far\nmap_Kd maps\\b.png\nmap_d maps\\b.png\n"
+                                 "newmtl gone\nmap_Kd c.png\n"));
+  ASSERT_TRUE(WritePicture(Path("tex/a.png").string(), Picture(2, 1), {}).ok());
+  ASSERT_TRUE(WritePicture(Path("a.png").string(), Picture(1, 1), {}).ok());
+  ASSERT_TRUE(WritePicture(Path("maps/b.png").string(), Picture(3, 1), {}).ok());
+  const Scene scene = Load(Write("a.obj", "mtllib tex\\m.mtl\n" + kObjTriangle +
+                                              "usemtl near\nf 1 2 3\nusemtl far\nf 1 2 3\nusemtl gone\nf 1 2 3\n"));
+  EXPECT_THAT(scene.warnings, ElementsAre(AllOf(HasSubstr("cannot be read"), HasSubstr("tex/c.png"))));
+  ASSERT_EQ(scene.textures.size(), 3u);
+  EXPECT_EQ(scene.textures[0].width, 2) << "beside the library first";
+  EXPECT_EQ(scene.textures[1].width, 3) << "then beside the scene";
+  EXPECT_EQ(scene.materials[1].alpha_mode, AlphaMode::kBlend);
+}
+
 TEST_F(Misread, FacesOfAPlyBeforeItsVertices) {
   const std::string header =
       "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\nelement vertex 3\n"
