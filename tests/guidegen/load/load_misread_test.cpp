@@ -238,6 +238,55 @@ TEST_F(Misread, FilesOfAnObjInFolders) {
   EXPECT_EQ(scene.materials[1].alpha_mode, AlphaMode::kBlend);
 }
 
+// As MeshLab writes them: a quad and a triangle, whose corners and faces have values of their own.
+TEST_F(Misread, PlyWithValuesOfCornersAndFaces) {
+  const auto ply = [&](const std::string& comments) {
+    return Write("a.ply", "ply\nformat ascii 1.0\n" + comments +
+                              "element vertex 5\nproperty float x\nproperty float y\nproperty float z\n"
+                              "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+                              "element face 3\nproperty list uchar int vertex_indices\n"
+                              "property list uchar float texcoord\nproperty int texnumber\nproperty uchar red\n"
+                              "property uchar green\nproperty uchar blue\nend_header\n"
+                              "0 0 0 9 9 9\n1 0 0 9 9 9\n1 1 0 9 9 9\n0 1 0 9 9 9\n2 0 0 9 9 9\n"
+                              "4 0 1 2 3 8 0 0 0.5 0 0.5 1 0 1 0 255 0 0\n3 1 4 2 6 0.5 0 1 0 0.5 1 0 0 0 255\n"
+                              "3 4 2 1 2 0 0 0 0 0 0\n");
+  };
+  const Scene plain = Load(ply(""));
+  EXPECT_THAT(plain.warnings, ElementsAre(HasSubstr("not two for each corner")));
+  ASSERT_EQ(plain.meshes.size(), 1u);
+  const Mesh& mesh = plain.meshes[0];
+  ASSERT_EQ(mesh.triangles.size(), 4u);
+  for (std::size_t t = 0; t < 3; ++t) {
+    for (int i = 0; i < 3; ++i) {
+      const std::uint32_t v = mesh.triangles[t][i];
+      EXPECT_EQ(mesh.colors[v], t < 2 ? glm::vec4(1, 0, 0, 1) : glm::vec4(0, 0, 1, 1));
+      EXPECT_EQ(mesh.uvs[0][v], glm::vec2(mesh.positions[v].x / 2, 1 - mesh.positions[v].y));
+    }
+  }
+  EXPECT_EQ(mesh.colors[mesh.triangles[3].x], glm::vec4(0, 0, 0, 1));
+  EXPECT_TRUE(plain.textures.empty());
+  ASSERT_TRUE(WritePicture(Path("my paint.png").string(), Picture(2, 1), {}).ok());
+  // Several lists of faces, of which one has colours.
+  const Scene lists =
+      Load(Write("b.ply", std::string("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                                      "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+                                      "element face 1\nproperty list uchar int vertex_indices\nproperty float red\n"
+                                      "property float green\nproperty float blue\nend_header\n"
+                                      "0 0 0\n1 0 0\n1 1 0\n3 0 1 2\n3 0 1 2 0 0 1\n")));
+  EXPECT_EQ(lists.meshes.at(0).colors.at(lists.meshes[0].triangles.at(0).x), glm::vec4(1, 1, 1, 1));
+  EXPECT_EQ(lists.meshes.at(0).colors.at(lists.meshes[0].triangles.at(1).x), glm::vec4(0, 0, 1, 1));
+  const Scene textured = Load(ply("comment TextureFile my paint.png\n"));
+  ASSERT_EQ(textured.textures.size(), 1u);
+  EXPECT_EQ(textured.textures[0].width, 2);
+  EXPECT_EQ(textured.materials[0].base_color_texture.texture, 0);
+  EXPECT_TRUE(textured.meshes[0].colors.empty());
+  const Scene missing = Load(ply("comment TextureFile gone.png\ncomment TextureFile b.png\n"));
+  EXPECT_THAT(missing.warnings, ElementsAre(HasSubstr("only the first is read"), HasSubstr("not two for each corner"),
+                                            HasSubstr("gone.png")));
+  EXPECT_EQ(missing.materials[0].base_color_texture.texture, -1);
+  EXPECT_EQ(missing.materials[0].base_color, glm::vec4(1.0f)) << "colours are the surface's then";
+}
+
 TEST_F(Misread, FacesOfAPlyBeforeItsVertices) {
   const std::string header =
       "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\nelement vertex 3\n"
