@@ -47,8 +47,10 @@ def fault_of(source, color, reader):
 
 
 def set_constant(tree, socket, value):
+    """Sets 0 or 1. Returns whether that is a hole."""
     clear_links(tree, socket)
-    socket.default_value = value
+    socket.default_value = float(value >= CUT)
+    return value < CUT
 
 
 def read(tree, node, color, reader):
@@ -57,23 +59,20 @@ def read(tree, node, color, reader):
     socket = node.inputs["Alpha"]
     source = previous(socket)
     if source is None or source.node.type != "TEX_IMAGE":
-        value = min(max(reader.number(socket), 0.0), 1.0)
-        set_constant(tree, socket, value)
+        value = reader.number(socket)
         if 0.0 < value < 1.0:
             reader.complain(f"its alpha {value:.3g} is cut at one half: the surface is "
                             + ("left out" if value < CUT else "solid"))
-        return value < 1.0
+        return set_constant(tree, socket, value)
     if source.name == "Alpha" and source.node.image is not None and source.node.image.alpha_mode == "NONE":
-        set_constant(tree, socket, 1.0)  # as in Cycles
-        return False
+        return set_constant(tree, socket, 1.0)  # as in Cycles
     alphas = alphas_of(source)
     if source.node.extension == "CLIP" and source.node.image is not None:
         close_clipped(source, alphas, reader)
     fault = fault_of(source, color, reader)
     if fault is not None:
         reader.complain(f"{fault} feeds Alpha, which keeps its own value instead")
-        set_constant(tree, socket, min(max(socket.default_value, 0.0), 1.0))
-        return socket.default_value < 1.0
+        return set_constant(tree, socket, socket.default_value)
     soft = np.count_nonzero((alphas > MOSTLY[0]) & (alphas < MOSTLY[1]))
     if soft > SOFT_SHARE * alphas.size:
         reader.complain(f"image '{source.node.image.name}' is its alpha and half transparent in wide parts, which are "

@@ -40,6 +40,8 @@ def load(path, size, unsupported):
     gltf = Import.gltf
     if gltf is None:
         raise ValueError("Blender imported nothing")
+    for image in bpy.data.images:
+        image.alpha_mode = "CHANNEL_PACKED"  # glTF's alpha does not darken the colours beside it
     for thing in bpy.data.objects:
         thing.animation_data_clear()  # guidegen sees nodes as they stand
     worlds = world_matrices(gltf.data)

@@ -127,8 +127,9 @@ struct NextFrame {
 };
 
 // RenderGuides with the layer `motion`: the movement, until the next frame, of the point that a pixel shows, in pixels,
-// +X right and +Y down. It is 0 for background and for objects that the next frame lacks or has with other triangles,
-// and exactly 0 for points that do not move. A point may be hidden in the next frame; `motion` does not show that.
+// +X right and +Y down. It is 0 for background and for objects that the next frame lacks or has with other triangles.
+// Meshes with rest_positions are followed by these where the triangles differ. It is exactly 0 for points that do not
+// move. A point may be hidden in the next frame; `motion` does not show that.
 Expected<GuidegenResult> RenderGuides(const Scene& scene, const Camera& camera, const NextFrame& next,
                                       const GuidegenOptions& options);
 

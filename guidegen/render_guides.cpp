@@ -1,7 +1,10 @@
 #include <algorithm>
 #include <cmath>
+#include <deque>
+#include <limits>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -126,6 +129,27 @@ bool SameTriangles(const Mesh& now, const Mesh& next) {
   return true;
 }
 
+// This frame's triangles at the next frame's places, which are found by the places at rest: Blender cuts polygons by
+// the deformed shape, along other diagonals in each frame. A vertex whose place the next frame lacks, or has torn
+// apart, is NaN. Empty if a mesh has no places at rest.
+std::optional<Mesh> FollowByRest(const Mesh& now, const Mesh& next) {
+  if (now.IsCurves() || next.IsCurves() || now.rest_positions.empty() || next.rest_positions.empty()) return {};
+  const std::size_t count = now.positions.size();
+  std::vector<glm::vec3> rest = now.rest_positions;
+  rest.insert(rest.end(), next.rest_positions.begin(), next.rest_positions.end());
+  const std::vector<std::uint32_t> place = WeldByPosition(rest);
+  std::vector<std::optional<glm::vec3>> places(rest.size());
+  const glm::vec3 nowhere(std::numeric_limits<float>::quiet_NaN());
+  for (std::size_t v = 0; v < next.positions.size(); ++v) {
+    std::optional<glm::vec3>& to = places[place[count + v]];
+    to = !to || *to == next.positions[v] ? next.positions[v] : nowhere;
+  }
+  Mesh followed;
+  followed.triangles = now.triangles;
+  for (std::size_t v = 0; v < count; ++v) followed.positions.push_back(places[place[v]].value_or(nowhere));
+  return followed;
+}
+
 // The lamp is chosen in the world, so that the camera has no say in which of equal ones it is.
 void PlaceKeyLamp(const Scene& scene, View& view) {
   view.key_lamp = FindKeyLamp(scene);
@@ -143,8 +167,9 @@ std::vector<std::pair<std::string, int>> PartNames(const Scene& scene) {
   return names;
 }
 
-// The instances of the next frame in the order of this one's.
-Status PlaceNextFrame(const Scene& scene, const NextFrame& next, const GuidegenOptions& options, View& view) {
+// The instances of the next frame in the order of this one's. The view borrows from `followed`.
+Status PlaceNextFrame(const Scene& scene, const NextFrame& next, const GuidegenOptions& options,
+                      std::deque<Mesh>& followed, View& view) {
   SCUMBLE_ASSIGN(view.next_camera, CameraRays::Make(next.camera, options.width, options.height));
   const std::vector<std::pair<std::string, int>> names = PartNames(scene), next_names = PartNames(next.scene);
   std::map<std::pair<std::string, int>, const Instance*> by_name;
@@ -153,12 +178,15 @@ Status PlaceNextFrame(const Scene& scene, const NextFrame& next, const GuidegenO
     PlacedObject placed;
     const auto found = by_name.find(names[i]);
     if (found != by_name.end()) {
+      const Mesh& now = scene.meshes[std::size_t(scene.instances[i].mesh)];
       const Mesh& mesh = next.scene.meshes[std::size_t(found->second->mesh)];
       // Other triangles mean a different object under an old name, or faces that were cut along other diagonals.
-      if (SameTriangles(scene.meshes[std::size_t(scene.instances[i].mesh)], mesh)) {
+      if (SameTriangles(now, mesh)) {
         placed.mesh = &mesh;
-        placed.view_from_object = view.next_camera.ViewFromObject(found->second->world_from_object);
+      } else if (std::optional<Mesh> made = FollowByRest(now, mesh)) {
+        placed.mesh = &followed.emplace_back(*std::move(made));
       }
+      if (placed.mesh) placed.view_from_object = view.next_camera.ViewFromObject(found->second->world_from_object);
     }
     view.next_objects.push_back(placed);
   }
@@ -240,6 +268,7 @@ struct RayCast {
     const Scene& scene = state.scene;
     CheckTextures(scene, options);
 
+    std::deque<Mesh> followed;
     View view;
     view.bends_normals = !options.raw_normals;
     SCUMBLE_ASSIGN(view.camera, CameraRays::Make(state.camera, options.width, options.height));
@@ -253,7 +282,7 @@ struct RayCast {
     }
     if (next && options.layers.Has(Layer::kMotion)) {
       for (const Mesh& mesh : next->scene.meshes) CheckMesh(mesh, next->scene);
-      SCUMBLE_RETURN_IF_ERROR(PlaceNextFrame(scene, *next, options, view));
+      SCUMBLE_RETURN_IF_ERROR(PlaceNextFrame(scene, *next, options, followed, view));
     }
     SCUMBLE_ASSIGN(GuidegenResult result, CastGuides(state.objects, view, options));
     AddNames(scene, state.object_ids, state.material_ids, result.guides);

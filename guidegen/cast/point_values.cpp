@@ -1,6 +1,7 @@
 #include "guidegen/cast/point_values.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 namespace scumble {
@@ -36,7 +37,7 @@ glm::dvec2 PointValues::Motion(std::uint32_t object, std::uint32_t primitive, co
   };
   const std::optional<glm::dvec2> from = seen_at(scene_.objects()[object], view_.camera);
   const std::optional<glm::dvec2> to = seen_at(next, view_.next_camera);
-  return from && to ? *to - *from : glm::dvec2(0.0);
+  return from && to && std::isfinite(to->x + to->y) ? *to - *from : glm::dvec2(0.0);
 }
 
 double PointValues::Cosine(const SurfacePoint& point) const {

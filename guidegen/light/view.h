@@ -22,7 +22,8 @@ struct View {
   std::optional<KeyLamp> key_lamp;  // for the layer cosine
 
   // For the motion layer; empty where it is not wanted. Each of the scene's objects, in their order, as placed before
-  // the next frame's camera; without a mesh if the next frame lacks it.
+  // the next frame's camera; without a mesh if the next frame lacks it. Triangles with a corner at NaN have no next
+  // place.
   std::vector<PlacedObject> next_objects;
   CameraRays next_camera;
 };

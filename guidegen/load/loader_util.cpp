@@ -208,6 +208,19 @@ void WarningCounter::MoveTo(std::vector<std::string>& lines) {
   entries_.clear();
 }
 
+void WarnOfCutAlpha(const Material& material, const std::string& where, WarningCounter& warnings) {
+  const float alpha = material.base_color.a;
+  if (material.alpha_mode != AlphaMode::kBlend || alpha <= 0.0f || alpha >= 1.0f) return;
+  if (alpha < kBlendCutoff) {
+    warnings.Add(
+        "surfaces with an alpha below one half are left out: guides are never partly transparent; give them 0.5 or "
+        "more",
+        where);
+  } else {
+    warnings.Add("partly transparent surfaces are solid where their alpha is one half or more", where);
+  }
+}
+
 Status GeometryBudget::TakeFrom(Account& account, const std::string& file, std::uint64_t more) {
   if (more <= account.limit - account.taken) {
     account.taken += more;

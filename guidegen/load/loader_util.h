@@ -118,6 +118,10 @@ bool IsFinite(const glm::vec4& v);
 // At most `max_bytes` of a file's text, on one line, for use inside a message.
 std::string Excerpt(const std::string& text, std::size_t max_bytes = 200);
 
+// Warns if the base colour's alpha makes the surface partly transparent, which is cut at kBlendCutoff. Alpha 0 hides it
+// on purpose. `where`: the material, for the message.
+void WarnOfCutAlpha(const Material& material, const std::string& where, WarningCounter& warnings);
+
 // The colour of surfaces without one: Blender's own for faces without a material.
 inline constexpr glm::vec4 kPlainColor{0.8f, 0.8f, 0.8f, 1.0f};
 

@@ -91,12 +91,13 @@ Material MakeMaterial(const MtlLibrary& library, std::size_t index, const Scene&
   return material;
 }
 
-void WarnOfLeftOut(const tinyobj::material_t& from, WarningCounter& warnings) {
+void WarnOfLeftOut(const tinyobj::material_t& from, const Material& material, WarningCounter& warnings) {
   const std::string name = "'" + Excerpt(from.name, 80) + "'";
   if (!from.alpha_texname.empty() && from.alpha_texname != from.diffuse_texname)
     warnings.Add("a map_d other than map_Kd is left out, its surface is opaque: put it into map_Kd's alpha", name);
   if (!from.bump_texname.empty() && from.normal_texname.empty())
     warnings.Add("map_Bump is left out: a normal map is read under the keyword norm", name);
+  WarnOfCutAlpha(material, "material " + name, warnings);
 }
 
 }  // namespace scumble

@@ -23,7 +23,7 @@ std::vector<std::string> TexturesOf(const tinyobj::material_t& material);
 // A material of the library, without a name. Textures that the scene leaves out are ignored.
 Material MakeMaterial(const MtlLibrary& library, std::size_t index, const Scene& scene);
 
-// Warns of textures that MakeMaterial does not read and that would show.
-void WarnOfLeftOut(const tinyobj::material_t& material, WarningCounter& warnings);
+// Warns of what MakeMaterial does not read and would show: textures, and transparency, which is cut at one half.
+void WarnOfLeftOut(const tinyobj::material_t& from, const Material& material, WarningCounter& warnings);
 
 }  // namespace scumble

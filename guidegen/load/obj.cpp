@@ -419,11 +419,11 @@ class ObjLoader {
     mtl_->materials = std::move(contents_.materials);
     for (std::size_t i = 0; i < mtl_->materials.size(); ++i) {
       for (const std::string& name : TexturesOf(mtl_->materials[i])) KeepTexture(name, i);
-      WarnOfLeftOut(mtl_->materials[i], warnings_);
     }
     for (std::size_t i = 0; i < mtl_->materials.size(); ++i) {
       const std::string& name = mtl_->materials[i].name;
       scene_.materials.push_back(MakeMaterial(*mtl_, i, scene_));
+      WarnOfLeftOut(mtl_->materials[i], scene_.materials.back(), warnings_);
       scene_.materials.back().name = material_names_.Take(name.empty() ? "material_" + std::to_string(i) : name);
     }
   }
@@ -439,8 +439,8 @@ class ObjLoader {
     const auto users = std::make_shared<std::vector<std::size_t>>(1, material);
     users_.push_back(users);
     auto texture = std::make_shared<EncodedTexture>();
-    texture->decode = [file = BesideScene(path_, name)] { return ReadPicture(file, {}, Profiles::kIgnore); };
-    texture->count_pixels = [file = BesideScene(path_, name)] { return CountPixels(file); };
+    texture->decode = [file = name] { return ReadPicture(file, {}, Profiles::kIgnore); };
+    texture->count_pixels = [file = name] { return CountPixels(file); };
     texture->leave_out = [mtl = mtl_, users](Scene& scene) {
       for (std::size_t i : *users) {
         Material made = MakeMaterial(*mtl, i, scene);
@@ -470,16 +470,28 @@ class ObjLoader {
     return !attributes_.colors.empty() && attributes_.colors.size() == attributes_.vertices.size();
   }
 
-  void BuildMeshes() {
-    UniqueNames names;
-    std::vector<std::string> shape_names;
+  // The objects' names, for each shape. A group of an object that is named again goes on.
+  std::vector<std::string> ShapeNames() const {
+    UniqueNames unique;
+    std::map<std::pair<int, std::string>, std::string> groups;
+    std::vector<std::string> names(shapes_.size());
+    const std::vector<ObjSection>& sections = contents_.sections;
+    std::size_t face = 0, next = 0;
     for (std::size_t s = 0; s < shapes_.size(); ++s) {
-      if (shapes_[s].mesh.indices.empty()) {
-        shape_names.emplace_back();
-      } else {
-        shape_names.push_back(names.Take(shapes_[s].name.empty() ? "shape_" + std::to_string(s) : shapes_[s].name));
-      }
+      while (next < sections.size() && sections[next].first_face <= face) ++next;
+      face += corner_counts_[s].size();
+      if (shapes_[s].mesh.indices.empty()) continue;
+      const std::string& name = shapes_[s].name;
+      const bool is_group = next > 0 && sections[next - 1].is_group && !name.empty();
+      std::string* group = is_group ? &groups[{sections[next - 1].object, name}] : nullptr;
+      names[s] = group && !group->empty() ? *group : unique.Take(name.empty() ? "shape_" + std::to_string(s) : name);
+      if (group) *group = names[s];
     }
+    return names;
+  }
+
+  void BuildMeshes() {
+    const std::vector<std::string> shape_names = ShapeNames();
     // Triangles are ordered by shape, but a shape may return to a material.
     for (std::size_t begin = 0; begin < triangles_.size();) {
       std::size_t end = begin;

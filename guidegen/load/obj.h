@@ -1,9 +1,11 @@
 // Wavefront OBJ with MTL, by tinyobjloader. Use LoadScene (guidegen/load/load_scene.h), which also does the work common
 // to all formats.
 //
-// Each shape (o or g) becomes an object, one instance for each of its materials. Read: polygons, normals, texture
+// Each shape (o or g) becomes an object, one instance for each of its materials. A group that is named again, with no
+// line o between, goes on. Read: polygons, normals, texture
 // coordinates (v flipped), vertex colours (sRGB-encoded), smoothing groups where there are no normals. A material
-// library or texture that is missing is a warning, not an error: OBJ files are often passed on without them.
+// library or texture that is missing is a warning, not an error: OBJ files are often passed on without them. Libraries
+// are looked for beside the scene, textures beside their library, then beside the scene.
 //
 // Normals that the file lacks: in a file that speaks of smoothing groups, faces of one group share the normal at a
 // place, and faces in group 0 (`s off`) or before the first `s` are flat. Any other file is smooth up to

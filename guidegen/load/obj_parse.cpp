@@ -42,11 +42,28 @@ class CornerCounter {
     counts_.push_back(corners);
   }
   std::vector<std::uint32_t> Take() { return most_ > 255 ? std::move(counts_) : std::vector<std::uint32_t>(); }
+  std::size_t faces() const { return counts_.size(); }
 
  private:
   std::vector<std::uint32_t> counts_;
   std::uint32_t most_ = 0;
 };
+
+// The path of a file that a scene or a library names, which is beside it.
+std::filesystem::path Beside(const std::filesystem::path& file, std::string name) {
+  std::replace(name.begin(), name.end(), '\\', '/');
+  return file.parent_path() / name;
+}
+
+// Textures are named relative to their library; many exporters mean the scene.
+std::string FindTexture(const std::filesystem::path& scene, const std::filesystem::path& library,
+                        const std::string& name) {
+  if (name.empty()) return name;
+  const std::filesystem::path near = Beside(library, name), other = Beside(scene, name);
+  std::error_code ignored;
+  const bool is_other = near != other && !std::filesystem::exists(near, ignored) && exists(other, ignored);
+  return (is_other ? other : near).string();
+}
 
 // tinyobjloader ends names at blanks. In names of materials and libraries blanks are this until they have been read.
 constexpr char kBlankInName = '\x1f';
@@ -99,22 +116,29 @@ void JoinLines(std::string& text) {
 // of 20 bytes becomes 360 KB, and again in each shape. The lines and points of an object are copied at each change of
 // material; the first index of each kind shows that they exist. Returns whether smoothing groups are mentioned, `s off`
 // included, which tinyobjloader does not tell from silence. `used` gets the names of materials that faces ask for.
-bool PrepareText(std::string& text, CornerCounter& faces, std::set<std::string>& used) {
+// tinyobjloader would take the backslashes of a library's path for something else.
+bool PrepareText(std::string& text, CornerCounter& faces, std::vector<ObjSection>& sections,
+                 std::set<std::string>& used) {
   bool has_smoothing = false;
   const auto ends_line = [](char c) { return c == '\n' || c == '\r'; };
   bool has_lines = false, has_points = false;  // in this object or group
+  int objects = 0;
   for (auto begin = text.begin(); begin != text.end();) {
     const auto end = std::find_if(begin, text.end(), ends_line);
     const auto what = std::find_if_not(begin, end, IsBlank);
     begin = end == text.end() ? end : end + 1;
-    JoinName(what, end, "mtllib");
+    if (!JoinName(what, end, "mtllib").empty()) std::replace(what, end, '\\', '/');
     if (std::string name = JoinName(what, end, "usemtl"); !name.empty()) used.insert(std::move(name));
     if (what == end || what + 1 == end || !IsBlank(what[1])) continue;
     if (*what == 'f') {
       DropEmptyIndices(what, end);
       faces.Add(what + 1, end);
     }
-    if (*what == 'o' || *what == 'g') has_lines = has_points = false;
+    if (*what == 'o' || *what == 'g') {
+      has_lines = has_points = false;
+      objects += *what == 'o';
+      sections.push_back({faces.faces(), objects, *what == 'g'});
+    }
     has_smoothing |= *what == 's';
     if (*what == 't') *what = '#';
     if (*what != 'l' && *what != 'p') continue;
@@ -205,7 +229,7 @@ class LibraryReader : public tinyobj::MaterialReader {
 
   // False: there is no such file. Of one that cannot be used, `fault_` tells.
   bool Read(const std::string& name, const Target& target) {
-    const std::filesystem::path path = BesideScene(scene_, name);
+    const std::filesystem::path path = Beside(scene_, name);
     std::error_code missing;
     const std::filesystem::path library = std::filesystem::canonical(path, missing);
     if (!missing && read_.count(library) > 0) return true;
@@ -219,7 +243,15 @@ class LibraryReader : public tinyobj::MaterialReader {
     std::string text = AsTextWithoutMark(*bytes);
     DropWholeTransparency(text, warnings_);
     std::istringstream stream(std::move(text));
+    const std::size_t first = target.materials->size();
     tinyobj::LoadMtl(target.indices, target.materials, &stream, target.warning, target.error);
+    for (std::size_t i = first; i < target.materials->size(); ++i) {
+      tinyobj::material_t& material = (*target.materials)[i];
+      for (std::string* texture :
+           {&material.diffuse_texname, &material.alpha_texname, &material.normal_texname, &material.emissive_texname}) {
+        *texture = FindTexture(scene_, path, *texture);
+      }
+    }
     const std::map<std::string, int> by_name = *target.indices;
     for (const auto& [material, index] : by_name) target.indices->insert({WithoutBlanks(material), index});
     return true;
@@ -263,11 +295,6 @@ void WarnOfUnknown(const std::set<std::string>& used, const std::vector<tinyobj:
 
 }  // namespace
 
-std::filesystem::path BesideScene(const std::filesystem::path& scene, std::string name) {
-  std::replace(name.begin(), name.end(), '\\', '/');
-  return scene.parent_path() / name;
-}
-
 Status ParseObj(const std::filesystem::path& path, WarningCounter& warnings, ObjContents& contents) {
   const std::string file = path.string();
   SCUMBLE_ASSIGN(const std::vector<std::byte> bytes, ReadRegularFile(path));
@@ -277,7 +304,7 @@ Status ParseObj(const std::filesystem::path& path, WarningCounter& warnings, Obj
   CornerCounter faces;
   std::set<std::string> used;
   JoinLines(text);
-  contents.has_smoothing = PrepareText(text, faces, used);
+  contents.has_smoothing = PrepareText(text, faces, contents.sections, used);
   contents.corner_counts = faces.Take();
   std::istringstream stream(std::move(text));
   LibraryReader library(path, warnings);

@@ -13,21 +13,27 @@
 
 namespace scumble {
 
+// What follows a line `o` or `g`, which names an object or a group.
+struct ObjSection {
+  std::size_t first_face = 0;  // counted through the whole file
+  int object = 0;              // how many lines `o` came before
+  bool is_group = false;
+};
+
 struct ObjContents {
   tinyobj::attrib_t attributes;
-  std::vector<tinyobj::shape_t> shapes;  // faces are polygons; indices are not checked
-  std::vector<tinyobj::material_t> materials;
+  std::vector<tinyobj::shape_t> shapes;        // faces are polygons; indices are not checked
+  std::vector<tinyobj::material_t> materials;  // whose textures that are read are paths
   // Corners of each face of the file, in order, where a face has more than 255: tinyobjloader of Debian 12 counts them
   // in a byte. Empty: its own counts are right.
   std::vector<std::uint32_t> corner_counts;
-  bool has_smoothing = false;  // there are lines `s`; faces before the first one are in no smoothing group
+  std::vector<ObjSection> sections;  // in order
+  bool has_smoothing = false;        // there are lines `s`; faces before the first one are in no smoothing group
 };
 
 // Fills `contents` from a file. A missing library becomes a warning; tinyobjloader's refusals and exceptions become
-// kInput errors that name the file. Only regular files are read.
+// kInput errors that name the file. Only regular files are read. Textures are beside their library, or else beside the
+// scene.
 Status ParseObj(const std::filesystem::path& path, WarningCounter& warnings, ObjContents& contents);
-
-// The path of a file that a scene names, which is beside the scene.
-std::filesystem::path BesideScene(const std::filesystem::path& scene, std::string name);
 
 }  // namespace scumble

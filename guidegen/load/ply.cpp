@@ -1,60 +1,28 @@
 #include "guidegen/load/ply.h"
 
 #include <algorithm>
-#include <bit>
-#include <charconv>
 #include <cmath>
-#include <cstring>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <sstream>
 #include <string_view>
+#include <system_error>
+#include <unordered_map>
 
 #include "core/image/color.h"
+#include "core/image/hash.h"
+#include "core/io/picture_file.h"
 #include "guidegen/load/loader_util.h"
 #include "guidegen/load/mesh_normals.h"
+#include "guidegen/load/ply_parse.h"
+#include "guidegen/load/split_vertices.h"
 
 namespace scumble {
 namespace {
 
-enum class PlyType { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, kFloat64 };
-enum class PlyFormat { kAscii, kLittleEndian, kBigEndian };
-
-struct TypeName {
-  std::string_view name;
-  PlyType type;
-};
-constexpr TypeName kTypeNames[] = {
-    {"char", PlyType::kInt8},      {"int8", PlyType::kInt8},       {"uchar", PlyType::kUint8},
-    {"uint8", PlyType::kUint8},    {"short", PlyType::kInt16},     {"int16", PlyType::kInt16},
-    {"ushort", PlyType::kUint16},  {"uint16", PlyType::kUint16},   {"int", PlyType::kInt32},
-    {"int32", PlyType::kInt32},    {"uint", PlyType::kUint32},     {"uint32", PlyType::kUint32},
-    {"float", PlyType::kFloat32},  {"float32", PlyType::kFloat32}, {"double", PlyType::kFloat64},
-    {"float64", PlyType::kFloat64}};
-
-std::size_t Bytes(PlyType type) {
-  constexpr std::size_t kBytes[] = {1, 1, 2, 2, 4, 4, 4, 8};
-  return kBytes[static_cast<int>(type)];
-}
-
-struct Property {
-  std::string name;
-  PlyType type = PlyType::kFloat32;
-  std::optional<PlyType> list_count;  // set for lists: the type of their length
-};
-
-struct Element {
-  std::string name;
-  std::uint64_t count = 0;
-  std::vector<Property> properties;
-};
-
-struct Header {
-  PlyFormat format = PlyFormat::kAscii;
-  std::vector<Element> elements;
-  std::size_t body = 0;  // first byte after the header
-};
+constexpr std::string_view kCornerUvs = "texcoord";  // MeshLab's list
 
 // The meaning of a vertex property; kSkip for those that are not used.
 enum Role { kX, kY, kZ, kNx, kNy, kNz, kRed, kGreen, kBlue, kAlpha, kU, kV, kSkip };
@@ -92,81 +60,16 @@ Role RoleOf(const std::string& name) {
   return kSkip;
 }
 
-// Steps through the values of the body.
-class PlyValues {
- public:
-  PlyValues(std::span<const unsigned char> bytes, PlyFormat format) : bytes_(bytes), format_(format) {}
-
-  std::size_t remaining() const { return bytes_.size() - at_; }
-
-  // The smallest size of a value of this type.
-  std::size_t LeastBytes(PlyType type) const { return format_ == PlyFormat::kAscii ? 2 : Bytes(type); }
-
-  bool Next(PlyType type, double& value) {
-    return format_ == PlyFormat::kAscii ? NextWord(value) : NextBinary(type, value);
+// One corner's own values, which its vertex lacks.
+struct CornerValue {
+  glm::vec2 uv{0.0f};
+  glm::vec4 color{1.0f};
+  bool operator==(const CornerValue&) const = default;
+};
+struct CornerValueHash {
+  std::size_t operator()(const CornerValue& v) const {
+    return Hash(Hash(v.uv.x, v.uv.y), Hash(v.color.r, v.color.g, v.color.b, v.color.a));
   }
-
- private:
-  bool NextWord(double& value) {
-    const auto is_space = [](unsigned char c) { return c == ' ' || (c >= '\t' && c <= '\r'); };
-    while (at_ < bytes_.size() && is_space(bytes_[at_])) ++at_;
-    std::size_t end = at_;
-    while (end < bytes_.size() && !is_space(bytes_[end])) ++end;
-    if (end > at_ && bytes_[at_] == '+') ++at_;
-    const char* first = reinterpret_cast<const char*>(bytes_.data()) + at_;
-    const char* last = reinterpret_cast<const char*>(bytes_.data()) + end;
-    const auto result = std::from_chars(first, last, value);
-    at_ = end;
-    return result.ec == std::errc() && result.ptr == last;
-  }
-
-  template <class T>
-  double Convert(const unsigned char* raw) const {
-    T value;
-    std::memcpy(&value, raw, sizeof(T));
-    return static_cast<double>(value);
-  }
-
-  bool NextBinary(PlyType type, double& value) {
-    const std::size_t size = Bytes(type);
-    if (size > remaining()) return false;
-    unsigned char raw[8] = {};
-    std::memcpy(raw, bytes_.data() + at_, size);
-    at_ += size;
-    const bool file_is_little = format_ == PlyFormat::kLittleEndian;
-    if (file_is_little != (std::endian::native == std::endian::little)) std::reverse(raw, raw + size);
-    switch (type) {
-      case PlyType::kInt8:
-        value = Convert<std::int8_t>(raw);
-        break;
-      case PlyType::kUint8:
-        value = Convert<std::uint8_t>(raw);
-        break;
-      case PlyType::kInt16:
-        value = Convert<std::int16_t>(raw);
-        break;
-      case PlyType::kUint16:
-        value = Convert<std::uint16_t>(raw);
-        break;
-      case PlyType::kInt32:
-        value = Convert<std::int32_t>(raw);
-        break;
-      case PlyType::kUint32:
-        value = Convert<std::uint32_t>(raw);
-        break;
-      case PlyType::kFloat32:
-        value = Convert<float>(raw);
-        break;
-      case PlyType::kFloat64:
-        value = Convert<double>(raw);
-        break;
-    }
-    return true;
-  }
-
-  std::span<const unsigned char> bytes_;
-  PlyFormat format_;
-  std::size_t at_ = 0;
 };
 
 class PlyLoader {
@@ -177,9 +80,11 @@ class PlyLoader {
   Expected<Scene> Load() {
     SCUMBLE_ASSIGN(const std::vector<std::byte> whole, ReadRegularFile(path_));
     const std::span<const unsigned char> bytes = AsChars(whole);
-    SCUMBLE_RETURN_IF_ERROR(ParseHeader(bytes));
+    SCUMBLE_RETURN_IF_ERROR(ParsePlyHeader(file_, bytes, header_));
+    ChooseTexture();
+    FindValuesOfFaces();
     PlyValues values(bytes.subspan(header_.body), header_.format);
-    for (const Element& element : header_.elements) {
+    for (const PlyElement& element : header_.elements) {
       if (element.properties.empty() && element.name == "vertex" && element.count > 0)
         return Bad("its vertices have no properties; expected x, y and z");
       if (element.properties.empty()) continue;
@@ -193,93 +98,27 @@ class PlyLoader {
     SCUMBLE_RETURN_IF_ERROR(CheckHasTriangles());
     PlaceVertices();
     CutPolygons();
+    SCUMBLE_RETURN_IF_ERROR(GiveCornersTheirValues());
     return Finish();
   }
 
  private:
-  Error Bad(const std::string& reason) const { return InputError(file_ + " is not a valid PLY file: " + reason); }
+  Error Bad(const std::string& reason) const { return PlyError(file_, reason); }
 
-  static std::optional<PlyType> FindType(const std::string& name) {
-    for (const TypeName& known : kTypeNames) {
-      if (known.name == name) return known.type;
+  void ChooseTexture() {
+    if (header_.textures.empty() || header_.textures[0].empty()) return;
+    std::string name = header_.textures[0];
+    std::replace(name.begin(), name.end(), '\\', '/');
+    texture_ = path_.parent_path() / name;
+    if (header_.textures.size() > 1) {
+      warnings_.Add("of several textures only the first is read", "'" + Excerpt(name, 80) + "'");
     }
-    return std::nullopt;
-  }
-
-  Status ParseHeader(std::span<const unsigned char> bytes) {
-    std::size_t at = 0;
-    bool has_format = false;
-    // Rhinoceros ends lines by a carriage return alone; binary values may begin with any byte after it.
-    constexpr std::size_t kMagic = 3;
-    const bool returns_alone = bytes.size() > kMagic + 1 && bytes[kMagic] == '\r' && bytes[kMagic + 1] != '\n';
-    const unsigned char end_of_line = returns_alone ? '\r' : '\n';
-    for (int line_number = 1; at < bytes.size(); ++line_number) {
-      const auto end = std::find(bytes.begin() + static_cast<std::ptrdiff_t>(at), bytes.end(), end_of_line);
-      std::string line(bytes.begin() + static_cast<std::ptrdiff_t>(at), end);
-      at += line.size() + (end == bytes.end() ? 0 : 1);
-      if (!line.empty() && line.back() == '\r') line.pop_back();
-      if (line_number == 1) {
-        if (line != "ply") return Bad("it does not begin with the line 'ply'");
-        continue;
-      }
-      if (line == "end_header") {
-        header_.body = at;
-        return has_format ? Ok() : Status(Bad("its header names no format"));
-      }
-      std::istringstream words(line);
-      std::string keyword;
-      words >> keyword;
-      if (keyword == "format") has_format = true;
-      SCUMBLE_RETURN_IF_ERROR(ParseHeaderLine(keyword, words, line));
-    }
-    return Bad("its header has no end; the file was cut short");
-  }
-
-  Status ParseHeaderLine(const std::string& keyword, std::istringstream& words, const std::string& line) {
-    if (keyword == "format") {
-      std::string format;
-      words >> format;
-      if (format == "binary_little_endian") {
-        header_.format = PlyFormat::kLittleEndian;
-      } else if (format == "binary_big_endian") {
-        header_.format = PlyFormat::kBigEndian;
-      } else if (format != "ascii") {
-        return Bad("its format is '" + Excerpt(format, 40) + "'; expected ascii or binary_little_endian");
-      }
-    } else if (keyword == "element") {
-      Element element;
-      if (!(words >> element.name >> element.count)) return Bad("the header line '" + Excerpt(line, 80) + "'");
-      // A second list of vertices might have different properties, and faces do not say which list they index.
-      const auto is_twin = [&](const Element& other) { return other.name == element.name; };
-      if (element.name == "vertex" && std::any_of(header_.elements.begin(), header_.elements.end(), is_twin)) {
-        return Bad("its header has a second 'element vertex'; expected one, join them into it");
-      }
-      header_.elements.push_back(element);
-    } else if (keyword == "property") {
-      Property property;
-      std::string type, count_type;
-      words >> type;
-      if (type == "list") {
-        words >> count_type >> type;
-        property.list_count = FindType(count_type);
-        if (!property.list_count || *property.list_count >= PlyType::kFloat32) {
-          return Bad("the header line '" + Excerpt(line, 80) + "'");
-        }
-      }
-      const std::optional<PlyType> known = FindType(type);
-      if (!known || !(words >> property.name) || header_.elements.empty()) {
-        return Bad("the header line '" + Excerpt(line, 80) + "'");
-      }
-      property.type = *known;
-      header_.elements.back().properties.push_back(property);
-    }
-    return Ok();
   }
 
   // Refuses a count that the remaining file cannot hold, before anything is allocated for it.
-  Status CheckRoom(const Element& element, const PlyValues& values) {
+  Status CheckRoom(const PlyElement& element, const PlyValues& values) {
     std::size_t least = 0;
-    for (const Property& property : element.properties) {
+    for (const PlyProperty& property : element.properties) {
       least += values.LeastBytes(property.list_count ? *property.list_count : property.type);
     }
     // The last word of a text needs no space after it.
@@ -291,12 +130,12 @@ class PlyLoader {
     return Ok();
   }
 
-  Error CutShort(const Element& element, std::uint64_t index) const {
+  Error CutShort(const PlyElement& element, std::uint64_t index) const {
     return Bad(element.name + " " + std::to_string(index) + " of " + std::to_string(element.count) +
                " is missing or is no number; the file was cut short");
   }
 
-  Status SkipList(const Property& property, const Element& element, std::uint64_t index, PlyValues& values) {
+  Status SkipList(const PlyProperty& property, const PlyElement& element, std::uint64_t index, PlyValues& values) {
     double count = 0.0, ignored = 0.0;
     if (!values.Next(*property.list_count, count) || !(count >= 0.0)) return CutShort(element, index);
     for (double i = 0.0; i < count; ++i) {
@@ -305,10 +144,10 @@ class PlyLoader {
     return Ok();
   }
 
-  Status ReadVertices(const Element& element, PlyValues& values) {
+  Status ReadVertices(const PlyElement& element, PlyValues& values) {
     std::vector<Role> roles;
     bool has[kSkip + 1] = {};
-    for (const Property& property : element.properties) {
+    for (const PlyProperty& property : element.properties) {
       Role role = property.list_count ? kSkip : RoleOf(property.name);
       if (has[role]) role = kSkip;
       has[role] = true;
@@ -323,16 +162,14 @@ class PlyLoader {
       glm::dvec3 place(0.0);
       v[kAlpha] = 1.0f;
       for (std::size_t p = 0; p < roles.size(); ++p) {
-        const Property& property = element.properties[p];
+        const PlyProperty& property = element.properties[p];
         if (property.list_count) {
           SCUMBLE_RETURN_IF_ERROR(SkipList(property, element, i, values));
           continue;
         }
         double value = 0.0;
         if (!values.Next(property.type, value)) return CutShort(element, i);
-        if (roles[p] >= kRed && roles[p] <= kAlpha && property.type == PlyType::kUint8) value /= 255.0;
-        if (roles[p] >= kRed && roles[p] <= kAlpha && property.type == PlyType::kUint16) value /= 65535.0;
-        v[roles[p]] = static_cast<float>(value);
+        v[roles[p]] = ValueOf(roles[p], property.type, value);
         if (roles[p] <= kZ) place[roles[p]] = value;
       }
       const glm::vec3 position(v[kX], v[kY], v[kZ]);
@@ -347,8 +184,15 @@ class PlyLoader {
     return Ok();
   }
 
-  static bool HasDoublePlaces(const Element& element) {
-    return std::any_of(element.properties.begin(), element.properties.end(), [](const Property& property) {
+  static float ValueOf(Role role, PlyType type, double value) {
+    const bool is_color = role >= kRed && role <= kAlpha;
+    if (is_color && type == PlyType::kUint8) value /= 255.0;
+    if (is_color && type == PlyType::kUint16) value /= 65535.0;
+    return static_cast<float>(value);
+  }
+
+  static bool HasDoublePlaces(const PlyElement& element) {
+    return std::any_of(element.properties.begin(), element.properties.end(), [](const PlyProperty& property) {
       return !property.list_count && RoleOf(property.name) <= kZ && property.type == PlyType::kFloat64;
     });
   }
@@ -363,38 +207,90 @@ class PlyLoader {
     return IsFinite(color) ? glm::clamp(color, glm::vec4(0.0f), glm::vec4(1.0f)) : glm::vec4(1.0f);
   }
 
+  static bool HasColors(const PlyElement& element) {
+    bool has[kSkip + 1] = {};
+    for (const PlyProperty& property : element.properties)
+      has[property.list_count ? kSkip : RoleOf(property.name)] = true;
+    return has[kRed] && has[kGreen] && has[kBlue];
+  }
+
+  // Faces may be in several elements, of which only some have them.
+  void FindValuesOfFaces() {
+    for (const PlyElement& element : header_.elements) {
+      if (element.name != "face") continue;
+      has_face_colors_ = has_face_colors_ || HasColors(element);
+      for (const PlyProperty& property : element.properties) {
+        has_corner_uvs_ = has_corner_uvs_ || (property.list_count && property.name == kCornerUvs);
+      }
+    }
+  }
+
   // Reads faces, and skips every other element.
-  Status ReadFaces(const Element& element, PlyValues& values) {
+  Status ReadFaces(const PlyElement& element, PlyValues& values) {
     const bool is_face = element.name == "face";
     if (!is_face && element.count > 0)
       warnings_.Add("elements other than vertices and faces are left out", element.name);
-    double value = 0.0;
+    const bool has_colors = is_face && HasColors(element);
+    std::vector<Role> roles;
+    for (const PlyProperty& property : element.properties) {
+      roles.push_back(property.list_count ? kSkip : RoleOf(property.name));
+    }
+    Face face;
     for (std::uint64_t i = 0; i < element.count; ++i) {
-      for (const Property& property : element.properties) {
+      float v[kSkip + 1] = {};
+      v[kAlpha] = 1.0f;
+      face.corners.clear(), face.uvs.clear();
+      for (std::size_t p = 0; p < roles.size(); ++p) {
+        const PlyProperty& property = element.properties[p];
         const bool is_corners = is_face && (property.name == "vertex_indices" || property.name == "vertex_index");
+        double value = 0.0;
         if (!property.list_count) {
           if (!values.Next(property.type, value)) return CutShort(element, i);
+          v[roles[p]] = ValueOf(roles[p], property.type, value);
         } else if (is_corners) {
-          SCUMBLE_RETURN_IF_ERROR(ReadCorners(property, element, i, values));
+          SCUMBLE_RETURN_IF_ERROR(ReadCorners(property, element, i, values, face.corners));
+        } else if (is_face && property.name == kCornerUvs) {
+          SCUMBLE_RETURN_IF_ERROR(ReadCornerUvs(property, element, i, values, face.uvs));
         } else {
           SCUMBLE_RETURN_IF_ERROR(SkipList(property, element, i, values));
         }
       }
+      if (has_colors) face.color = Color(v[kRed], v[kGreen], v[kBlue], v[kAlpha]);
+      SCUMBLE_RETURN_IF_ERROR(AddFace(face));
     }
     return Ok();
   }
 
   // As the header has it: faces may come before vertices.
   std::uint64_t VertexCount() const {
-    const auto is_vertex = [](const Element& element) { return element.name == "vertex"; };
+    const auto is_vertex = [](const PlyElement& element) { return element.name == "vertex"; };
     const auto found = std::find_if(header_.elements.begin(), header_.elements.end(), is_vertex);
     return found == header_.elements.end() ? 0 : found->count;
   }
 
-  Status ReadCorners(const Property& property, const Element& element, std::uint64_t face, PlyValues& values) {
+  struct Face {
+    std::vector<std::uint32_t> corners;
+    std::vector<float> uvs;  // u and v of each corner; empty: none
+    glm::vec4 color{1.0f};
+  };
+
+  Status ReadCornerUvs(const PlyProperty& property, const PlyElement& element, std::uint64_t face, PlyValues& values,
+                       std::vector<float>& uvs) {
     double count = 0.0, value = 0.0;
     if (!values.Next(*property.list_count, count) || !(count >= 0.0)) return CutShort(element, face);
-    std::vector<std::uint32_t> corners;
+    uvs.clear();
+    for (double i = 0.0; i < count; ++i) {
+      if (!values.Next(property.type, value)) return CutShort(element, face);
+      uvs.push_back(static_cast<float>(value));
+    }
+    return Ok();
+  }
+
+  Status ReadCorners(const PlyProperty& property, const PlyElement& element, std::uint64_t face, PlyValues& values,
+                     std::vector<std::uint32_t>& corners) {
+    double count = 0.0, value = 0.0;
+    if (!values.Next(*property.list_count, count) || !(count >= 0.0)) return CutShort(element, face);
+    corners.clear();
     for (double c = 0.0; c < count; ++c) {
       if (!values.Next(property.type, value)) return CutShort(element, face);
       if (!(value >= 0.0) || value != std::floor(value) || value >= static_cast<double>(VertexCount())) {
@@ -404,18 +300,41 @@ class PlyLoader {
       }
       corners.push_back(static_cast<std::uint32_t>(value));
     }
+    return Ok();
+  }
+
+  // The number of a corner's values among all that differ.
+  std::uint32_t ValueNumber(const Face& face, std::size_t corner) {
+    CornerValue value;
+    value.color = face.color;
+    if (!face.uvs.empty()) value.uv = Uv(face.uvs[2 * corner], face.uvs[2 * corner + 1]);
+    const auto [known, is_new] = value_numbers_.try_emplace(value, static_cast<std::uint32_t>(corner_values_.size()));
+    if (is_new) corner_values_.push_back(value);
+    return known->second;
+  }
+
+  Status AddFace(Face& face) {
+    const std::vector<std::uint32_t>& corners = face.corners;
     if (corners.size() < 3) return Ok();
     const std::size_t cuts = corners.size() - 2;
     SCUMBLE_RETURN_IF_ERROR(budget_.Take(file_, 0, cuts));
     if (cuts > 1) polygons_.push_back({static_cast<std::uint32_t>(mesh_.triangles.size()), std::uint32_t(cuts)});
     for (std::size_t i = 0; i < cuts; ++i) mesh_.triangles.emplace_back(corners[0], corners[i + 1], corners[i + 2]);
+    if (!has_corner_uvs_ && !has_face_colors_) return Ok();
+    if (!face.uvs.empty() && face.uvs.size() != 2 * corners.size()) {
+      warnings_.Add("texture coordinates of faces are left out that are not two for each corner", "");
+      face.uvs.clear();
+    }
+    std::vector<std::uint32_t> numbers;
+    for (std::size_t i = 0; i < corners.size(); ++i) numbers.push_back(ValueNumber(face, i));
+    for (std::size_t i = 0; i < cuts; ++i) of_corners_.emplace_back(numbers[0], numbers[i + 1], numbers[i + 2]);
     return Ok();
   }
 
   Status CheckHasTriangles() const {
     if (!mesh_.triangles.empty() || mesh_.positions.empty()) return Ok();
     std::string others;
-    for (const Element& element : header_.elements) {
+    for (const PlyElement& element : header_.elements) {
       if (element.name == "vertex" || element.count == 0) continue;
       others += ", " + std::to_string(element.count) + " of '" + Excerpt(element.name, 40) + "'";
     }
@@ -441,18 +360,67 @@ class PlyLoader {
   // Cuts the polygons, until now fans, by the final corners.
   void CutPolygons() {
     std::vector<glm::uvec3> cuts;
-    for (const Polygon& polygon : polygons_) {
-      const auto fan = std::span(mesh_.triangles).subspan(polygon.first, polygon.triangles);
-      std::vector<std::uint32_t> corners = {fan[0].x, fan[0].y};
-      for (const glm::uvec3& triangle : fan) corners.push_back(triangle.z);
-      std::vector<glm::vec3> positions;
-      for (const std::uint32_t corner : corners) positions.push_back(mesh_.positions[corner]);
-      cuts.clear();
-      TriangulatePolygon(positions, cuts);
+    const auto apply = [&](const Polygon& polygon, std::vector<glm::uvec3>& triangles) {
+      const auto fan = std::span(triangles).subspan(polygon.first, polygon.triangles);
+      const std::vector<std::uint32_t> corners = CornersOfFan(fan);
       for (std::size_t i = 0; i < cuts.size(); ++i) {
         fan[i] = {corners[cuts[i].x], corners[cuts[i].y], corners[cuts[i].z]};
       }
+    };
+    for (const Polygon& polygon : polygons_) {
+      std::vector<glm::vec3> positions;
+      for (const std::uint32_t corner :
+           CornersOfFan(std::span(mesh_.triangles).subspan(polygon.first, polygon.triangles))) {
+        positions.push_back(mesh_.positions[corner]);
+      }
+      cuts.clear();
+      TriangulatePolygon(positions, cuts);
+      apply(polygon, mesh_.triangles);
+      if (!of_corners_.empty()) apply(polygon, of_corners_);
     }
+  }
+
+  static std::vector<std::uint32_t> CornersOfFan(std::span<const glm::uvec3> fan) {
+    std::vector<std::uint32_t> corners = {fan[0].x, fan[0].y};
+    for (const glm::uvec3& triangle : fan) corners.push_back(triangle.z);
+    return corners;
+  }
+
+  // Values of corners replace those of vertices.
+  Status GiveCornersTheirValues() {
+    if (of_corners_.empty()) return Ok();
+    const std::size_t before = mesh_.positions.size();
+    const CornerSplit split = SplitByCorners(of_corners_, mesh_);
+    SCUMBLE_RETURN_IF_ERROR(budget_.Take(file_, split.sources.size() - before, 0));
+    const std::size_t count = split.values.size();
+    if (has_corner_uvs_) mesh_.uvs[0].assign(count, glm::vec2(0.0f));
+    if (has_face_colors_) mesh_.colors.assign(count, glm::vec4(1.0f));
+    for (std::size_t v = 0; v < count; ++v) {
+      if (split.values[v] == kNoValue) continue;
+      if (has_corner_uvs_) mesh_.uvs[0][v] = corner_values_[split.values[v]].uv;
+      if (has_face_colors_) mesh_.colors[v] = corner_values_[split.values[v]].color;
+    }
+    return Ok();
+  }
+
+  // The texture stands in place of colours, which scans have beside it for programs that show no textures.
+  void KeepTexture(Scene& scene) {
+    if (texture_.empty() || mesh_.uvs[0].empty()) return;
+    std::error_code ignored;
+    if (std::filesystem::exists(texture_, ignored)) mesh_.colors.clear();
+    Material& material = scene.materials[0];
+    const glm::vec4 plain = mesh_.colors.empty() ? kPlainColor : glm::vec4(1.0f);
+    material.base_color = glm::vec4(1.0f);
+    material.base_color_texture.texture = 0;
+    auto texture = std::make_shared<EncodedTexture>();
+    texture->decode = [file = texture_] { return ReadPicture(file, {}, Profiles::kIgnore); };
+    texture->count_pixels = [file = texture_] { return CountPixels(file); };
+    texture->leave_out = [plain](Scene& without) {
+      without.materials[0].base_color = plain;
+      without.materials[0].base_color_texture.texture = -1;
+    };
+    scene.textures.emplace_back();
+    scene.encoded_textures.push_back(std::move(texture));
   }
 
   // The number of the face that each triangle is a part of.
@@ -486,6 +454,7 @@ class PlyLoader {
     material.bsdf = Bsdf::kDiffuse;
     if (mesh_.colors.empty()) material.base_color = kPlainColor;
     scene.materials.push_back(std::move(material));
+    KeepTexture(scene);
     if (!mesh_.triangles.empty()) {
       SCUMBLE_RETURN_IF_ERROR(MakeNormals());
       scene.meshes.push_back(std::move(mesh_));
@@ -503,10 +472,15 @@ class PlyLoader {
 
   const std::filesystem::path& path_;
   const std::string file_;
-  Header header_;
+  PlyHeader header_;
   Mesh mesh_;
   std::vector<glm::dvec3> places_;  // of the vertices, where the file has doubles
   std::vector<Polygon> polygons_;   // that have more than three corners
+  std::filesystem::path texture_;   // empty: none
+  bool has_corner_uvs_ = false, has_face_colors_ = false;
+  std::vector<CornerValue> corner_values_;
+  std::unordered_map<CornerValue, std::uint32_t, CornerValueHash> value_numbers_;
+  std::vector<glm::uvec3> of_corners_;  // of each triangle; empty: its corners are vertices
   glm::dvec3 origin_{0.0};
   GeometryBudget budget_;
   WarningCounter warnings_;

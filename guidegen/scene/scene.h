@@ -31,6 +31,8 @@ struct TextureUse {
 };
 
 enum class AlphaMode { kOpaque, kMask, kBlend };
+// No guide is partly transparent: where a kBlend surface has less alpha, it is a hole, else solid.
+inline constexpr float kBlendCutoff = 0.5f;
 
 // A surface's response to light. The last three are Blender's pure shaders, which glTF lacks: diffuse and GGX without
 // Fresnel, whose colour is the base colour, and a black surface that only emits.

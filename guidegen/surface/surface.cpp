@@ -264,7 +264,7 @@ bool MayHaveHoles(const Material& material) { return material.alpha_mode != Alph
 
 bool IsHole(const PlacedObject& object, std::uint32_t primitive, glm::dvec2 barycentric) {
   if (!MayHaveHoles(*object.material)) return false;
-  const float cutoff = object.material->alpha_mode == AlphaMode::kMask ? object.material->alpha_cutoff : 0.5f;
+  const float cutoff = object.material->alpha_mode == AlphaMode::kMask ? object.material->alpha_cutoff : kBlendCutoff;
   return SurfaceColor(object, primitive, barycentric).a < cutoff;
 }
 

@@ -114,7 +114,7 @@ std::optional<glm::vec4> SampleSurfaceColor(const PlacedObject& object, const Te
 // Whether no object is single-sided: rays of light, which also hit backs, then pass wherever camera rays pass.
 bool AllDoubleSided(std::span<const PlacedObject> objects);
 
-// Whether rays pass here: alpha masks, and blending as a mask at one half.
+// Whether rays pass here: alpha masks, and blending as a mask at kBlendCutoff.
 bool IsHole(const PlacedObject& object, std::uint32_t primitive, glm::dvec2 barycentric);
 bool MayHaveHoles(const Material& material);
 

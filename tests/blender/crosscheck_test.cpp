@@ -14,6 +14,7 @@
 
 #include "tests/blender/blender_version.h"
 #include "tests/support/cli_harness.h"
+#include "tests/support/gltf_builder.h"
 
 namespace scumble {
 namespace {
@@ -121,6 +122,24 @@ TEST_F(CrosscheckBlender, ABlendFileAgreesAtTheFrameAskedFor) {
   EXPECT_EQ(Figures(reports[0]).at("lpe.LDDE mean difference")["limit"], 2.0);
   EXPECT_TRUE(reports[0]["warnings"].empty()) << reports[0]["warnings"];
 
+  // glTF's opaque surfaces show colours whatever their alpha.
+  Picture pale(2, 1);
+  pale.rgba = {65535, 0, 0, 0, 0, 0, 65535, 65535};
+  ASSERT_TRUE(WritePicture(At("pale.png"), pale).ok());
+  GltfBuilder b;
+  b.Append("images", {{"uri", "pale.png"}});
+  b.Append("samplers", {{"magFilter", 9728}});
+  b.Append("textures", {{"source", 0}, {"sampler", 0}});
+  b.Append("materials", {{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"baseColorTexture", {{"index", 0}}}}}});
+  const Json corners = {{"POSITION", b.Floats({0, 0, 0, 2, 0, 0, 2, 1, 0, 0, 1, 0}, 3)},
+                        {"TEXCOORD_0", b.Floats({0, 1, 1, 1, 1, 0, 0, 0}, 2)}};
+  const int indices = b.Indices({0, 1, 2, 0, 2, 3});
+  b.Root({{"name", "Pale"}, {"mesh", b.Mesh({{{"attributes", corners}, {"indices", indices}, {"material", 0}}})}});
+  b.Append("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.1}}}});
+  b.Root({{"translation", {1, 0.5, 4}}, {"camera", 0}});
+  const std::vector<unsigned char> glb = b.Glb();
+  WriteText("pale.glb", {glb.begin(), glb.end()});
+  data.insert(data.begin() + 1, "pale.glb");
   Check(data, 0);
   const Json moved = Check(fifth, 0);
   EXPECT_EQ(moved[0]["frame"], 5);

@@ -106,6 +106,8 @@ def check_layered(document, extras):
     modes = {material["name"]: material.get("alphaMode", "OPAQUE") for material in document["materials"]}
     holes = {name for name, mode in modes.items() if mode != "OPAQUE"}
     expect(holes == {"glass", "fade", "named", "alone", "clipped"}, "surfaces with holes", modes)
+    glass = next(material for material in document["materials"] if material["name"] == "glass")
+    expect(glass["pbrMetallicRoughness"]["baseColorFactor"][3] == 0, "an alpha that is cut is told once", glass)
     lost = sorted(extras["unsupported"])
     expect(len(lost) == len(LOST) and all(start in line for start, line in zip(LOST, lost)), lost)
 

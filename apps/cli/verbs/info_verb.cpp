@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <set>
+#include <string>
 
 #include "apps/cli/app/command.h"
 #include "apps/cli/app/json_text.h"
@@ -64,8 +66,9 @@ Json DescribeScene(const Scene& scene) {
   if (segments > 0) json["segments of hair"] = segments;
   const auto names = [&](const char* key, const auto& items, auto name_of) {
     json[key] = Json::array();
+    std::set<std::string> told;
     for (const auto& item : items) {
-      if (json[key].empty() || json[key].back() != name_of(item)) json[key].push_back(name_of(item));
+      if (told.insert(name_of(item)).second) json[key].push_back(name_of(item));
     }
   };
   names("objects", scene.instances, [](const Instance& i) { return i.object; });

@@ -191,7 +191,8 @@ std::vector<double> KeyTrack::At(double seconds, bool is_rotation) const {
 
 std::vector<std::string> AnimationNames(const tinygltf::Model& model) {
   std::vector<std::string> names;
-  for (std::size_t i = 0; i < model.animations.size(); ++i) names.push_back(AnimationName(model, i));
+  UniqueNames unique;
+  for (std::size_t i = 0; i < model.animations.size(); ++i) names.push_back(unique.Take(AnimationName(model, i)));
   return names;
 }
 

@@ -72,7 +72,7 @@ class GltfAnimation {
   double duration_ = 0.0;
 };
 
-// The names of a file's animations, in its order; "animation_0" for those without.
+// The names of a file's animations, in its order; "animation_0" for those without, "#2" behind a name that was there.
 std::vector<std::string> AnimationNames(const tinygltf::Model& model);
 
 }  // namespace scumble

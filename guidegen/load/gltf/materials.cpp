@@ -331,6 +331,19 @@ Status LoadLighting(const tinygltf::Material& from, const std::string& file, con
   return Ok();
 }
 
+// Extensions that change what is seen, and that nothing here reads.
+void WarnOfShading(const tinygltf::Material& from, const std::string& owner, WarningCounter& warnings) {
+  if (from.extensions.count("KHR_materials_unlit") > 0) {
+    warnings.Add("KHR_materials_unlit is not read: its surfaces are lit", owner);
+  }
+  const auto transmission = from.extensions.find("KHR_materials_transmission");
+  if (transmission == from.extensions.end() || !transmission->second.Has("transmissionFactor")) return;
+  const tinygltf::Value& factor = transmission->second.Get("transmissionFactor");
+  if (factor.IsNumber() && factor.GetNumberAsDouble() > 0.0) {
+    warnings.Add("KHR_materials_transmission is not read: its surfaces are opaque", owner);
+  }
+}
+
 }  // namespace
 
 Status LoadGltfMaterials(const tinygltf::Model& model, const std::string& file, Scene& scene,
@@ -370,6 +383,8 @@ Status LoadGltfMaterials(const tinygltf::Model& model, const std::string& file, 
     if (from.alphaMode == "BLEND") material.alpha_mode = AlphaMode::kBlend;
     material.alpha_cutoff = std::isfinite(from.alphaCutoff) ? static_cast<float>(from.alphaCutoff) : 0.5f;
     material.double_sided = from.doubleSided;
+    WarnOfCutAlpha(material, owner, warnings);
+    WarnOfShading(from, owner, warnings);
     scene.materials.push_back(std::move(material));
   }
   return Ok();

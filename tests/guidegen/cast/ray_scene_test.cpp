@@ -193,6 +193,14 @@ TEST(RayScene, MotionFollowsTrianglesWhateverTheirVerticesAreCalled) {
   joint.rest_positions = joint.positions;
   split.rest_positions = {{1, 1, 0}, {-1, 1, 0}, {-1, -1, 0}, {1, 1, 0}, {1, -1, 0}, {-1, -1, 0}};
   EXPECT_GT(middle(joint, split), 1.0f) << "one place at rest";
+  other_diagonal.rest_positions = joint.positions;
+  EXPECT_FLOAT_EQ(middle(joint, other_diagonal), moved) << "polygons are cut by the deformed shape";
+  other_diagonal.rest_positions[0].x = -9.0f;
+  EXPECT_EQ(middle(joint, other_diagonal), 0.0f) << "a corner is gone";
+  other_diagonal.rest_positions = joint.positions;
+  other_diagonal.rest_positions.push_back(joint.positions[0]);
+  other_diagonal.positions.emplace_back(-1, -1, 1);
+  EXPECT_EQ(middle(joint, other_diagonal), 0.0f) << "a corner is torn apart";
 }
 
 // Each frame is an export of its own, whose meshes are numbered anew.

@@ -284,6 +284,9 @@ TEST_F(LoadAnimation, AnimationsByName) {
   const Scene both = At(Load(b, "*"), 1);
   EXPECT_EQ(x(both, 0) + x(both, 1), 2.0);
   EXPECT_THAT(ErrorOf(b, ErrorKind::kUsage, "Fly"), HasSubstr("\"Walk\", \"animation_1\""));
+  b.json["animations"][1]["name"] = "Walk";
+  EXPECT_THAT(Load(b).animations(), ::testing::ElementsAre("Walk", "Walk#2"));
+  EXPECT_EQ(x(At(Load(b, "Walk#2"), 1), 1), 1.0);
 }
 
 // The layer that paint sticks to keeps the undeformed place of each vertex, whatever bends it.

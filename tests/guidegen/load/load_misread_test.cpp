@@ -80,7 +80,9 @@ TEST_F(Misread, MtlThatMeansOpacityByTr) {
   const Scene scene = Load(Write("scene.obj", "mtllib scene.mtl\n" + kObjTriangle +
                                                   "usemtl opaque\nf 1 2 3\nusemtl glass\nf 1 2 3\n"
                                                   "usemtl hidden\nf 1 2 3\n"));
-  EXPECT_THAT(scene.warnings, ElementsAre(AllOf(HasSubstr("'Tr 1' is taken for opaque"), HasSubstr("'opaque'"))));
+  EXPECT_THAT(scene.warnings,
+              ElementsAre(AllOf(HasSubstr("'Tr 1' is taken for opaque"), HasSubstr("'opaque'")),
+                          AllOf(HasSubstr("below one half are left out"), HasSubstr("(material 'glass')"))));
   std::map<std::string, float> alphas;
   for (const Material& material : scene.materials) alphas[material.name] = material.base_color.a;
   EXPECT_EQ(alphas["opaque"], 1.0f);
@@ -204,6 +206,87 @@ TEST_F(Misread, WhatAnMtlCutsOut) {
                                                               AllOf(HasSubstr("map_Bump"), HasSubstr("'bark'"))));
 }
 
+TEST_F(Misread, AGroupOfAnObjGoesOnUnderItsName) {
+  const auto objects = [&](const std::string& sections) {
+    std::vector<std::string> names;
+    for (const Instance& instance : Load(Write("a.obj", kObjTriangle + sections)).instances) {
+      names.push_back(instance.object);
+    }
+    return names;
+  };
+  const std::string f = "\nf 1 2 3\n";
+  EXPECT_THAT(objects("g body" + f + "g trim" + f + "f 1 2 3\ng\tbody" + f + "g none\ng trim" + f),
+              ElementsAre("body", "trim", "body", "trim"));
+  EXPECT_THAT(objects("f 1 2 3\no A" + f + "o A" + f + "g A" + f), ElementsAre("shape_0", "A", "A#2", "A#3"));
+  EXPECT_THAT(objects("o A\ng x" + f + "g y" + f + "g x" + f + "o B\ng x" + f + "g x" + f),
+              ElementsAre("x", "y", "x", "x#2", "x#2"));
+}
+
+TEST_F(Misread, FilesOfAnObjInFolders) {
+  for (const char* folder : {"tex", "maps"}) std::filesystem::create_directory(Path(folder));
+  Write("tex/m.mtl", std::string("newmtl near\nmap_Kd a.png\nnewmtl far\nmap_Kd maps\\b.png\nmap_d maps\\b.png\n"
+                                 "newmtl gone\nmap_Kd c.png\n"));
+  ASSERT_TRUE(WritePicture(Path("tex/a.png").string(), Picture(2, 1), {}).ok());
+  ASSERT_TRUE(WritePicture(Path("a.png").string(), Picture(1, 1), {}).ok());
+  ASSERT_TRUE(WritePicture(Path("maps/b.png").string(), Picture(3, 1), {}).ok());
+  const Scene scene = Load(Write("a.obj", "mtllib tex\\m.mtl\n" + kObjTriangle +
+                                              "usemtl near\nf 1 2 3\nusemtl far\nf 1 2 3\nusemtl gone\nf 1 2 3\n"));
+  EXPECT_THAT(scene.warnings, ElementsAre(AllOf(HasSubstr("cannot be read"), HasSubstr("tex/c.png"))));
+  ASSERT_EQ(scene.textures.size(), 3u);
+  EXPECT_EQ(scene.textures[0].width, 2) << "beside the library first";
+  EXPECT_EQ(scene.textures[1].width, 3) << "then beside the scene";
+  EXPECT_EQ(scene.materials[1].alpha_mode, AlphaMode::kBlend);
+}
+
+// As MeshLab writes them: a quad and a triangle, whose corners and faces have values of their own.
+TEST_F(Misread, PlyWithValuesOfCornersAndFaces) {
+  const auto ply = [&](const std::string& comments) {
+    return Write("a.ply", "ply\nformat ascii 1.0\n" + comments +
+                              "element vertex 5\nproperty float x\nproperty float y\nproperty float z\n"
+                              "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+                              "element face 3\nproperty list uchar int vertex_indices\n"
+                              "property list uchar float texcoord\nproperty int texnumber\nproperty uchar red\n"
+                              "property uchar green\nproperty uchar blue\nend_header\n"
+                              "0 0 0 9 9 9\n1 0 0 9 9 9\n1 1 0 9 9 9\n0 1 0 9 9 9\n2 0 0 9 9 9\n"
+                              "4 0 1 2 3 8 0 0 0.5 0 0.5 1 0 1 0 255 0 0\n3 1 4 2 6 0.5 0 1 0 0.5 1 0 0 0 255\n"
+                              "3 4 2 1 2 0 0 0 0 0 0\n");
+  };
+  const Scene plain = Load(ply(""));
+  EXPECT_THAT(plain.warnings, ElementsAre(HasSubstr("not two for each corner")));
+  ASSERT_EQ(plain.meshes.size(), 1u);
+  const Mesh& mesh = plain.meshes[0];
+  ASSERT_EQ(mesh.triangles.size(), 4u);
+  for (std::size_t t = 0; t < 3; ++t) {
+    for (int i = 0; i < 3; ++i) {
+      const std::uint32_t v = mesh.triangles[t][i];
+      EXPECT_EQ(mesh.colors[v], t < 2 ? glm::vec4(1, 0, 0, 1) : glm::vec4(0, 0, 1, 1));
+      EXPECT_EQ(mesh.uvs[0][v], glm::vec2(mesh.positions[v].x / 2, 1 - mesh.positions[v].y));
+    }
+  }
+  EXPECT_EQ(mesh.colors[mesh.triangles[3].x], glm::vec4(0, 0, 0, 1));
+  EXPECT_TRUE(plain.textures.empty());
+  ASSERT_TRUE(WritePicture(Path("my paint.png").string(), Picture(2, 1), {}).ok());
+  // Several lists of faces, of which one has colours.
+  const Scene lists =
+      Load(Write("b.ply", std::string("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                                      "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+                                      "element face 1\nproperty list uchar int vertex_indices\nproperty float red\n"
+                                      "property float green\nproperty float blue\nend_header\n"
+                                      "0 0 0\n1 0 0\n1 1 0\n3 0 1 2\n3 0 1 2 0 0 1\n")));
+  EXPECT_EQ(lists.meshes.at(0).colors.at(lists.meshes[0].triangles.at(0).x), glm::vec4(1, 1, 1, 1));
+  EXPECT_EQ(lists.meshes.at(0).colors.at(lists.meshes[0].triangles.at(1).x), glm::vec4(0, 0, 1, 1));
+  const Scene textured = Load(ply("comment TextureFile my paint.png\n"));
+  ASSERT_EQ(textured.textures.size(), 1u);
+  EXPECT_EQ(textured.textures[0].width, 2);
+  EXPECT_EQ(textured.materials[0].base_color_texture.texture, 0);
+  EXPECT_TRUE(textured.meshes[0].colors.empty());
+  const Scene missing = Load(ply("comment TextureFile gone.png\ncomment TextureFile b.png\n"));
+  EXPECT_THAT(missing.warnings, ElementsAre(HasSubstr("only the first is read"), HasSubstr("not two for each corner"),
+                                            HasSubstr("gone.png")));
+  EXPECT_EQ(missing.materials[0].base_color_texture.texture, -1);
+  EXPECT_EQ(missing.materials[0].base_color, glm::vec4(1.0f)) << "colours are the surface's then";
+}
+
 TEST_F(Misread, FacesOfAPlyBeforeItsVertices) {
   const std::string header =
       "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\nelement vertex 3\n"
@@ -253,6 +336,30 @@ TEST_F(Misread, Gltf1IsNamedFirst) {
   json new_one = keyed;
   new_one["asset"] = {{"version", "2.0"}, {"minVersion", "1.0"}, {"extras", {{"version", "1.0"}}}};
   EXPECT_THAT(refusal(new_one), Not(HasSubstr("glTF 1.0")));
+}
+
+TEST_F(Misread, GltfMaterialsThatAreSeenThrough) {
+  GltfBuilder b;
+  b.Triangle();
+  const auto add = [&](const char* name, const char* mode, double alpha, const json& extensions) {
+    b.Append("materials", {{"name", name},
+                           {"alphaMode", mode},
+                           {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, alpha}}}},
+                           {"extensions", extensions}});
+  };
+  const json glass = {{"KHR_materials_transmission", {{"transmissionFactor", 1}}}};
+  add("thin", "BLEND", 0.4, json::object());
+  add("thick", "BLEND", 0.6, json::object());
+  add("hidden", "BLEND", 0.0, json::object());
+  add("mask", "MASK", 0.4, json::object());
+  add("opaque", "OPAQUE", 0.4, {{"KHR_materials_transmission", {{"transmissionFactor", 0}}}});
+  add("glass", "OPAQUE", 1.0, glass);
+  add("flat", "OPAQUE", 1.0, {{"KHR_materials_unlit", json::object()}});
+  EXPECT_THAT(Load(Write("scene.glb", b.Glb())).warnings,
+              ElementsAre(AllOf(HasSubstr("below one half are left out"), HasSubstr("(material 0 'thin')")),
+                          AllOf(HasSubstr("are solid"), HasSubstr("(material 1 'thick')")),
+                          AllOf(HasSubstr("transmission"), HasSubstr("(material 5 'glass')")),
+                          AllOf(HasSubstr("unlit"), HasSubstr("(material 6 'flat')"))));
 }
 
 TEST_F(Misread, TexturesWithoutAnIndex) {

@@ -174,7 +174,7 @@ TEST_F(LoadText, ObjShapesAndMaterials) {
   ASSERT_EQ(scene.meshes[1].uvs[0].size(), 3u);
   EXPECT_EQ(scene.meshes[1].uvs[0][1], glm::vec2(1, 0.75));
   ExpectNear(wood.base_color_texture.uv_transform * glm::vec3(scene.meshes[1].uvs[0][1], 1), {2.25, -0.25, 1}, 1e-6);
-  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("in no library"), HasSubstr("gone.png")));
+  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("in no library"), HasSubstr("are solid"), HasSubstr("gone.png")));
 }
 
 TEST_F(LoadText, ObjWithoutItsMaterialLibrary) {
