@@ -1,6 +1,5 @@
 // The effect of `variety` on a flat wall: repetition, autocorrelation, tone, seams and time, for the bundled styles.
-// Prints
-// the tables of docs/variety.md.
+// Prints the tables of docs/variety.md.
 //   variety_bench [FOLDER]             a table of walls; keeps the pictures in an existing folder
 //   variety_bench --cost GUIDES.exr…   match + vote with and without, on a wall and on guides of scenes
 #include <algorithm>

@@ -12,10 +12,9 @@ inline constexpr int kMaxUpsampling = 8;
 // Every pixel becomes a block of factor × factor, 1 … kMaxUpsampling; 1 is a copy. In a block of a covered pixel
 //   - ids are the pixel's own;
 //   - all other layers are bilinear between the centres of the pixels around that are covered and show the same surface
-//     as this
-//     one: its object, no crease of 60 degrees or more between, no step in depth (by the edge test's tolerance of 0.002
-//     of the distance). Layers that the guides lack are not tested. Normals are unit vectors again; `motion` is in the
-//     larger picture's pixels;
+//     as this one: its object, no crease of 60 degrees or more between, no step in depth (by the edge test's tolerance
+//     of 0.002 of the distance). Layers that the guides lack are not tested. Normals are unit vectors again; `motion`
+//     is in the larger picture's pixels;
 //   - coverage is the share of the block that it was of the pixel: its mean over the block is the pixel's own. The
 //     covered part of the block follows the bilinear coverage, along its contours and as sharply as `factor` allows. An
 //     antialiased silhouette becomes smooth and about one pixel wide at most; one that is not antialiased keeps its

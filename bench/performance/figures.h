@@ -20,8 +20,8 @@ struct Figure {
   std::optional<double> target;
   bool at_least = false;  // whether the target is a minimum or a maximum
   std::string note = {};
-  std::vector<std::pair<std::string, double>> more =
-      {};  // {}; // further values by name, for the chart and for readers of the JSON
+  // Further values by name, for the chart and for readers of the JSON.
+  std::vector<std::pair<std::string, double>> more = {};
 };
 
 // Collects figures and reports progress on stderr.

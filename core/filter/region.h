@@ -1,4 +1,4 @@
-// A rectangle of the picture, and its rows distributed over threads.
+// A rectangle of the picture.
 #pragma once
 
 #include <algorithm>

@@ -10,7 +10,7 @@
 //     every data layer from its covered subsample nearest the centre.
 //   - With several subsamples a pixel, those that see other surfaces than the centre are kept apart (`fragments`).
 //   - Background: A = 0, normal = position = 0, depth = +infinity, ids = 0.
-//   - Ids are 24-bit hashes of the object's full name (ObjectId), exact in a float; 0 is the background.
+//   - Ids are 24-bit hashes of the object's full name (IdsForNames), exact in a float; 0 is the background.
 #pragma once
 
 #include <array>

@@ -14,6 +14,7 @@
 
 #include "core/image/channel_image.h"
 #include "core/image/guides.h"
+#include "core/image/hash.h"
 #include "core/image/status.h"
 #include "core/io/guide_file.h"
 #include "core/io/picture_file.h"
@@ -53,14 +54,13 @@ void SetThreads(int threads);
 // The sizes of the types that cross the module's boundary, hashed to one number: two builds of one version may still
 // differ in them.
 inline constexpr std::uint64_t kFormatsLayout = [] {
-  constexpr std::uint64_t kOffset = 0xcbf29ce484222325u, kPrime = 0x100000001b3u;  // FNV-1a's
-  std::uint64_t layout = kOffset;
+  std::uint64_t layout = 0;
   for (const std::size_t size :
        {sizeof(Expected<Picture>), sizeof(Picture), sizeof(PictureHeader), sizeof(StoredPicture),
         sizeof(PictureWriteOptions), sizeof(ChannelImage), sizeof(GuideSet), sizeof(GuideReadOptions),
         sizeof(GuideFileInfo), sizeof(Expected<std::vector<std::byte>>), sizeof(LayerSet), sizeof(Error),
         sizeof(std::string), sizeof(std::filesystem::path)}) {
-    layout = (layout ^ size) * kPrime;
+    layout = HashOn(layout, size);
   }
   return layout;
 }();

@@ -45,7 +45,6 @@ struct StyleKey : KeyForm {
   std::string name;             // "transfer.threshold"
   std::string default_value;    // as TOML text
   std::string help;             // one line: meaning, unit, range
-  bool built_in = true;         // false: the feature does not exist yet, and only the default is accepted
   std::string group;            // of keys that belong together: "Matching"
   bool needs_preparing = true;  // false: a change prepares no exemplar again
 

@@ -123,7 +123,7 @@ std::vector<float> GaussianWeights(double sigma) {
   std::vector<double> exact;
   double sum = 0.0;
   for (int k = 0; k <= reach; ++k) {
-    exact.push_back(Exp2(-0.5 * k * k / (sigma * sigma) * 1.4426950408889634));
+    exact.push_back(Exp2(-0.5 * k * k / (sigma * sigma) * kLog2OfE));
     sum += k == 0 ? exact.back() : 2.0 * exact.back();
   }
   std::vector<float> weights;

@@ -83,7 +83,7 @@ std::size_t BilateralPad(double sigma, std::size_t longer_side) {
 void BilateralFilter(double sigma, double range, SmoothPlanes& planes) {
   std::vector<float> weights;
   for (std::size_t k = 0; k <= BilateralPad(sigma, std::max(planes.width, planes.height)); ++k)
-    weights.push_back(static_cast<float>(Exp2(-0.5 * double(k) * double(k) / (sigma * sigma) * 1.4426950408889634)));
+    weights.push_back(static_cast<float>(Exp2(-0.5 * double(k) * double(k) / (sigma * sigma) * kLog2OfE)));
   planes.MakeNext();
   for (const bool rows : {true, false}) {
     const BilateralRun run{planes.lightness.data(),

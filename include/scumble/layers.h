@@ -11,26 +11,27 @@
 
 namespace scumble {
 
+// By pixel, as floats. Values on the background are 0 where nothing else is said.
 enum class Layer {
-  kCoverage,
-  kNormal,
-  kDepth,
-  kObject,
-  kMaterial,
-  kPosition,
-  kPref,
-  kMotion,
-  kAlbedo,
-  kLuminance,
-  kShadow,
-  kLpeFull,
-  kLpeLDE,
-  kLpeLSE,
-  kLpeLDDE,
-  kLpeLD12E,
-  kCosine,
-  kUv,
-  kOutline,
+  kCoverage,   // "A": 0 … 1; 0 is the background
+  kNormal,     // unit shading normal in view space: x right, y up, z to the viewer
+  kDepth,      // planar view depth, metres; infinity on the background
+  kObject,     // 24-bit id of the object, 0 on the background
+  kMaterial,   // 24-bit id of the material, 0 on the background
+  kPosition,   // in the world, metres, y up
+  kPref,       // position at rest, in the object's own space
+  kMotion,     // pixels to the same point in the next frame: x right, y down
+  kAlbedo,     // base colour, textured, linear Rec. 709
+  kLuminance,  // direct light on a white Lambert surface, shadows included; linear
+  kShadow,     // share of the direct light that is blocked, 0 … 1
+  kLpeFull,    // radiance with all reflections; linear Rec. 709, as the others below
+  kLpeLDE,     // direct diffuse light
+  kLpeLSE,     // direct specular light
+  kLpeLDDE,    // diffuse light after one diffuse reflection
+  kLpeLD12E,   // the first two diffuse bounces together
+  kCosine,     // of the normal to the key light, -1 … 1
+  kUv,         // texture coordinates, (0, 0) lower left
+  kOutline,    // pixels to the outline of the object, at most 256
 };
 inline constexpr int kLayerCount = 19;
 

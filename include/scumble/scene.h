@@ -24,11 +24,11 @@ struct SceneLight {
 
 struct SceneSettings {
   std::string file;                 // .glb, .gltf, .obj, .ply; .blend where Blender is installed
-  int width = 1280, height = 720;   // pixels
+  int width = 1280, height = 720;   // pixels, 1 … 32768, and at most 2^28 together
   std::string camera;               // by name; empty: the scene's first, or a view that frames it
   std::optional<SceneView> view;    // instead of a camera
   std::optional<SceneLight> light;  // one sun in place of the scene's lights and world; surfaces still glow
-  std::optional<int> frame;         // of an animation; empty: at rest
+  std::optional<int> frame;         // of an animation, -999999999 … 999999999; empty: at rest
   std::string animation;            // by name, where a file has several; "*": all; empty: the first
   std::string blender_scene;        // of a .blend, by name; empty: the one that was open when it was saved
   std::string view_layer;           // of a .blend, by name; empty: the first one that is rendered

@@ -13,12 +13,13 @@ enum class ErrorKind {
   kUsage,        // the caller asked for something that makes no sense
   kInput,        // a file or value is unreadable or invalid
   kOutput,       // something could not be written
-  kUnavailable,  // understood, but not built into this version
+  kUnavailable,  // what it needs is missing: Blender, an installed part, or a feature of this version
   kCancelled,    // the caller has cancelled it
   kMemory,       // the machine, or a limit such as ulimit's, gives no more memory or threads
 };
 
-// `message` is one sentence or two: the file, what was found, what was expected, and how to fix it.
+// `message` is one sentence or two: the file, what was found, what was expected, and how to fix it. Settings are called
+// by the option of the command line that sets them, as --size.
 struct Error {
   ErrorKind kind = ErrorKind::kInput;
   std::string message;

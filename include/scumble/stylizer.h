@@ -34,9 +34,10 @@ struct StylizerOptions {
 };
 
 struct PaintSettings {
-  std::uint64_t seed = 0;          // another seed, another pattern; the same seed, the same bytes
-  std::optional<double> exposure;  // stops, for styles that look at light; empty: fitted to the brightest exemplar
-  int upsample = 1;                // guides are so many times smaller than the picture
+  std::uint64_t seed = 0;  // another seed, another pattern; the same seed, the same bytes
+  // Stops, -64 … 64, for styles that look at light; empty: fitted to the brightest exemplar.
+  std::optional<double> exposure;
+  int upsample = 1;      // 1 … 8: guides are so many times smaller than the picture, whose sides are multiples of it
   bool upscale = false;  // with upsample above 1: painted at the guides' size and scaled up, quicker and softer
 };
 

@@ -2,8 +2,8 @@
 //
 // A baseline is JSON:
 //   {"scumble_baseline": 1, "blender": "3.4.1",
-//    "scenes": {"suzanne.glb": {"size": "640x360", "samples": 64, "max_bounces": 8, "limits": {"normal 99% within":
-//    0.0007}}}}
+//    "scenes": {"suzanne.glb": {"size": "640x360", "samples": 64, "max_bounces": 8,
+//                               "limits": {"normal 99% within": 0.0007}}}}
 // A scene may name its "camera" and "frame", if they were chosen. Figures are named by layer and name.
 #pragma once
 

@@ -109,8 +109,8 @@ struct CrosscheckReport {
   std::vector<std::string> warnings;     // deliberate differences from the authored scene
   std::string scumble_version = {};      // of this program
   std::string blender_version = {};      // of the reference; empty where it is not known
-  std::string baseline_mismatch =
-      {};  // {}; // the reason why the baseline does not apply to this scene; empty where it does or there is none
+  // Why the baseline does not apply to this scene; empty where it does or there is none.
+  std::string baseline_mismatch = {};
   bool KeepsBuiltInLimits() const;  // the verdict without any baseline
   CrosscheckOutcome Outcome() const;
   bool passed() const { return Outcome() == CrosscheckOutcome::kAgrees; }
@@ -140,16 +140,14 @@ struct CrosscheckLight {
 // Adds the light layers to the report of the data layers `reference` and `ours`, whose masks they share. `light` is in
 // ascending order of samples; figures and pictures are those of the last. Each layer has two figures:
 //   - "mean difference": Σ|mean ours − mean reference| / Σ mean reference over the three channels, in percent. Its
-//   error is
-//     the sum of the channels' standard errors, so it holds for any correlation of the channels' noise. Limits: LDE
-//     0.5%, LSE 2%, the others 1.5% where nothing is glossy and 2% else.
+//     error is the sum of the channels' standard errors, so it holds for any correlation of the channels' noise.
+//     Limits: LDE 0.5%, LSE 2%, the others 1.5% where nothing is glossy and 2% else.
 //   - "8x8 tiles": the root mean square difference of the means of tiles of 8 × 8 pixels over the mean, in percent,
-//   less the noise's part: light in the wrong place. Limit 5%; it does not apply to layers whose noise hides more.
+//     less the noise's part: light in the wrong place. Limit 5%; it does not apply to layers whose noise hides more.
 // Noise is separated from real differences by the change of each pixel's difference from one sample count to the last;
-// with
-// a single count by its spread. `indirect` is full − LDE − LSE where the surface itself does not shine. Zero in both is
-// "no such light"; zero in one alone breaks. Every value of ours must be finite and not negative. A layer that either
-// side lacks is skipped, and fails the verdict. Errors: sizes differ.
+// with a single count by its spread. `indirect` is full − LDE − LSE where the surface itself does not shine. Zero in
+// both is "no such light"; zero in one alone breaks. Every value of ours must be finite and not negative. A layer that
+// either side lacks is skipped, and fails the verdict. Errors: sizes differ.
 Status CrosscheckLightLayers(const GuideSet& reference, const GuideSet& ours, const std::vector<CrosscheckLight>& light,
                              const CrosscheckOptions& options, CrosscheckReport& report);
 

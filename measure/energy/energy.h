@@ -11,14 +11,14 @@
 // never agree with any method, and that would dominate the figure. Three means of it:
 //
 //   energy   over the measured p of the target, of the least E(p, u) over all u: does the picture show only the
-//   exemplar's paint? With λ = 0, any straight copy scores 0, from any place; otherwise no more than λ times
+//            exemplar's paint? With λ = 0, any straight copy scores 0, from any place; otherwise no more than λ times
 //            its own guide error, as the place of its source is among the u. 0 is a picture whose patches all are in
 //            the exemplar under equal guides.
 //   missing  over the exemplar's u that the scene needs, of the least E(p, u) over all p: is all of the exemplar's
-//   paint in the picture? Smeared or averaged paint is near to *some* smooth patch, so the energy alone favours it (the
-//   wash-out that StyLit avoids); but its grain is missing. A position is needed where its normal differs from some
-//   normal of the target by at most 1/8 in x, y and
-//            z, the threshold of chunks; a grid decides that, which lets some pass that differ by up to 1/4.
+//            paint in the picture? Smeared or averaged paint is near to *some* smooth patch, so the energy alone
+//            favours it (the wash-out that StyLit avoids); but its grain is missing. A position is needed where its
+//            normal differs from some normal of the target by at most 1/8 in x, y and z, the threshold of chunks; a
+//            grid decides that, which lets some pass that differ by up to 1/4.
 //   both     the sum: the bidirectional similarity of Simakov et al. 2008. Methods and settings are ranked by it.
 //
 // Figures depend on the scene, the style and the size: compare those of one. With one random seed all methods are

@@ -19,8 +19,8 @@ namespace internal {
 
 struct StratifiedSample {
   std::vector<std::size_t> places;  // in the list
-  std::vector<std::size_t>
-      strata;  // strata; // sizes, one for each two places; empty: the sample is the whole list, in its order
+  // Sizes, one for each two places; empty: the sample is the whole list, in its order.
+  std::vector<std::size_t> strata;
 };
 
 // `samples`, rounded up to even, of a list of `count` places, by a hash of the seed; 0, or as many as there are: all.

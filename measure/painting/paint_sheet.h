@@ -16,8 +16,7 @@ namespace scumble {
 class PaintSheet {
  public:
   // Usable pixels: on a sphere, those at least `rim` pixels, and its SoftEdge, inside the circle that fills the square;
-  // in a painted
-  // scene, those that its guides cover. The picture is not empty; that of a sphere is square.
+  // in a painted scene, those that its guides cover. The picture is not empty; that of a sphere is square.
   PaintSheet(const Exemplar& exemplar, double rim);
 
   const Picture& picture() const { return exemplar_.picture; }

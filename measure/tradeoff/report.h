@@ -25,8 +25,8 @@ struct TradeMeasure {
   std::string note;     // for the reader; empty: none
   bool chosen = false;  // the unchanged style
   bool exact = false;   // the reference of the others
-  std::optional<std::size_t>
-      same_as;  // same_as; // the place of the first variant in the report with an equal picture, if not this
+  // The place of the first variant in the report with an equal picture, if not this.
+  std::optional<std::size_t> same_as;
   bool by_chance = false;  // the unchanged style with another random seed: its figures show the seed's influence
   Quartiles guides_ms, transfer_ms, total_ms;  // wall clock
   double prepare_ms = 0.0;              // the style, once, with empty caches: tables, trees, exemplars at this size

@@ -173,7 +173,6 @@ std::function<Status(std::uint64_t bytes)> RoomForStyles(const RunContext& conte
 }
 
 std::uint64_t PeakMemory() { return FieldOf("/proc/self/status", "VmHWM:").value_or(0); }
-std::uint64_t ResidentMemory() { return FieldOf("/proc/self/status", "VmRSS:").value_or(0); }
 
 std::string BytesToText(std::uint64_t bytes) {
   constexpr const char* kUnits[] = {"bytes", "KiB", "MiB", "GiB", "TiB", "PiB", "EiB"};

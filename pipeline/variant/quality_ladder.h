@@ -32,8 +32,7 @@ std::vector<Variant> QualityLadder(const StyleSet& styles, const LadderFrame& fr
 // Named steps.
 enum class Quality {
   // To find a camera: a picture of half the size, scaled up, of light with few samples. Where no picture may be scaled
-  // up,
-  // nothing is blended or split.
+  // up, nothing is blended or split.
   kDraft,
   // To judge a style: guides that hold light, which are slow, are half the size, with few samples. Where guides keep
   // their size, nothing is blended. A picture without light in its guides is quick enough as it is.

@@ -1,4 +1,4 @@
-"""Makes the .blend files of blender_export_test.cpp, and expected.json with Blender's own numbers.
+"""Makes the .blend files of export_test.cpp, and expected.json with Blender's own numbers.
 
     blender -b -noaudio --factory-startup -P tests/blender/make_cases.py -- --output FOLDER
 """
@@ -617,7 +617,7 @@ FILES = {"broken": broken, "old": old}  # these write their files themselves
 
 
 def main():
-    parser = argparse.ArgumentParser(prog="make_cases.py", description="Makes the scenes of blender_export_test.cpp.")
+    parser = argparse.ArgumentParser(prog="make_cases.py", description="Makes the scenes of export_test.cpp.")
     parser.add_argument("--output", required=True, type=Path)
     folder = parser.parse_args(sys.argv[sys.argv.index("--") + 1:]).output
     expected = {}

@@ -1,4 +1,4 @@
-"""Makes the scenes of crosscheck_blender_test.cpp: room.blend, scatter.blend, crooked.blend.
+"""Makes the scenes of crosscheck_test.cpp: room.blend, scatter.blend, crooked.blend.
 
     blender -b -noaudio --factory-startup -P tests/blender/make_crosscheck.py -- FOLDER
 """

@@ -5,7 +5,7 @@ readable input) and a sentence that names a file, never by a signal. Then pipes 
 
 A seeded generator draws the changes and their times; the times of the program's reads are not fixed.
 
-Usage: faults_changed.py PROGRAM SOURCE
+Usage: changed.py PROGRAM SOURCE
 """
 import os
 import pathlib

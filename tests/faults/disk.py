@@ -6,7 +6,7 @@ failure at all.
 Runs in a mount namespace of its own, where it mounts a small disk in memory and a folder for reading only. Exit code 77
 (skipped) where the system allows no namespaces, or where no other user may run the program.
 
-Usage: faults_disk.py PROGRAM SOURCE
+Usage: disk.py PROGRAM SOURCE
 """
 import os
 import pathlib

@@ -7,7 +7,7 @@ temporary file at all; and runs at the same time in one folder, of which some ar
 The moments are drawn from a seeded generator, in shares of the time that whole runs take here and now from their first
 file to their last.
 
-Usage: faults_killed.py PROGRAM SOURCE [KILLS]
+Usage: killed.py PROGRAM SOURCE [KILLS]
 """
 import os
 import pathlib

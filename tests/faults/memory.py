@@ -4,7 +4,7 @@ finely spaced, so that memory ends in every stage. Commands that refuse too larg
 --max-memory every other time. Each run must end by itself: with success and the bytes of a run without a limit, or with
 exit code 6, a sentence, and no file. Never by a signal, never with a wrong reason.
 
-Usage: faults_memory.py PROGRAM SOURCE [STEP_KB [VERB…]], of those listed below; left out: all
+Usage: memory.py PROGRAM SOURCE [STEP_KB [VERB…]], of those listed below; left out: all
 """
 import pathlib
 import resource

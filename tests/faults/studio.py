@@ -3,9 +3,9 @@
 painting, and styles under new names: every style is then whole. On a full disk, in a folder for reading only, and where
 the folder has vanished, it says so, changes nothing, and goes on.
 
-Runs in a mount namespace of its own, as faults_disk does, with the same exit code 77 where the system allows none.
+Runs in a mount namespace of its own, as disk.py does, with the same exit code 77 where the system allows none.
 
-Usage: faults_studio.py PROGRAM SOURCE [KILLS]
+Usage: studio.py PROGRAM SOURCE [KILLS]
 """
 import http.client
 import json

@@ -59,7 +59,7 @@ THIRD_PARTY = {
     "toml++/": {"style"},
     "apriltag/": {"style"},
     "fmt/": {"measure", "cli", "pipeline", "studio"},
-    "nlohmann/": {"measure", "cli", "pipeline", "studio"},
+    "nlohmann/": {"measure", "cli", "studio"},
     "boost/": {"studio"},
     "turbojpeg.h": {"studio"},
     "CLI/": {"cli"},

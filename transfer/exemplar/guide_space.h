@@ -4,18 +4,16 @@
 // Stylization of 3D Renderings", SIGGRAPH 2016).
 //
 // A point's coordinates are the values of each layer, times the layer's weight:
-//   normal        x, y, z. For a search, a normal that faces away is turned to the rim (FacingDirection), as in a
-//   tree
+//   normal        x, y, z. For a search, a normal that faces away is turned to the rim (FacingDirection), as in a tree
 //                 of normals alone.
 //   albedo        r, g, b, between 0 and 1; 1 above.
 //   shadow        between 0 and 1.
 //   outline       1 - d / kOutlineReach, and 0 beyond that: d is the distance to the nearest outline in pixels at the
 //                 reference height. The edge guide of StyLit, which keeps thin parts in the paint of the rim.
-//   luminance,    L / (1 + L) of each channel: 0 is darkness, 0.5 the exemplar's 90th percentile
-//   (the lpe.*         `white`), and nothing is above 1. Radiance has no upper bound, and a highlight must not outweigh
-//   all the
-//                 rest. L is the exemplar's radiance / white; the scene's is exposed, · 2^stops / white. With the
-//                 exposure that MeasureExposure gives, both are shares of their own 90th percentile.
+//   luminance,    L / (1 + L) of each channel: 0 is darkness, 0.5 the exemplar's 90th percentile `white`, and nothing
+//   lpe.*         is above 1. Radiance has no upper bound, and a highlight must not outweigh all the rest. L is the
+//                 exemplar's radiance / white; the scene's is exposed, · 2^stops / white. With the exposure that
+//                 MeasureExposure gives, both are shares of their own 90th percentile.
 // NaN and what is below 0 count as 0, infinite radiance as 1.
 #pragma once
 

@@ -4,8 +4,8 @@
 // pixel's: so a border shows what its surface would show there. Where votes are cut at edges, pixels of the fragment's
 // own object whose normals are within the crease vote. Without a window, or where votes are not cut, each of its cells
 // (core/image/fragments.h) takes the nearest of the eight pixels around that shows its surface. Without a window, these
-// are averaged in linear light. Where none shows it, and
-// always for Lit Sphere, the fragment takes its own nearest neighbour.
+// are averaged in linear light. Where none shows it, and always for Lit Sphere, the fragment takes its own nearest
+// neighbour.
 #pragma once
 
 #include <array>

@@ -37,8 +37,7 @@ struct ActiveRows {
 // already.
 // - `active`: without a map 1 where coverage is above 0; with one 0 everywhere, see Activate.
 // - The field has kNoSource wherever no style paints and outside the region, and is undefined elsewhere.
-// - `out` is 0 wherever in the region no style paints, and undefined where one does; outside the region it is
-// left
+// - `out` is 0 wherever in the region no style paints, and undefined where one does; outside the region it is left
 //   alone if it had its size.
 // Runs in the caller's arena.
 FrameSetup StartFrame(const FrameInput& input, SourceField& field, std::vector<std::uint8_t>& active, Picture& out);

@@ -30,11 +30,9 @@ struct SilhouetteInput {
 };
 
 // The outlines of objects in front of others or of the background. Object a is in front of b where they meet if b is
-// farther from the
-// camera by more than 1% of its distance; the outline tapers off below 3%. Pixels that no style paints
+// farther from the camera by more than 1% of its distance; the outline tapers off below 3%. Pixels that no style paints
 // (StyleMap::kPassThrough and kShadowCatcher) count as background, unless they are in front of the object.
-// Self-occlusion
-// makes no outline.
+// Self-occlusion makes no outline.
 //
 // `width` falls with the thickness of the object there, full from 8 bands on and 0 below one band, where the outline
 // stays exact; and with the gap to the next object that is not behind, full from 3 bands on and 0 below half a band. It

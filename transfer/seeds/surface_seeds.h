@@ -5,15 +5,12 @@
 //   - Rest space has a grid of cubes for every power of two, its edge 2^e, and one point hashed into each cube from
 //     (seed, time step, object, e, cube). A pixel belongs to the nearest point of the 27 cubes around it, its surface
 //     cell: the cells' borders are fixed on the surface, for any camera. Each grid is moved by a hash of (seed, object,
-//     e),
-//     or a floor at height 0 would lie exactly between two layers of cubes.
+//     e), or a floor at height 0 would lie exactly between two layers of cubes.
 //   - A cell's seed q is its pixel nearest to the point, ties to the lowest (y, x). It follows the
 //     surface as closely as pixels can.
 //   - The size of 2^e on the screen follows from the pixel's footprint, as an octave κ = log2(pref units a pixel): the
-//     median
-//   over
-//     the object of (distance of pref to the next pixel / depth), times the pixel's own depth. So a floor has chunks of
-//     one size near and far, and a zoom moves κ without any step.
+//     median over the object of (distance of pref to the next pixel / depth), times the pixel's own depth. So a floor
+//     has chunks of one size near and far, and a zoom moves κ without any step.
 //   - The cell's place in StyleBlit's hierarchy is level = e - floor(κ(q) + h), h in [0, 1) hashed from its cube; it
 //     takes part where 1 <= level < levels. Cubes do not depend on κ, so a zoom changes only the largest and the
 //     smallest cells, one by one in the order of h.

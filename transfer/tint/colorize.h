@@ -27,8 +27,7 @@ struct Tint {
   // (L, a, b) the albedo, clamped to 0 … 1:
   //   P ≤ R   P / R · (L, a, b): darker as in weaker light, so the ratio of two paints' luminances stays;
   //   P > R   t = (P − R) / (1 − min(R, L)), lightness L + t · (1 − L), chroma × (1 − t²), or less where a channel
-  //   would
-  //           be above 0.98 and above the albedo's: towards white as far as the paint and the gamut allow.
+  //           would be above 0.98 and above the albedo's: towards white as far as the paint and the gamut allow.
   // So black stays black, no paint short of white becomes white, and lightness is monotone and continuous in P. Where
   // the way from the paint to the target is outside the gamut, lightness and hue stay and chroma is reduced.
   void Apply(glm::vec3 albedo, std::uint16_t* texel) const;

@@ -44,8 +44,7 @@ std::string NameInBaseline(const std::string& scene) { return fs::path(scene).fi
 
 std::string Listed(const std::vector<std::string>& names) { return fmt::format("{}", fmt::join(names, ", ")); }
 
-// ---- Before the work
-// --------------------------------------------------------------------------------------------------
+// ---- Before the work ------------------------------------------------------------------------------------------------
 
 Status CheckScenes(const CrosscheckVerb& verb) {
   std::set<std::string> names, stems;
@@ -125,8 +124,7 @@ Status CheckBaselineFits(const CrosscheckVerb& verb, const Baseline& baseline, c
   return Ok();
 }
 
-// ---- The work
-// ---------------------------------------------------------------------------------------------------------
+// ---- The work -------------------------------------------------------------------------------------------------------
 
 std::string RepeatCommand(const CrosscheckVerb& verb) {
   std::string command = "scumble crosscheck";

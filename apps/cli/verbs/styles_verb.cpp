@@ -17,9 +17,9 @@
 #include "apps/cli/app/options.h"
 #include "apps/cli/verbs/styles_check.h"
 #include "apps/cli/verbs/styles_tune.h"
+#include "apps/studio/session/style_keys_json.h"
 #include "core/style/style_file.h"
 #include "core/style/style_keys.h"
-#include "pipeline/style/style_keys_json.h"
 #include "pipeline/style/style_locations.h"
 #include "pipeline/tradeoff/tune_style.h"
 
@@ -85,8 +85,7 @@ Expected<ExitCode> ListKeys(const Globals& globals) {
   nlohmann::ordered_json json = StyleKeysJson();
   std::string text;
   for (const StyleKey& key : StyleKeys()) {
-    const std::string help = key.help + (key.built_in ? "" : " (not built in yet: only the default is accepted)");
-    text += fmt::format("{:<26} {:<12} {}\n", key.name, key.default_value, help);
+    text += fmt::format("{:<26} {:<12} {}\n", key.name, key.default_value, key.help);
   }
   const StyleKeyLine of_exemplars[] = {
       {"exemplar.image", "", "picture of the painted sphere, required; in style.toml only", "file"},

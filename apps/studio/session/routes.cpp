@@ -4,8 +4,8 @@
 #include <charconv>
 
 #include "apps/studio/session/session_state.h"
+#include "apps/studio/session/style_keys_json.h"
 #include "core/image/hash.h"
-#include "pipeline/style/style_keys_json.h"
 
 namespace scumble {
 namespace {

@@ -23,10 +23,9 @@ using BlenderMattes = std::map<Layer, Matte>;  // kObject, kMaterial
 
 // Turns passes as Blender writes them into guides, in place:
 //   - Without `camera` it is solved from Position and Depth (core/io/blender/solve_camera.h); an error says what that
-//   lacks.
+//     lacks.
 //   - Normals go from Blender's world (+Z up) into view space and get length 1, positions into glTF's world (+Y up),
-//   the
-//     background's depth of 1e10 becomes infinity.
+//     the background's depth of 1e10 becomes infinity.
 //   - object and material come from the Cryptomattes where there are any, else from the pass indices, whose names are
 //     "index N". Either way ids are those of the names (IdsForNames).
 //   - Where no alpha lies between 0 and 1 the film was opaque, or might as well have been, and an alpha of 1 says

@@ -35,10 +35,9 @@ std::vector<LightPass> LightPassesFor(Layer layer);
 //     every Lambert surface that of a white one, shadows included. Its luminance (Rec. 709) is ours. A surface without
 //     a diffuse part, as metal, has none, nor has a shadow catcher: 0.
 //   shadow: on shadow catchers 1 less the luminance of Shadow Catcher, which is the light that is left. Elsewhere,
-//   where
-//     there is a pass Shadow, 1 less its luminance, which is the share of a pixel's light samples that reached a lamp:
-//     each lamp counts alike, and a surface that no lamp faces counts as shadowed. Samples beside the surface reached
-//     none, so it is divided by the coverage.
+//     where there is a pass Shadow, 1 less its luminance, which is the share of a pixel's light samples that reached a
+//     lamp: each lamp counts alike, and a surface that no lamp faces counts as shadowed. Samples beside the surface
+//     reached none, so it is divided by the coverage.
 void ConvertBlenderLight(const BlenderLight& light, std::span<const float> catchers, GuideSet& guides);
 
 }  // namespace scumble

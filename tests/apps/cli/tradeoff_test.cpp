@@ -321,7 +321,7 @@ TEST_F(Tradeoff, PreparingIsToldWithNothingKept) {
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 
-// The estimate is an upper bound, as for other commands (memory_need_test): above the system's count, but less than
+// The estimate is an upper bound, as for other commands (memory_estimate_test): above the system's count, but less than
 // four times as much.
 TEST_F(Tradeoff, TakesNoMoreMemoryThanItSays) {
   const Arguments arguments =

@@ -55,8 +55,7 @@ GuideSet Wall(int width, int height, glm::vec3 normal) {
   return MakeGuides(width, height, [=](int x, int y) { return x > width - 40 && y < 40 ? glm::vec3(0.0f) : normal; });
 }
 
-// ---- Neutral values
-// --------------------------------------------------------------------------------------------------
+// ---- Neutral values -------------------------------------------------------------------------------------------------
 
 TEST(Extensions, NeutralValuesAreThePlainEngine) {
   const GuideSet guides = LitHills(160, 120);
@@ -84,8 +83,7 @@ TEST(Extensions, NeutralValuesAreThePlainEngine) {
   EXPECT_EQ(picture.rgba, expected.picture.rgba) << "a map of one style";
 }
 
-// ---- Light
-// -----------------------------------------------------------------------------------------------------------
+// ---- Light ----------------------------------------------------------------------------------------------------------
 
 TEST(Illumination, ChoosesTheNearestAndTheFirstOfEquals) {
   const double luminances[] = {0.2, 0.9, 0.2, 0.5};
@@ -253,8 +251,7 @@ TEST(Illumination, ExemplarsOfOtherSizesBecomeTheFirstOnes) {
   EXPECT_EQ(prepared->exemplar->picture(1).width, 96);
 }
 
-// ---- Colour
-// ----------------------------------------------------------------------------------------------------------
+// ---- Colour ---------------------------------------------------------------------------------------------------------
 
 TEST(Colorize, MultipliesByTheAlbedoInLinearLight) {
   const GuideSet guides = LitHills(60, 40);
@@ -328,8 +325,7 @@ TEST(Oklab, RoundTripsAndKnowsItsPublishedValues) {
   }
 }
 
-// ---- Several styles
-// --------------------------------------------------------------------------------------------------
+// ---- Several styles -------------------------------------------------------------------------------------------------
 
 TEST(StyleMap, EveryStylePaintsAsIfNothingElseWereThere) {
   GuideSet guides = LitHills(170, 120);
@@ -458,8 +454,7 @@ TEST(StyleMap, ThousandsOfObjectsWithAStyleEach) {
   }
 }
 
-// ---- Flat surfaces
-// ---------------------------------------------------------------------------------------------------
+// ---- Flat surfaces --------------------------------------------------------------------------------------------------
 
 // How often each source pixel that is used at all shows.
 double Repetition(const SourceField& field) {
@@ -500,8 +495,7 @@ TEST(Variety, LeavesCurvedSurfacesAsTheyAre) {
   EXPECT_EQ(MustTransfer(style, LitHills(200, 150)).picture.rgba, before.rgba);
 }
 
-// ---- The same bytes
-// --------------------------------------------------------------------------------------------------
+// ---- The same bytes -------------------------------------------------------------------------------------------------
 
 TEST(Extensions, SameBytesForAnyThreadsAndRegions) {
   GuideSet guides = Wall(220, 180, glm::vec3(0, 0, 1));

@@ -1,6 +1,6 @@
 // The published figures that a number can hold, rebuilt from bundled scenes and styles: chunks by the weight of light
 // (illuminated StyleBlit, figure 23) and a pattern of colours that paint keeps (colorized, figure 21). No ghosting at
-// any depth tolerance (figure 20) is in transfer_vote_test.cpp.
+// any depth tolerance (figure 20) is in tests/transfer/vote/vote_test.cpp.
 #include <limits>
 #include <tuple>
 

@@ -38,8 +38,7 @@ std::vector<std::uint8_t> AnyMask(int width, int height) {
   return mask;
 }
 
-// ---- The blur
-// --------------------------------------------------------------------------------------------------------
+// ---- The blur -------------------------------------------------------------------------------------------------------
 
 // The kernel by its definition: the box of weights 1 and, at either end, one below 1, whose variance is a quarter of
 // sigma², four times convolved with itself.
@@ -134,8 +133,7 @@ TEST(MaskedBlur, KeepsAFlatToneAndBecomesTheMean) {
   }
 }
 
-// ---- The transfer
-// ----------------------------------------------------------------------------------------------------
+// ---- The transfer ---------------------------------------------------------------------------------------------------
 
 TEST(Hybrid, ZeroIsThePlainEngineAndAnEvenToneToo) {
   const GuideSet guides = HillGuides(120, 90);

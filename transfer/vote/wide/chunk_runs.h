@@ -37,7 +37,6 @@ class WideTile {
   bool Read(const VoteInput& input, const Region& area);
 
   const Region& area() const { return area_; }
-  const Region& surround() const { return surround_; }
   int radius() const { return radius_; }
   int Window() const { return (2 * radius_ + 1) * (2 * radius_ + 1); }  // pixels
   const std::vector<Chunk>& chunks() const { return chunks_; }

@@ -1,8 +1,9 @@
-#include "pipeline/style/style_keys_json.h"
+#include "apps/studio/session/style_keys_json.h"
 
 #include <cmath>
 
 namespace scumble {
+namespace {
 
 nlohmann::ordered_json JsonOf(const KeyValue& value) {
   return std::visit(
@@ -14,6 +15,8 @@ nlohmann::ordered_json JsonOf(const KeyValue& value) {
       },
       value);
 }
+
+}  // namespace
 
 nlohmann::ordered_json StyleKeysJson() {
   nlohmann::ordered_json keys = nlohmann::ordered_json::array();

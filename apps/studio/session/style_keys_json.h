@@ -7,10 +7,7 @@
 
 namespace scumble {
 
-// A value as JSON has it; infinities, which JSON lacks, are null.
-nlohmann::ordered_json JsonOf(const KeyValue& value);
-
-// An array of objects: name, default (a value), help, kind, least, most, step, choices, group, needs_preparing. least,
+// An array of objects: name, default (a value; infinities, which JSON lacks, are null), help, kind, least, most, step, choices, group, needs_preparing. least,
 // most and step are null where the kind is no number, choices where it is no choice. `unlimited` is true where values
 // beyond most are taken, too: most is then what a slider ends at.
 nlohmann::ordered_json StyleKeysJson();
