@@ -452,6 +452,7 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
       if (!wanted.Has(layer)) guides.Remove(layer);
     }
   }
+  internal::ClampCoverage(guides);
   internal::ClearBackground(guides);
   if (guides.Has(Layer::kNormal)) {
     if (guides.Has(Layer::kCoverage) && internal::LookPacked(guides)) {

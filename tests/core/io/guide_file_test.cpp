@@ -535,6 +535,33 @@ TEST(GuideFile, ShortNormalsAreNormalisedAndZeroOnesRefused) {
   }
 }
 
+// What pixel filters leave: coverage beside 0 and 1, and normals premultiplied by little coverage.
+TEST(GuideFile, FilteredRimsAreTaken) {
+  const TemporaryFolder folder;
+  const auto read_with = [&](const char* compression, std::vector<float> coverage, std::vector<float> lengths) {
+    OIIO::ImageSpec spec(static_cast<int>(coverage.size()), 1, 1, OIIO::TypeDesc::FLOAT);
+    spec.attribute("compression", compression);
+    WriteExr(folder / "rim.exr", spec, kNormalAndA, [&](std::size_t c, std::size_t i) {
+      return c == 0 ? coverage[i] : c == 1 ? lengths[i] : 0.0f;
+    });
+    return ReadGuides(folder / "rim.exr", OnlyNormals());
+  };
+  for (const char* compression : {"zip", "dwaa"}) {  // the plain reader's, and the library's
+    const auto read = read_with(compression, {std::nextafter(1.0f, 2.0f), 1.07f, 0.0625f, 0.001f, -0.03f},
+                                {1.0f, 1.07f, 0.05f, 0.0005f, -0.03f});
+    ASSERT_TRUE(read) << compression << ": " << read.error().message;
+    const auto coverage = read->Plane(Layer::kCoverage);
+    EXPECT_EQ(coverage[0], 1.0f);
+    EXPECT_EQ(coverage[1], 1.0f);
+    EXPECT_NEAR(coverage[2], 0.0625f, 1e-3f);
+    EXPECT_EQ(coverage[4], 0.0f);
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(read->Vec3(Layer::kNormal, i), glm::vec3(1, 0, 0)) << i;
+    EXPECT_EQ(read->Vec3(Layer::kNormal, 4), glm::vec3(0.0f)) << "background";
+    ExpectRefusal(read_with(compression, {2.0f}, {1.0f}), ErrorKind::kInput, {"layer A is outside 0 to 1"});
+    ExpectRefusal(read_with(compression, {0.5f}, {0.0f}), ErrorKind::kInput, {"layer normal"});
+  }
+}
+
 TEST(GuideFile, AnEmptySetIsNotWritten) {
   const TemporaryFolder folder;
   EXPECT_FALSE(WriteGuides(folder / "g.exr", GuideSet()));
