@@ -45,10 +45,11 @@ struct FileContents {
   std::vector<FoundMatte> mattes;
   std::vector<FoundLight> lights;
   std::map<std::string, std::string> manifests;  // by the matte's name: "ViewLayer.CryptoObject"
-  std::string all_names;                         // for messages
+  std::vector<std::string> names;                // of all channels
   std::string dwa;  // dwaa or dwab, where a part with depth, position or a matte has that compression
   bool has_half = false;
   bool from_blender = false;
+  bool is_ours = false;  // Scumble wrote it
 };
 
 // The manifests of a part's header, which stand under cryptomatte/KEY/manifest beside cryptomatte/KEY/name.
@@ -74,14 +75,17 @@ std::string FullName(const std::string& part, const std::string& channel) {
 // Names that a colour may have as well: they count where no other of the file means the same.
 bool IsAlsoColor(const std::string& channel, const ChannelMeaning& meaning) {
   const std::string name = internal::Upper(channel);
-  if (meaning.layer == Layer::kCoverage) return name.ends_with("C.A");
-  return meaning.layer == Layer::kNormal && std::string_view("RGB").find(name.back()) != std::string_view::npos;
+  const auto ends_in_one_of = [&](std::string_view letters) { return letters.find(name.back()) != letters.npos; };
+  if (meaning.layer == Layer::kCoverage) {
+    return name.ends_with("C.A") || name.ends_with("RGBA.A") || name.ends_with("BEAUTY.A");
+  }
+  if (meaning.layer == Layer::kDepth) return ends_in_one_of("RY");
+  return meaning.layer == Layer::kNormal && ends_in_one_of("RGB");
 }
 
 Expected<FileContents> Survey(OIIO::ImageInput& input, const std::string& name) {
   FileContents contents;
   contents.spec = input.spec(0);
-  std::vector<std::string> names;
   std::vector<FoundChannel> of_colors;
   for (int subimage = 0; input.seek_subimage(subimage, 0); ++subimage) {
     const OIIO::ImageSpec spec = input.spec(subimage);
@@ -94,7 +98,7 @@ Expected<FileContents> Survey(OIIO::ImageInput& input, const std::string& name) 
     for (int c = 0; c < spec.nchannels; ++c) {
       const std::string part(spec.get_string_attribute("oiio:subimagename"));
       const std::string channel = FullName(part, spec.channelnames[c]);
-      names.push_back(channel);
+      contents.names.push_back(channel);
       contents.has_half = contents.has_half || spec.channelformat(c) == OIIO::TypeDesc::HALF;
       if (channel.find("Combined.R") != std::string::npos) contents.from_blender = true;
       if (auto matte = ParseMatteChannel(channel)) {
@@ -112,9 +116,9 @@ Expected<FileContents> Survey(OIIO::ImageInput& input, const std::string& name) 
     FindManifests(spec, contents);
   }
   contents.channels.insert(contents.channels.end(), of_colors.begin(), of_colors.end());
-  contents.all_names = internal::ListOfChannels(names);
   if (contents.spec.get_string_attribute("Software").substr(0, 7) == "Blender") contents.from_blender = true;
-  if (!contents.spec.get_string_attribute("scumble:generator").empty()) contents.from_blender = false;
+  contents.is_ours = !contents.spec.get_string_attribute("scumble:generator").empty();
+  if (contents.is_ours) contents.from_blender = false;
   OIIO::ImageSpec window = contents.spec;
   window.width = window.full_width, window.height = window.full_height;
   SCUMBLE_RETURN_IF_ERROR(internal::CheckSize(window, name));
@@ -152,7 +156,21 @@ Expected<std::string> ChoosePrefix(const FileContents& contents, const std::stri
   return prefixes.empty() ? std::string() : *prefixes.begin();
 }
 
-// The channels that fill the wanted layers: those of the chosen view layer, else those without one.
+// The prefix of the file's only alpha that is no view layer's: a renderer's picture may have any name. Empty where
+// there are several.
+std::string PrefixOfOnlyAlpha(const FileContents& contents) {
+  const std::set<std::string> view_layers = ViewLayers(contents);
+  std::set<std::string> prefixes;
+  for (const FoundChannel& found : contents.channels) {
+    const std::string& prefix = found.meaning.prefix;
+    const bool is_matte = internal::Upper(prefix).find("CRYPTO") != std::string::npos;
+    if (found.meaning.layer == Layer::kCoverage && !is_matte && !view_layers.count(prefix)) prefixes.insert(prefix);
+  }
+  return prefixes.size() == 1 ? *prefixes.begin() : std::string();
+}
+
+// The channels that fill the wanted layers: those of the chosen view layer, else those without one. Coverage may be the
+// file's only alpha.
 std::vector<FoundChannel> SelectChannels(const FileContents& contents, const std::string& prefix,
                                          const LayerSet& wanted) {
   std::vector<FoundChannel> selected;
@@ -169,6 +187,7 @@ std::vector<FoundChannel> SelectChannels(const FileContents& contents, const std
   take(prefix);
   for (const FoundChannel& found : selected) open.Remove(found.meaning.layer);  // no layer is mixed from two
   if (!prefix.empty()) take("");
+  else if (open.Has(Layer::kCoverage) && !contents.from_blender) take(PrefixOfOnlyAlpha(contents));
   return selected;
 }
 
@@ -194,6 +213,22 @@ std::string PartsOf(const LayerSet& missing, const std::vector<FoundChannel>& ch
     if (!names.empty()) parts += "; of " + std::string(info.name) + " it holds " + names + " only";
   }
   return parts;
+}
+
+// ". Known names are depth.Z, Z, … for depth; it also holds Pz" for a file of an unknown program.
+std::string KnownNames(const LayerSet& missing, const FileContents& contents) {
+  std::string known;
+  for (const LayerInfo& info : AllLayers()) {
+    if (!missing.Has(info.layer)) continue;
+    known += (known.empty() ? ". Known names are " : "; ") +
+             internal::ListOfChannels(ChannelNames(info.layer, 0)) + " for " + info.name;
+  }
+  std::vector<std::string> others;  // of no meaning, or of layers of which no prefix is the one to read
+  for (const std::string& name : contents.names) {
+    const auto meaning = ParseChannelName(name);
+    if (!ParseMatteChannel(name) && (!meaning || missing.Has(meaning->layer))) others.push_back(name);
+  }
+  return known + (others.empty() ? "" : "; it also holds " + internal::ListOfChannels(others));
 }
 
 // A channel and the plane of the picture's size that it fills.
@@ -430,7 +465,8 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
     for (const LayerInfo& info : AllLayers()) every.Add(info.layer);
     const LayerSet there = CompleteLayers(SelectChannels(contents, prefix, every));
     return InputError(name + " has no layer " + missing.ToString() + remedy + ". It has " +
-                      (there.empty() ? "none" : there.ToString()) + PartsOf(missing, channels));
+                      (there.empty() ? "none" : there.ToString()) + PartsOf(missing, channels) +
+                      (contents.from_blender || contents.is_ours ? "" : KnownNames(missing, contents)));
   }
   GuideSet guides(contents.spec.full_width, contents.spec.full_height);
   for (const LayerInfo& info : AllLayers()) {
@@ -478,7 +514,7 @@ Expected<GuideFileInfo> InspectGuides(const std::filesystem::path& path) {
                      !contents.mattes.empty(),
                      0,
                      {},
-                     contents.all_names,
+                     internal::ListOfChannels(contents.names),
                      {}};
   std::set<std::string> prefixes = ViewLayers(contents);
   if (prefixes.empty()) prefixes.insert("");

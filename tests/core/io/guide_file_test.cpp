@@ -356,6 +356,37 @@ TEST(GuideFile, AMissingLayerIsNamedWithWhatThereIs) {
   ExpectRefusal(ReadGuides(folder / "half.exr", OnlyNormals()), ErrorKind::kInput, {"no layer normal", "normal.Y"});
 }
 
+TEST(GuideFile, NamesOfManyRenderersAreKnown) {
+  const TemporaryFolder folder;
+  const auto read_with = [&](std::vector<std::string> names) {
+    names.insert(names.end(), {"N.X", "N.Y", "N.Z"});
+    const std::size_t z = names.size() - 1;
+    WriteExr(folder / "names.exr", OIIO::ImageSpec(2, 2, 1, OIIO::TypeDesc::FLOAT), names,
+             [&](std::size_t c, std::size_t) { return c == z || c < 2 ? 1.0f : c < z - 2 ? 0.5f : 0.0f; });
+    GuideReadOptions options = OnlyNormals();
+    options.required.Add(Layer::kDepth);
+    return ReadGuides(folder / "names.exr", options);
+  };
+  for (const char* alpha : {"A", "RGBA.A", "beauty.A", "Picture.A"}) {
+    for (const char* depth : {"Depth.R", "depth.Y", "zDepth.R", "Z.Z", "zDepth"}) {
+      const auto read = read_with({alpha, depth});
+      ASSERT_TRUE(read) << alpha << ", " << depth << ": " << read.error().message;
+      EXPECT_EQ(read->Plane(Layer::kCoverage)[3], 1.0f) << alpha;
+      EXPECT_EQ(read->Plane(Layer::kDepth)[3], 1.0f) << depth;
+    }
+  }
+  for (const std::vector<std::string>& colors :
+       {std::vector<std::string>{"A", "Z", "Depth.R", "RGBA.A"}, {"A", "Z", "Depth.R", "diffuse.A"}}) {
+    const auto read = read_with(colors);
+    ASSERT_TRUE(read) << read.error().message;
+    EXPECT_EQ(read->Plane(Layer::kDepth)[0], 1.0f) << "a colour is not it where there is another";
+    EXPECT_EQ(read->Plane(Layer::kCoverage)[0], 1.0f);
+  }
+  ExpectRefusal(read_with({"diffuse.A", "specular.A", "Pz"}), ErrorKind::kInput,
+                {"no layer A, depth", "Known names are A, alpha, Combined.A", "for A; depth.Z, Z, depth",
+                 "it also holds", "Pz", "diffuse.A", "specular.A"});
+}
+
 TEST(GuideFile, OneOfSeveralViewLayers) {
   const TemporaryFolder folder;
   WriteExr(folder / "two.exr", OIIO::ImageSpec(3, 2, 1, OIIO::TypeDesc::FLOAT),
