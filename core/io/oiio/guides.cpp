@@ -186,8 +186,10 @@ std::vector<FoundChannel> SelectChannels(const FileContents& contents, const std
   };
   take(prefix);
   for (const FoundChannel& found : selected) open.Remove(found.meaning.layer);  // no layer is mixed from two
-  if (!prefix.empty()) take("");
-  else if (open.Has(Layer::kCoverage) && !contents.from_blender) take(PrefixOfOnlyAlpha(contents));
+  if (!prefix.empty())
+    take("");
+  else if (open.Has(Layer::kCoverage) && !contents.from_blender)
+    take(PrefixOfOnlyAlpha(contents));
   return selected;
 }
 
@@ -220,13 +222,16 @@ std::string KnownNames(const LayerSet& missing, const FileContents& contents) {
   std::string known;
   for (const LayerInfo& info : AllLayers()) {
     if (!missing.Has(info.layer)) continue;
-    known += (known.empty() ? ". Known names are " : "; ") +
-             internal::ListOfChannels(ChannelNames(info.layer, 0)) + " for " + info.name;
+    std::vector<std::string> names = ChannelNames(info.layer, 0);
+    if (info.layer == Layer::kObject) names.push_back("Cryptomatte crypto_object");
+    if (info.layer == Layer::kMaterial) names.push_back("Cryptomatte crypto_material");
+    known += (known.empty() ? ". Known names are " : "; ") + internal::ListOfChannels(names) + " for " + info.name;
   }
-  std::vector<std::string> others;  // of no meaning, or of layers of which no prefix is the one to read
+  std::vector<std::string> others;  // but R, G and B: of no meaning, or of layers of which no prefix is the one to read
   for (const std::string& name : contents.names) {
     const auto meaning = ParseChannelName(name);
-    if (!ParseMatteChannel(name) && (!meaning || missing.Has(meaning->layer))) others.push_back(name);
+    if (name.size() > 1 && !ParseMatteChannel(name) && (!meaning || missing.Has(meaning->layer)))
+      others.push_back(name);
   }
   return known + (others.empty() ? "" : "; it also holds " + internal::ListOfChannels(others));
 }
@@ -306,11 +311,21 @@ void ReadHeader(const OIIO::ImageSpec& spec, GuideSet& guides) {
   internal::TakeHeader(texts, guides);
 }
 
-// The Cryptomattes of a view layer, their planes not yet read.
-Expected<BlenderMattes> MattesOf(const FileContents& contents, const std::string& prefix, const std::string& name) {
+// The prefix of the Cryptomattes that belong to a view layer. Those of Blender always have the view layer's.
+std::string MattePrefix(const FileContents& contents, const std::string& prefix) {
+  const bool has_its_own = std::any_of(contents.mattes.begin(), contents.mattes.end(),
+                                       [&](const FoundMatte& found) { return found.meaning.prefix == prefix; });
+  return has_its_own || contents.from_blender ? prefix : "";
+}
+
+// The Cryptomattes of a prefix that stand for these layers, their planes not yet read. Coverage comes from all ranks of
+// Blender's; of others the first two are enough.
+Expected<BlenderMattes> MattesOf(const FileContents& contents, const std::string& prefix, const LayerSet& layers,
+                                 const std::string& name) {
   BlenderMattes mattes;
   for (const FoundMatte& found : contents.mattes) {
-    if (found.meaning.prefix != prefix) continue;
+    if (found.meaning.prefix != prefix || !layers.Has(found.meaning.layer)) continue;
+    if (!contents.from_blender && found.meaning.index >= 4) continue;
     if (!found.is_float) {
       return InputError(name + ": its Cryptomatte " + found.meaning.matte +
                         " is stored in half floats, which no id survives; write it in 32-bit float");
@@ -335,8 +350,10 @@ Expected<BlenderMattes> MattesOf(const FileContents& contents, const std::string
 void ReadMattesToo(const FileContents& contents, const std::string& prefix, BlenderMattes& mattes,
                    std::vector<PlaneRead>& reads) {
   for (const FoundMatte& found : contents.mattes) {
-    if (found.meaning.prefix != prefix || !mattes.count(found.meaning.layer)) continue;
-    auto& plane = mattes.at(found.meaning.layer).ranks[static_cast<std::size_t>(found.meaning.index)];
+    const auto matte = mattes.find(found.meaning.layer);
+    const auto index = static_cast<std::size_t>(found.meaning.index);
+    if (found.meaning.prefix != prefix || matte == mattes.end() || index >= matte->second.ranks.size()) continue;
+    auto& plane = matte->second.ranks[index];
     reads.push_back({found.subimage, found.channel, plane});
   }
 }
@@ -429,13 +446,21 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
     if (!options.blender_camera.empty()) {
       SCUMBLE_ASSIGN(camera, ReadBlenderCamera(options.blender_camera));
     }
-    SCUMBLE_ASSIGN(mattes, MattesOf(contents, prefix, name));
+    SCUMBLE_ASSIGN(mattes, MattesOf(contents, prefix, {Layer::kObject, Layer::kMaterial}, name));
     // One Cryptomatte is always read: it has the coverage that an opaque film's alpha lacks.
     if (!wanted.Has(Layer::kMaterial) && mattes.count(Layer::kObject)) mattes.erase(Layer::kMaterial);
     read_along.Add({Layer::kDepth, Layer::kPosition});
   }
   const std::vector<FoundChannel> channels = SelectChannels(contents, prefix, read_along);
   LayerSet complete = CompleteLayers(channels);
+  const std::string matte_prefix = MattePrefix(contents, prefix);
+  if (!contents.from_blender) {
+    LayerSet without_ids;
+    for (const Layer layer : {Layer::kObject, Layer::kMaterial}) {
+      if (wanted.Has(layer) && !complete.Has(layer)) without_ids.Add(layer);
+    }
+    SCUMBLE_ASSIGN(mattes, MattesOf(contents, matte_prefix, without_ids, name));
+  }
   LayerSet missing = options.required;
   for (const LayerInfo& info : AllLayers()) {
     const bool lit = !LightFor(contents, light_layer, info.layer).empty();
@@ -463,7 +488,8 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
     if (others.empty()) remedy += options.remedy;
     LayerSet every;
     for (const LayerInfo& info : AllLayers()) every.Add(info.layer);
-    const LayerSet there = CompleteLayers(SelectChannels(contents, prefix, every));
+    LayerSet there = CompleteLayers(SelectChannels(contents, prefix, every));
+    for (const auto& [layer, matte] : mattes) there.Add(layer);
     return InputError(name + " has no layer " + missing.ToString() + remedy + ". It has " +
                       (there.empty() ? "none" : there.ToString()) + PartsOf(missing, channels) +
                       (contents.from_blender || contents.is_ours ? "" : KnownNames(missing, contents)));
@@ -478,7 +504,7 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
     if (!complete.Has(found.meaning.layer) || mattes.count(found.meaning.layer)) continue;
     reads.push_back({found.subimage, found.channel, guides.Plane(found.meaning.layer, found.meaning.component)});
   }
-  ReadMattesToo(contents, prefix, mattes, reads);
+  ReadMattesToo(contents, matte_prefix, mattes, reads);
   const BlenderLight light = LightOf(contents, light_layer, wanted, complete, reads);
   SCUMBLE_RETURN_IF_ERROR(ReadPlanes(*input, reads, name));
   ReadHeader(contents.spec, guides);
@@ -486,6 +512,11 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
     SCUMBLE_RETURN_IF_ERROR(ConvertBlenderPasses(camera, mattes, light, name, guides));
     for (const Layer layer : {Layer::kDepth, Layer::kPosition}) {
       if (!wanted.Has(layer)) guides.Remove(layer);
+    }
+  } else {
+    for (const auto& [layer, matte] : mattes) {
+      auto& names = layer == Layer::kObject ? guides.object_names : guides.material_names;
+      SCUMBLE_RETURN_IF_ERROR(NameMattes(matte.ranks, matte.manifest, name, guides.Plane(layer), names));
     }
   }
   internal::ClampCoverage(guides);
@@ -521,7 +552,8 @@ Expected<GuideFileInfo> InspectGuides(const std::filesystem::path& path) {
   for (const std::string& prefix : prefixes) {
     info.layers[prefix] = CompleteLayers(SelectChannels(contents, prefix, all));
     for (const FoundMatte& found : contents.mattes) {
-      if (info.from_blender && found.meaning.prefix == prefix) info.layers[prefix].Add(found.meaning.layer);
+      if (!contents.is_ours && found.meaning.prefix == MattePrefix(contents, prefix))
+        info.layers[prefix].Add(found.meaning.layer);
     }
     for (const Layer layer : {Layer::kLuminance, Layer::kShadow}) {
       if (!LightFor(contents, prefix, layer).empty()) info.layers[prefix].Add(layer);
