@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 
@@ -33,7 +34,8 @@ struct GuideReadOptions {
   LayerSet optional;                    // read where present
   std::string view_layer;               // which one of several in a multilayer file
   std::string light_layer;  // of a Blender render: the view layer with the passes of light; empty: that one too
-  std::string remedy;       // the caller's remedy without depth and object, shown where nothing else is missing
+  // The caller's remedy without the layers that are missing, for the end of a message's sentence; may be empty.
+  std::function<std::string(const LayerSet& missing)> remedy;
   std::filesystem::path blender_camera;  // the .camera file of a Blender render; empty: the camera is solved
 };
 

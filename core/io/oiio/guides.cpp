@@ -482,10 +482,8 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
     if (solves_camera && missing.Has(Layer::kPosition)) {
       remedy += ", or give the camera with --camera FILE, which does without Position";
     }
-    LayerSet others = missing;
-    others.Remove(Layer::kObject);
-    if (!solves_camera) others.Remove(Layer::kDepth);
-    if (others.empty()) remedy += options.remedy;
+    const bool is_for_camera = solves_camera && (missing.Has(Layer::kDepth) || missing.Has(Layer::kPosition));
+    if (options.remedy && !is_for_camera) remedy += options.remedy(missing);
     LayerSet every;
     for (const LayerInfo& info : AllLayers()) every.Add(info.layer);
     LayerSet there = CompleteLayers(SelectChannels(contents, prefix, every));
