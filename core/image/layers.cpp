@@ -56,16 +56,48 @@ struct Alias {
   int component;
 };
 constexpr Alias kAliases[] = {
-    {"alpha", Layer::kCoverage, 0},     {"Combined.A", Layer::kCoverage, 0}, {"N.X", Layer::kNormal, 0},
-    {"N.Y", Layer::kNormal, 1},         {"N.Z", Layer::kNormal, 2},          {"normals.X", Layer::kNormal, 0},
-    {"normals.Y", Layer::kNormal, 1},   {"normals.Z", Layer::kNormal, 2},    {"Z", Layer::kDepth, 0},
-    {"depth", Layer::kDepth, 0},        {"depth.V", Layer::kDepth, 0},       {"IndexOB.X", Layer::kObject, 0},
-    {"IndexMA.X", Layer::kMaterial, 0}, {"P.X", Layer::kPosition, 0},        {"P.Y", Layer::kPosition, 1},
-    {"P.Z", Layer::kPosition, 2},       {"DiffCol.R", Layer::kAlbedo, 0},    {"DiffCol.G", Layer::kAlbedo, 1},
-    {"DiffCol.B", Layer::kAlbedo, 2},   {"C.A", Layer::kCoverage, 0},        {"N.R", Layer::kNormal, 0},
-    {"N.G", Layer::kNormal, 1},         {"N.B", Layer::kNormal, 2},          {"normal.R", Layer::kNormal, 0},
-    {"normal.G", Layer::kNormal, 1},    {"normal.B", Layer::kNormal, 2},     {"normals.R", Layer::kNormal, 0},
-    {"normals.G", Layer::kNormal, 1},   {"normals.B", Layer::kNormal, 2},
+    {"alpha", Layer::kCoverage, 0},
+    {"Combined.A", Layer::kCoverage, 0},
+    {"C.A", Layer::kCoverage, 0},
+    {"RGBA.A", Layer::kCoverage, 0},
+    {"beauty.A", Layer::kCoverage, 0},
+    {"N.X", Layer::kNormal, 0},
+    {"N.Y", Layer::kNormal, 1},
+    {"N.Z", Layer::kNormal, 2},
+    {"normals.X", Layer::kNormal, 0},
+    {"normals.Y", Layer::kNormal, 1},
+    {"normals.Z", Layer::kNormal, 2},
+    {"N.R", Layer::kNormal, 0},
+    {"N.G", Layer::kNormal, 1},
+    {"N.B", Layer::kNormal, 2},
+    {"normal.R", Layer::kNormal, 0},
+    {"normal.G", Layer::kNormal, 1},
+    {"normal.B", Layer::kNormal, 2},
+    {"normals.R", Layer::kNormal, 0},
+    {"normals.G", Layer::kNormal, 1},
+    {"normals.B", Layer::kNormal, 2},
+    {"Z", Layer::kDepth, 0},
+    {"depth", Layer::kDepth, 0},
+    {"depth.V", Layer::kDepth, 0},
+    {"depth.R", Layer::kDepth, 0},
+    {"depth.Y", Layer::kDepth, 0},
+    {"Z.Z", Layer::kDepth, 0},
+    {"Z.R", Layer::kDepth, 0},
+    {"zDepth", Layer::kDepth, 0},
+    {"zDepth.Z", Layer::kDepth, 0},
+    {"zDepth.R", Layer::kDepth, 0},
+    {"object", Layer::kObject, 0},
+    {"object_id.X", Layer::kObject, 0},
+    {"IndexOB.X", Layer::kObject, 0},
+    {"material", Layer::kMaterial, 0},
+    {"material_id.X", Layer::kMaterial, 0},
+    {"IndexMA.X", Layer::kMaterial, 0},
+    {"P.X", Layer::kPosition, 0},
+    {"P.Y", Layer::kPosition, 1},
+    {"P.Z", Layer::kPosition, 2},
+    {"DiffCol.R", Layer::kAlbedo, 0},
+    {"DiffCol.G", Layer::kAlbedo, 1},
+    {"DiffCol.B", Layer::kAlbedo, 2},
 };
 
 bool EqualIgnoringCase(std::string_view a, std::string_view b) {
@@ -120,6 +152,14 @@ Expected<LayerSet> ParseLayers(std::string_view comma_separated) {
     if (!known) return UsageError("unknown layer '" + std::string(word) + "'; there are " + names);
   }
   return set;
+}
+
+std::vector<std::string> ChannelNames(Layer layer, int component) {
+  std::vector<std::string> names = {Info(layer).channels[static_cast<std::size_t>(component)]};
+  for (const Alias& alias : kAliases) {
+    if (alias.layer == layer && alias.component == component) names.push_back(alias.suffix);
+  }
+  return names;
 }
 
 std::optional<ChannelMeaning> ParseChannelName(std::string_view name) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 
@@ -33,18 +34,20 @@ struct GuideReadOptions {
   LayerSet optional;                    // read where present
   std::string view_layer;               // which one of several in a multilayer file
   std::string light_layer;  // of a Blender render: the view layer with the passes of light; empty: that one too
-  std::string remedy;       // the caller's remedy without depth and object, shown where nothing else is missing
+  // The caller's remedy without the layers that are missing, for the end of a message's sentence; may be empty.
+  std::function<std::string(const LayerSet& missing)> remedy;
   std::filesystem::path blender_camera;  // the .camera file of a Blender render; empty: the camera is solved
 };
 
 // Reads only the channels that are asked for; matches them by name (ParseChannelName). Fragments are read from files
 // that WriteGuides made, and with them always the ids by which their surfaces are told apart; fragments that are
 // damaged or do not fit their file are an error. Of guides that WriteGuides made, ids are always those of the layers
-// object and material; a Cryptomatte beside them is passed over. The result is validated: normals whose length is off
-// by more than a half float's rounding are normalised, and what GuideSet::Validate refuses is an error. What Blender
-// wrote is converted as core/io/blender/blender_passes.h says: its camera comes from `blender_camera`, or from its
-// Position and Depth passes; names from Cryptomatte; luminance and shadow from its passes of light
-// (core/io/blender/render_light.h).
+// object and material; a Cryptomatte beside them is passed over. Where another program wrote no ids, object, material
+// and their names come from Cryptomatte, if they are wanted. The result is validated: coverage outside 0 to 1 by an
+// eighth or less is clamped, normals whose length is off by more than a half float's rounding are normalised, and what
+// GuideSet::Validate refuses is an error. What Blender wrote is converted as core/io/blender/blender_passes.h says: its
+// camera comes from `blender_camera`, or from its Position and Depth passes; names from Cryptomatte; luminance and
+// shadow from its passes of light (core/io/blender/render_light.h).
 Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideReadOptions& options = {});
 
 // The content of a guide file, without its pixels.

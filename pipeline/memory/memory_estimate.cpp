@@ -225,7 +225,8 @@ void AddGuidesRead(const GuideFileInfo& info, const GuideReadOptions& read, Memo
     need.Take("fragments", of_fragment * info.fragments);
   }
   need.Take("guides", kFloat * ChannelsOf(layers) * pixels);
-  const bool plain = !info.from_blender && info.layers.size() == 1 && info.layers.begin()->first.empty();
+  const bool from_matte = info.has_cryptomatte && !info.header.attributes.count("scumble:generator");
+  const bool plain = !info.from_blender && !from_matte && info.layers.size() == 1 && info.layers.begin()->first.empty();
   if (plain) return;
   // Another reader: all channels side by side, then by layer.
   Bytes channels = 1;

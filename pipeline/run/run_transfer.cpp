@@ -17,13 +17,11 @@
 namespace scumble {
 namespace {
 
-GuideReadOptions ReadOptions(const TransferRequest& request, const StyleSet& styles) {
+GuideReadOptions ReadOptions(const TransferRequest& request) {
   GuideReadOptions read;
   read.view_layer = request.view_layer;
   read.light_layer = request.light_layer;
   read.blender_camera = request.camera;
-  if (styles.first().transfer.edge_aware)
-    read.remedy = "; --set transfer.edge_aware=false does without depth and object";
   return read;
 }
 
@@ -36,13 +34,18 @@ std::string ChosenOf(const TransferRequest& request) {
 }
 
 // Adds what the styles read, those included that the scene of a guide file asks for. A file that cannot be read asks
-// for nothing here; reading it is an error later. Layers of names are optional: a render may have one of them.
+// for nothing here; reading it is an error later. Layers of names are optional: a render may have one of them. `read`
+// is good as long as `styles`.
 Status RequireOfFile(StyleSet& styles, const std::string& file, int upsample, GuideReadOptions& read) {
   SceneStyleRequests of_scene;
   if (styles.options.scene_styles) {
     if (const Expected<GuideFileInfo> info = InspectGuides(file)) of_scene = SceneStyleRequestsOf(info->header);
   }
   SCUMBLE_ASSIGN(read.required, StyleLayers(styles, of_scene, file));
+  read.remedy = [&styles](const LayerSet& missing) {
+    const std::string sets = SetsWithout(styles, missing);
+    return sets.empty() ? sets : "; " + sets + " does without " + missing.ToString();
+  };
   read.optional = styles.LayersOfNames(of_scene);
   // Upsampling looks for edges in them, whatever the style reads, as it does in guides that are made in memory.
   if (upsample > 1) read.optional.Add({Layer::kDepth, Layer::kObject});
@@ -172,7 +175,7 @@ Expected<RunReport> RunTransfer(TransferRequest request, const SequenceListener&
   }
   SCUMBLE_RETURN_IF_ERROR(CheckFiles(files, request.picture, sequence, styles));
   const FilesCheck check_files = CheckOfSceneStyles(files, request.picture, sequence, styles);
-  GuideReadOptions read = ReadOptions(request, styles);
+  GuideReadOptions read = ReadOptions(request);
   if (sequence) {
     SCUMBLE_ASSIGN(auto choice, ChooseForSequence(request, *sequence, styles, read, context));
     SCUMBLE_ASSIGN(RunReport report,

@@ -175,6 +175,48 @@ Expected<LayerSet> RequiredLayers(StyleSet& set, const SceneStyleRequests& reque
 
 namespace {
 
+// A setting that reads layers, and how to do without.
+struct Reader {
+  const char* set;
+  void (*off)(TransferSettings&);
+};
+constexpr Reader kReaders[] = {
+    {"transfer.edge_aware=false", [](TransferSettings& settings) { settings.edge_aware = false; }},
+    {"transfer.variety=0", [](TransferSettings& settings) { settings.variety = 0.0; }},
+    {"transfer.coherent=false", [](TransferSettings& settings) { settings.coherent = false; }},
+    {"transfer.edge=exact", [](TransferSettings& settings) { settings.edge = EdgeMode::kExact; }},
+};
+
+// Whether a style, at one frame or another, or a finishing pass reads one of the layers if these readers are off.
+bool ReadsWithout(const StyleSet& set, const LayerSet& layers, const std::vector<const Reader*>& off) {
+  LayerSet read = LayersOverTime(set.finish);
+  for (Style style : set.styles) {
+    for (const Reader* reader : off) reader->off(style.transfer);
+    const Expected<LayerSet> of_style = LayersOverTime(style);
+    read.Add(of_style ? *of_style : layers);
+  }
+  return std::any_of(AllLayers().begin(), AllLayers().end(),
+                     [&](const LayerInfo& info) { return layers.Has(info.layer) && read.Has(info.layer); });
+}
+
+}  // namespace
+
+std::string SetsWithout(const StyleSet& set, const LayerSet& layers) {
+  std::vector<const Reader*> off;
+  for (const Reader& reader : kReaders) off.push_back(&reader);
+  if (ReadsWithout(set, layers, off)) return "";
+  for (const Reader& reader : kReaders) {  // those that may as well stay on
+    std::vector<const Reader*> fewer = off;
+    std::erase(fewer, &reader);
+    if (!ReadsWithout(set, layers, fewer)) off = fewer;
+  }
+  std::string sets;
+  for (const Reader* reader : off) sets += (sets.empty() ? "--set " : " --set ") + std::string(reader->set);
+  return sets;
+}
+
+namespace {
+
 // Whether a known key and '=' begin there.
 bool HasKeyAt(const std::string& text, std::size_t begin) {
   const std::size_t equals = text.find('=', begin);

@@ -69,6 +69,10 @@ Expected<LayerSet> StyleLayers(StyleSet& set, const SceneStyleRequests& requests
 // StyleLayers and LayersOfNames: what guides must be made with.
 Expected<LayerSet> RequiredLayers(StyleSet& set, const SceneStyleRequests& requests, const std::string& file);
 
+// The fewest options of edges and repetition, "--set transfer.edge_aware=false --set transfer.variety=0", with which
+// the open styles read none of these layers. Empty where more than these options reads them.
+std::string SetsWithout(const StyleSet& set, const LayerSet& layers);
+
 // Drops the styles that a scene asked for, before another scene is painted.
 void CloseSceneStyles(StyleSet& set);
 

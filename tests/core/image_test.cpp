@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <set>
 #include <string>
@@ -175,6 +177,24 @@ TEST(ChannelNames, EveryChannelOfTheTableIsItself) {
     }
   }
   EXPECT_EQ(index, kLayerCount);
+}
+
+TEST(ChannelNames, ThePageListsThoseOfOtherPrograms) {
+  std::ifstream file(SCUMBLE_SOURCE_DIR "/docs/guides.md");
+  const std::string page{std::istreambuf_iterator<char>(file), {}};
+  for (const LayerInfo& info : AllLayers()) {
+    std::string names;
+    for (const std::string& name : ChannelNames(info.layer, 0)) {
+      names += (names.empty() ? "`" : ", `") + name + "`";
+      const auto found = ParseChannelName(name);
+      ASSERT_TRUE(found) << name;
+      EXPECT_EQ(found->layer, info.layer) << name;
+      EXPECT_EQ(found->prefix, "") << name;
+    }
+    if (ChannelNames(info.layer, 0).size() == 1) continue;  // no other program's
+    const std::string row = std::string("| `") + info.name + "` | " + names + " |\n";
+    EXPECT_NE(page.find(row), std::string::npos) << "docs/guides.md lacks: " << row;
+  }
 }
 
 TEST(LayerSets, AddRemoveContain) {

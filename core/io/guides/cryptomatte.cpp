@@ -78,6 +78,17 @@ std::optional<std::string> Unescape(std::string_view raw) {
   return text;
 }
 
+// Blender's and other renderers' names: "CryptoObject", "crypto_object", "CRYPTO_MATERIAL".
+std::optional<Layer> LayerOfMatte(std::string_view kind) {
+  std::string letters;
+  for (const char c : kind) {
+    if (c != '_') letters += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  }
+  if (letters == "cryptoobject") return Layer::kObject;
+  if (letters == "cryptomaterial") return Layer::kMaterial;
+  return std::nullopt;
+}
+
 struct Entry {
   std::string name;
   std::uint32_t hash = 0;
@@ -144,10 +155,10 @@ std::optional<MatteChannel> ParseMatteChannel(std::string_view name) {
   if (level >= kMaxLevels) return std::nullopt;
   const std::size_t dot = matte.rfind('.');
   const std::string_view kind = dot == std::string_view::npos ? matte : matte.substr(dot + 1);
-  if (kind != "CryptoObject" && kind != "CryptoMaterial") return std::nullopt;
+  const std::optional<Layer> layer = LayerOfMatte(kind);
+  if (!layer) return std::nullopt;
   return MatteChannel{std::string(matte), std::string(dot == std::string_view::npos ? "" : matte.substr(0, dot)),
-                      kind == "CryptoObject" ? Layer::kObject : Layer::kMaterial,
-                      4 * level + static_cast<int>(component)};
+                      *layer, 4 * level + static_cast<int>(component)};
 }
 
 std::uint32_t MatteHash(std::string_view name) {

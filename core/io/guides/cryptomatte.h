@@ -1,6 +1,6 @@
-// Cryptomatte as Blender writes it: ids with coverage in ranks, and in the header a manifest with their names.
-// Friedman and Jones, "Fully automatic ID mattes with support for motion blur and transparency", SIGGRAPH 2015 posters;
-// the file's form is Psyop's specification 1.2.0.
+// Cryptomatte as Blender and other renderers write it: ids with coverage in ranks, and in the header a manifest with
+// their names. Friedman and Jones, "Fully automatic ID mattes with support for motion blur and transparency", SIGGRAPH
+// 2015 posters; the file's form is Psyop's specification 1.2.0.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +31,8 @@ struct MatteChannel {
 inline constexpr const char* kShownObjectIds = "object_id.X";
 inline constexpr const char* kShownMaterialIds = "material_id.X";
 
-// Nothing for any other name, CryptoAsset included.
+// "CryptoObject" and "CryptoMaterial" in upper or lower case, with or without underscores. Nothing for any other name,
+// CryptoAsset included.
 std::optional<MatteChannel> ParseMatteChannel(std::string_view name);
 
 // The 32-bit MurmurHash3 with seed 0, which makes ids of names.

@@ -38,13 +38,25 @@ bool LookPacked(const GuideSet& guides) {
 void NormalizeNormals(GuideSet& guides) {
   // A unit vector in floats has a square within 2√3 · 2^-25 of 1, and 3 · 2^-24 for the sum: 2.8e-7.
   constexpr float kOfFloats = 0x1p-20f;
+  constexpr float kShortest = 0.1f, kShortestPartly = 1e-5f, kLongest = 10.0f;
+  const auto coverage = guides.Has(Layer::kCoverage) ? guides.Plane(Layer::kCoverage) : std::span<float>();
   const auto x = guides.Plane(Layer::kNormal, 0), y = guides.Plane(Layer::kNormal, 1),
              z = guides.Plane(Layer::kNormal, 2);
   for (std::size_t i = 0; i < x.size(); ++i) {
     const float squared = x[i] * x[i] + y[i] * y[i] + z[i] * z[i];
-    if (std::fabs(squared - 1.0f) <= kOfFloats || !(squared > 0.01f && squared < 100.0f)) continue;
+    if (std::fabs(squared - 1.0f) <= kOfFloats) continue;
+    const float shortest = !coverage.empty() && coverage[i] < 1.0f ? kShortestPartly : kShortest;
+    if (!(squared > shortest * shortest && squared < kLongest * kLongest)) continue;
     const float length = std::sqrt(squared);
     x[i] /= length, y[i] /= length, z[i] /= length;
+  }
+}
+
+void ClampCoverage(GuideSet& guides) {
+  constexpr float kOvershoot = 0.125f;
+  if (!guides.Has(Layer::kCoverage)) return;
+  for (float& a : guides.Plane(Layer::kCoverage)) {
+    if (a >= -kOvershoot && a <= 1.0f + kOvershoot) a = std::clamp(a, 0.0f, 1.0f);
   }
 }
 

@@ -49,8 +49,46 @@ double NormalsAgainstDepth(const GuideSet& guides) {
   return std::accumulate(turned.begin(), turned.end(), 0.0) / static_cast<double>(turned.size());
 }
 
+// As above: n.z has the sign of 1 / Z - (x, y) · its slope, what the plane has at the picture's centre. Of an
+// orthographic view that may be negative, but n.z is positive everywhere.
+double ShareTurnedAway(const GuideSet& guides) {
+  constexpr std::size_t kEnoughPixels = 50;
+  constexpr int kApart = 3;
+  constexpr double kClearly = 0.25;  // of 1 / Z
+  constexpr float kFacing = 0.9f;    // without depth: views of 128 degrees and less see no normal beyond -0.9
+  const auto coverage = guides.Plane(Layer::kCoverage), z = guides.Plane(Layer::kNormal, 2);
+  const auto depth = guides.Has(Layer::kDepth) ? guides.Plane(Layer::kDepth) : std::span<const float>();
+  std::size_t towards = 0, away = 0;
+  for (int y = 1; y + 1 < guides.height(); y += kApart) {
+    for (int x = 1; x + 1 < guides.width(); x += kApart) {
+      const std::size_t i = guides.Index(x, y), width = static_cast<std::size_t>(guides.width());
+      if (!(coverage[i] >= 1.0f)) continue;
+      if (!depth.empty()) {
+        const double here = 1.0 / depth[i];
+        const double slope_x = 0.5 / depth[i + 1] - 0.5 / depth[i - 1],
+                     slope_y = 0.5 / depth[i + width] - 0.5 / depth[i - width];
+        const double at_centre =
+            here + slope_x * (0.5 * guides.width() - x - 0.5) + slope_y * (0.5 * guides.height() - y - 0.5);
+        if (!(at_centre > kClearly * here)) continue;
+      } else if (!(std::fabs(z[i]) > kFacing)) {
+        continue;
+      }
+      ++(z[i] < 0.0f ? away : towards);
+    }
+  }
+  const std::size_t all = towards + away;
+  return all < kEnoughPixels ? 0.0 : static_cast<double>(away) / static_cast<double>(all);
+}
+
 Status CheckNormalSpace(const GuideSet& guides, const std::string& name) {
   constexpr double kMostDegrees = 30.0;
+  constexpr double kMostAway = 0.9;  // some back faces are none the less seen
+  if (guides.Has(Layer::kCoverage) && guides.Has(Layer::kNormal) && ShareTurnedAway(guides) > kMostAway) {
+    return InputError(name +
+                      ": its normals point away from the eye: expected normals in view space, x to the right, y up "
+                      "and z towards the eye; some renderers, such as RenderMan, let z grow into the picture: write "
+                      "normals with z negated");
+  }
   for (const Layer layer : {Layer::kCoverage, Layer::kNormal, Layer::kDepth, Layer::kObject}) {
     if (!guides.Has(layer)) return Ok();
   }

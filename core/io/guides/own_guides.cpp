@@ -93,6 +93,7 @@ std::optional<Expected<GuideSet>> ReadPlainGuides(const std::filesystem::path& p
   });
   if (!header) return std::nullopt;
   TakeHeader(header->texts, guides);
+  ClampCoverage(guides);
   ClearBackground(guides);
   if (guides.Has(Layer::kNormal)) {
     if (guides.Has(Layer::kCoverage) && LookPacked(guides)) return std::nullopt;

@@ -45,10 +45,11 @@ struct FileContents {
   std::vector<FoundMatte> mattes;
   std::vector<FoundLight> lights;
   std::map<std::string, std::string> manifests;  // by the matte's name: "ViewLayer.CryptoObject"
-  std::string all_names;                         // for messages
+  std::vector<std::string> names;                // of all channels
   std::string dwa;  // dwaa or dwab, where a part with depth, position or a matte has that compression
   bool has_half = false;
   bool from_blender = false;
+  bool is_ours = false;  // Scumble wrote it
 };
 
 // The manifests of a part's header, which stand under cryptomatte/KEY/manifest beside cryptomatte/KEY/name.
@@ -74,14 +75,17 @@ std::string FullName(const std::string& part, const std::string& channel) {
 // Names that a colour may have as well: they count where no other of the file means the same.
 bool IsAlsoColor(const std::string& channel, const ChannelMeaning& meaning) {
   const std::string name = internal::Upper(channel);
-  if (meaning.layer == Layer::kCoverage) return name.ends_with("C.A");
-  return meaning.layer == Layer::kNormal && std::string_view("RGB").find(name.back()) != std::string_view::npos;
+  const auto ends_in_one_of = [&](std::string_view letters) { return letters.find(name.back()) != letters.npos; };
+  if (meaning.layer == Layer::kCoverage) {
+    return name.ends_with("C.A") || name.ends_with("RGBA.A") || name.ends_with("BEAUTY.A");
+  }
+  if (meaning.layer == Layer::kDepth) return ends_in_one_of("RY");
+  return meaning.layer == Layer::kNormal && ends_in_one_of("RGB");
 }
 
 Expected<FileContents> Survey(OIIO::ImageInput& input, const std::string& name) {
   FileContents contents;
   contents.spec = input.spec(0);
-  std::vector<std::string> names;
   std::vector<FoundChannel> of_colors;
   for (int subimage = 0; input.seek_subimage(subimage, 0); ++subimage) {
     const OIIO::ImageSpec spec = input.spec(subimage);
@@ -94,7 +98,7 @@ Expected<FileContents> Survey(OIIO::ImageInput& input, const std::string& name) 
     for (int c = 0; c < spec.nchannels; ++c) {
       const std::string part(spec.get_string_attribute("oiio:subimagename"));
       const std::string channel = FullName(part, spec.channelnames[c]);
-      names.push_back(channel);
+      contents.names.push_back(channel);
       contents.has_half = contents.has_half || spec.channelformat(c) == OIIO::TypeDesc::HALF;
       if (channel.find("Combined.R") != std::string::npos) contents.from_blender = true;
       if (auto matte = ParseMatteChannel(channel)) {
@@ -112,9 +116,9 @@ Expected<FileContents> Survey(OIIO::ImageInput& input, const std::string& name) 
     FindManifests(spec, contents);
   }
   contents.channels.insert(contents.channels.end(), of_colors.begin(), of_colors.end());
-  contents.all_names = internal::ListOfChannels(names);
   if (contents.spec.get_string_attribute("Software").substr(0, 7) == "Blender") contents.from_blender = true;
-  if (!contents.spec.get_string_attribute("scumble:generator").empty()) contents.from_blender = false;
+  contents.is_ours = !contents.spec.get_string_attribute("scumble:generator").empty();
+  if (contents.is_ours) contents.from_blender = false;
   OIIO::ImageSpec window = contents.spec;
   window.width = window.full_width, window.height = window.full_height;
   SCUMBLE_RETURN_IF_ERROR(internal::CheckSize(window, name));
@@ -152,7 +156,21 @@ Expected<std::string> ChoosePrefix(const FileContents& contents, const std::stri
   return prefixes.empty() ? std::string() : *prefixes.begin();
 }
 
-// The channels that fill the wanted layers: those of the chosen view layer, else those without one.
+// The prefix of the file's only alpha that is no view layer's: a renderer's picture may have any name. Empty where
+// there are several.
+std::string PrefixOfOnlyAlpha(const FileContents& contents) {
+  const std::set<std::string> view_layers = ViewLayers(contents);
+  std::set<std::string> prefixes;
+  for (const FoundChannel& found : contents.channels) {
+    const std::string& prefix = found.meaning.prefix;
+    const bool is_matte = internal::Upper(prefix).find("CRYPTO") != std::string::npos;
+    if (found.meaning.layer == Layer::kCoverage && !is_matte && !view_layers.count(prefix)) prefixes.insert(prefix);
+  }
+  return prefixes.size() == 1 ? *prefixes.begin() : std::string();
+}
+
+// The channels that fill the wanted layers: those of the chosen view layer, else those without one. Coverage may be the
+// file's only alpha.
 std::vector<FoundChannel> SelectChannels(const FileContents& contents, const std::string& prefix,
                                          const LayerSet& wanted) {
   std::vector<FoundChannel> selected;
@@ -168,7 +186,10 @@ std::vector<FoundChannel> SelectChannels(const FileContents& contents, const std
   };
   take(prefix);
   for (const FoundChannel& found : selected) open.Remove(found.meaning.layer);  // no layer is mixed from two
-  if (!prefix.empty()) take("");
+  if (!prefix.empty())
+    take("");
+  else if (open.Has(Layer::kCoverage) && !contents.from_blender)
+    take(PrefixOfOnlyAlpha(contents));
   return selected;
 }
 
@@ -194,6 +215,25 @@ std::string PartsOf(const LayerSet& missing, const std::vector<FoundChannel>& ch
     if (!names.empty()) parts += "; of " + std::string(info.name) + " it holds " + names + " only";
   }
   return parts;
+}
+
+// ". Known names are depth.Z, Z, … for depth; it also holds Pz" for a file of an unknown program.
+std::string KnownNames(const LayerSet& missing, const FileContents& contents) {
+  std::string known;
+  for (const LayerInfo& info : AllLayers()) {
+    if (!missing.Has(info.layer)) continue;
+    std::vector<std::string> names = ChannelNames(info.layer, 0);
+    if (info.layer == Layer::kObject) names.push_back("Cryptomatte crypto_object");
+    if (info.layer == Layer::kMaterial) names.push_back("Cryptomatte crypto_material");
+    known += (known.empty() ? ". Known names are " : "; ") + internal::ListOfChannels(names) + " for " + info.name;
+  }
+  std::vector<std::string> others;  // but R, G and B: of no meaning, or of layers of which no prefix is the one to read
+  for (const std::string& name : contents.names) {
+    const auto meaning = ParseChannelName(name);
+    if (name.size() > 1 && !ParseMatteChannel(name) && (!meaning || missing.Has(meaning->layer)))
+      others.push_back(name);
+  }
+  return known + (others.empty() ? "" : "; it also holds " + internal::ListOfChannels(others));
 }
 
 // A channel and the plane of the picture's size that it fills.
@@ -271,11 +311,21 @@ void ReadHeader(const OIIO::ImageSpec& spec, GuideSet& guides) {
   internal::TakeHeader(texts, guides);
 }
 
-// The Cryptomattes of a view layer, their planes not yet read.
-Expected<BlenderMattes> MattesOf(const FileContents& contents, const std::string& prefix, const std::string& name) {
+// The prefix of the Cryptomattes that belong to a view layer. Those of Blender always have the view layer's.
+std::string MattePrefix(const FileContents& contents, const std::string& prefix) {
+  const bool has_its_own = std::any_of(contents.mattes.begin(), contents.mattes.end(),
+                                       [&](const FoundMatte& found) { return found.meaning.prefix == prefix; });
+  return has_its_own || contents.from_blender ? prefix : "";
+}
+
+// The Cryptomattes of a prefix that stand for these layers, their planes not yet read. Coverage comes from all ranks of
+// Blender's; of others the first two are enough.
+Expected<BlenderMattes> MattesOf(const FileContents& contents, const std::string& prefix, const LayerSet& layers,
+                                 const std::string& name) {
   BlenderMattes mattes;
   for (const FoundMatte& found : contents.mattes) {
-    if (found.meaning.prefix != prefix) continue;
+    if (found.meaning.prefix != prefix || !layers.Has(found.meaning.layer)) continue;
+    if (!contents.from_blender && found.meaning.index >= 4) continue;
     if (!found.is_float) {
       return InputError(name + ": its Cryptomatte " + found.meaning.matte +
                         " is stored in half floats, which no id survives; write it in 32-bit float");
@@ -300,8 +350,10 @@ Expected<BlenderMattes> MattesOf(const FileContents& contents, const std::string
 void ReadMattesToo(const FileContents& contents, const std::string& prefix, BlenderMattes& mattes,
                    std::vector<PlaneRead>& reads) {
   for (const FoundMatte& found : contents.mattes) {
-    if (found.meaning.prefix != prefix || !mattes.count(found.meaning.layer)) continue;
-    auto& plane = mattes.at(found.meaning.layer).ranks[static_cast<std::size_t>(found.meaning.index)];
+    const auto matte = mattes.find(found.meaning.layer);
+    const auto index = static_cast<std::size_t>(found.meaning.index);
+    if (found.meaning.prefix != prefix || matte == mattes.end() || index >= matte->second.ranks.size()) continue;
+    auto& plane = matte->second.ranks[index];
     reads.push_back({found.subimage, found.channel, plane});
   }
 }
@@ -394,13 +446,21 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
     if (!options.blender_camera.empty()) {
       SCUMBLE_ASSIGN(camera, ReadBlenderCamera(options.blender_camera));
     }
-    SCUMBLE_ASSIGN(mattes, MattesOf(contents, prefix, name));
+    SCUMBLE_ASSIGN(mattes, MattesOf(contents, prefix, {Layer::kObject, Layer::kMaterial}, name));
     // One Cryptomatte is always read: it has the coverage that an opaque film's alpha lacks.
     if (!wanted.Has(Layer::kMaterial) && mattes.count(Layer::kObject)) mattes.erase(Layer::kMaterial);
     read_along.Add({Layer::kDepth, Layer::kPosition});
   }
   const std::vector<FoundChannel> channels = SelectChannels(contents, prefix, read_along);
   LayerSet complete = CompleteLayers(channels);
+  const std::string matte_prefix = MattePrefix(contents, prefix);
+  if (!contents.from_blender) {
+    LayerSet without_ids;
+    for (const Layer layer : {Layer::kObject, Layer::kMaterial}) {
+      if (wanted.Has(layer) && !complete.Has(layer)) without_ids.Add(layer);
+    }
+    SCUMBLE_ASSIGN(mattes, MattesOf(contents, matte_prefix, without_ids, name));
+  }
   LayerSet missing = options.required;
   for (const LayerInfo& info : AllLayers()) {
     const bool lit = !LightFor(contents, light_layer, info.layer).empty();
@@ -422,15 +482,15 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
     if (solves_camera && missing.Has(Layer::kPosition)) {
       remedy += ", or give the camera with --camera FILE, which does without Position";
     }
-    LayerSet others = missing;
-    others.Remove(Layer::kObject);
-    if (!solves_camera) others.Remove(Layer::kDepth);
-    if (others.empty()) remedy += options.remedy;
+    const bool is_for_camera = solves_camera && (missing.Has(Layer::kDepth) || missing.Has(Layer::kPosition));
+    if (options.remedy && !is_for_camera) remedy += options.remedy(missing);
     LayerSet every;
     for (const LayerInfo& info : AllLayers()) every.Add(info.layer);
-    const LayerSet there = CompleteLayers(SelectChannels(contents, prefix, every));
+    LayerSet there = CompleteLayers(SelectChannels(contents, prefix, every));
+    for (const auto& [layer, matte] : mattes) there.Add(layer);
     return InputError(name + " has no layer " + missing.ToString() + remedy + ". It has " +
-                      (there.empty() ? "none" : there.ToString()) + PartsOf(missing, channels));
+                      (there.empty() ? "none" : there.ToString()) + PartsOf(missing, channels) +
+                      (contents.from_blender || contents.is_ours ? "" : KnownNames(missing, contents)));
   }
   GuideSet guides(contents.spec.full_width, contents.spec.full_height);
   for (const LayerInfo& info : AllLayers()) {
@@ -442,7 +502,7 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
     if (!complete.Has(found.meaning.layer) || mattes.count(found.meaning.layer)) continue;
     reads.push_back({found.subimage, found.channel, guides.Plane(found.meaning.layer, found.meaning.component)});
   }
-  ReadMattesToo(contents, prefix, mattes, reads);
+  ReadMattesToo(contents, matte_prefix, mattes, reads);
   const BlenderLight light = LightOf(contents, light_layer, wanted, complete, reads);
   SCUMBLE_RETURN_IF_ERROR(ReadPlanes(*input, reads, name));
   ReadHeader(contents.spec, guides);
@@ -451,7 +511,13 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
     for (const Layer layer : {Layer::kDepth, Layer::kPosition}) {
       if (!wanted.Has(layer)) guides.Remove(layer);
     }
+  } else {
+    for (const auto& [layer, matte] : mattes) {
+      auto& names = layer == Layer::kObject ? guides.object_names : guides.material_names;
+      SCUMBLE_RETURN_IF_ERROR(NameMattes(matte.ranks, matte.manifest, name, guides.Plane(layer), names));
+    }
   }
+  internal::ClampCoverage(guides);
   internal::ClearBackground(guides);
   if (guides.Has(Layer::kNormal)) {
     if (guides.Has(Layer::kCoverage) && internal::LookPacked(guides)) {
@@ -477,14 +543,15 @@ Expected<GuideFileInfo> InspectGuides(const std::filesystem::path& path) {
                      !contents.mattes.empty(),
                      0,
                      {},
-                     contents.all_names,
+                     internal::ListOfChannels(contents.names),
                      {}};
   std::set<std::string> prefixes = ViewLayers(contents);
   if (prefixes.empty()) prefixes.insert("");
   for (const std::string& prefix : prefixes) {
     info.layers[prefix] = CompleteLayers(SelectChannels(contents, prefix, all));
     for (const FoundMatte& found : contents.mattes) {
-      if (info.from_blender && found.meaning.prefix == prefix) info.layers[prefix].Add(found.meaning.layer);
+      if (!contents.is_ours && found.meaning.prefix == MattePrefix(contents, prefix))
+        info.layers[prefix].Add(found.meaning.layer);
     }
     for (const Layer layer : {Layer::kLuminance, Layer::kShadow}) {
       if (!LightFor(contents, prefix, layer).empty()) info.layers[prefix].Add(layer);

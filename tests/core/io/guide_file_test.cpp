@@ -356,6 +356,116 @@ TEST(GuideFile, AMissingLayerIsNamedWithWhatThereIs) {
   ExpectRefusal(ReadGuides(folder / "half.exr", OnlyNormals()), ErrorKind::kInput, {"no layer normal", "normal.Y"});
 }
 
+TEST(GuideFile, NamesOfManyRenderersAreKnown) {
+  const TemporaryFolder folder;
+  const auto read_with = [&](std::vector<std::string> names) {
+    names.insert(names.end(), {"N.X", "N.Y", "N.Z"});
+    const std::size_t z = names.size() - 1;
+    WriteExr(folder / "names.exr", OIIO::ImageSpec(2, 2, 1, OIIO::TypeDesc::FLOAT), names,
+             [&](std::size_t c, std::size_t) { return c == z || c < 2 ? 1.0f
+                                                      : c < z - 2     ? 0.5f
+                                                                      : 0.0f; });
+    GuideReadOptions options = OnlyNormals();
+    options.required.Add(Layer::kDepth);
+    return ReadGuides(folder / "names.exr", options);
+  };
+  for (const char* alpha : {"A", "RGBA.A", "beauty.A", "Picture.A"}) {
+    for (const char* depth : {"Depth.R", "depth.Y", "zDepth.R", "Z.Z", "zDepth"}) {
+      const auto read = read_with({alpha, depth});
+      ASSERT_TRUE(read) << alpha << ", " << depth << ": " << read.error().message;
+      EXPECT_EQ(read->Plane(Layer::kCoverage)[3], 1.0f) << alpha;
+      EXPECT_EQ(read->Plane(Layer::kDepth)[3], 1.0f) << depth;
+    }
+  }
+  for (const std::vector<std::string>& colors :
+       {std::vector<std::string>{"A", "Z", "Depth.R", "RGBA.A"}, {"A", "Z", "Depth.R", "diffuse.A"}}) {
+    const auto read = read_with(colors);
+    ASSERT_TRUE(read) << read.error().message;
+    EXPECT_EQ(read->Plane(Layer::kDepth)[0], 1.0f) << "a colour is not it where there is another";
+    EXPECT_EQ(read->Plane(Layer::kCoverage)[0], 1.0f);
+  }
+  ExpectRefusal(read_with({"diffuse.A", "specular.A", "Pz"}), ErrorKind::kInput,
+                {"no layer A, depth", "Known names are A, alpha, Combined.A", "for A; depth.Z, Z, depth",
+                 "it also holds", "Pz", "diffuse.A", "specular.A"});
+}
+
+// As Arnold and Karma name them, in one view layer or beside it.
+TEST(GuideFile, CryptomatteOfOtherRenderersGivesIdsAndNames) {
+  const TemporaryFolder folder;
+  const auto bits_of = [](const char* name) { return std::bit_cast<float>(MatteBits(MatteHash(name))); };
+  const auto write = [&](const std::string& prefix, const std::string& matte, const char* components,
+                         const char* more = nullptr) {
+    OIIO::ImageSpec spec(2, 2, 1, OIIO::TypeDesc::FLOAT);
+    spec.attribute("cryptomatte/1234567/name", matte);
+    char manifest[80];
+    std::snprintf(manifest, sizeof manifest, R"({"Pear":"%08x","/root/Dish":"%08x"})", MatteHash("Pear"),
+                  MatteHash("/root/Dish"));
+    spec.attribute("cryptomatte/1234567/manifest", manifest);
+    std::vector<std::string> names = {"A", prefix + "N.X", prefix + "N.Y", prefix + "N.Z"};
+    for (const char* level : {"00.", "01."}) {
+      for (const char* c = components; *c; ++c) names.push_back(matte + level + *c);
+    }
+    for (const char* unread : {"", "00"}) names.push_back(std::string("crypto_asset") + unread + ".A");
+    if (more) names.push_back(more);
+    WriteExr(folder / "matte.exr", spec, names, [&](std::size_t c, std::size_t i) {
+      if (c == 4) return i == 3 ? 0.0f : bits_of(i == 2 ? "/root/Dish" : "Pear");
+      if (c == 5) return i == 0 ? 0.25f : 1.0f;
+      if (c == 6) return i == 0 ? bits_of("/root/Dish") : 0.0f;
+      if (c == 7) return i == 0 ? 0.75f : 0.0f;
+      return c == 0 || c == 3 || c == names.size() - 1 ? 1.0f : 0.0f;
+    });
+  };
+  GuideReadOptions options = OnlyNormals();
+  options.required.Add(Layer::kObject);
+  struct MatteNames {
+    const char *prefix, *matte, *components;
+  };
+  for (const MatteNames& one : {MatteNames{"", "crypto_object", "RGBA"},
+                                {"", "CRYPTO_OBJECT", "rgba"},
+                                {"", "CryptoObject", "rgba"},
+                                {"rl.", "rl.crypto_object", "rgba"},
+                                {"rl.", "crypto_object", "RGBA"}}) {
+    write(one.prefix, one.matte, one.components);
+    const auto read = ReadGuides(folder / "matte.exr", options);
+    ASSERT_TRUE(read) << one.prefix << one.matte << ": " << read.error().message;
+    const auto name_at = [&](std::size_t i) {
+      return read->object_names.at(static_cast<std::uint32_t>(read->Plane(Layer::kObject)[i]));
+    };
+    EXPECT_EQ(name_at(0), "/root/Dish") << "it covers more than the Pear";
+    EXPECT_EQ(name_at(1), "Pear");
+    EXPECT_EQ(name_at(2), "/root/Dish");
+    EXPECT_EQ(read->Plane(Layer::kObject)[3], 0.0f);
+    EXPECT_EQ(read->object_names.size(), 2u);
+    EXPECT_TRUE(InspectGuides(folder / "matte.exr")->layers.begin()->second.Has(Layer::kObject));
+  }
+  write("", "crypto_object", "RGBA", "object.ID");
+  const auto read = ReadGuides(folder / "matte.exr", options);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->Plane(Layer::kObject)[1], 1.0f) << "the file's own ids";
+  EXPECT_TRUE(read->object_names.empty());
+}
+
+TEST(GuideFile, ACryptomatteThatLostItsIdsIsRefusedWhereItIsNeeded) {
+  const TemporaryFolder folder;
+  std::vector<std::string> names = kNormalAndA;
+  for (const char* c : {"R", "G", "B", "A"}) names.push_back(std::string("crypto_object00.") + c);
+  for (const bool is_half : {true, false}) {
+    OIIO::ImageSpec spec(2, 2, static_cast<int>(names.size()), is_half ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT);
+    spec.channelnames = names;
+    if (!is_half) spec.attribute("compression", "dwaa");
+    const std::vector<float> ones(4 * names.size(), 1.0f);
+    auto output = OIIO::ImageOutput::create((folder / "lost.exr").string());
+    ASSERT_TRUE(output->open((folder / "lost.exr").string(), spec)) << output->geterror();
+    ASSERT_TRUE(output->write_image(OIIO::TypeDesc::FLOAT, ones.data())) << output->geterror();
+    ASSERT_TRUE(output->close());
+    EXPECT_TRUE(ReadGuides(folder / "lost.exr", OnlyNormals())) << "nothing needs it";
+    GuideReadOptions options = OnlyNormals();
+    options.required.Add(Layer::kObject);
+    ExpectRefusal(ReadGuides(folder / "lost.exr", options), ErrorKind::kInput,
+                  {"lost.exr", "Cryptomatte", is_half ? "half floats" : "dwaa"});
+  }
+}
+
 TEST(GuideFile, OneOfSeveralViewLayers) {
   const TemporaryFolder folder;
   WriteExr(folder / "two.exr", OIIO::ImageSpec(3, 2, 1, OIIO::TypeDesc::FLOAT),
@@ -532,6 +642,33 @@ TEST(GuideFile, ShortNormalsAreNormalisedAndZeroOnesRefused) {
   }
   for (float bad : {0.0f, 0.01f, 20.0f, kInfinity, std::numeric_limits<float>::quiet_NaN()}) {
     ExpectRefusal(read_with_length(bad), ErrorKind::kInput, {"n.exr", "layer normal", "2 pixels, first at (0, 0)"});
+  }
+}
+
+// What pixel filters leave: coverage beside 0 and 1, and normals premultiplied by little coverage.
+TEST(GuideFile, FilteredRimsAreTaken) {
+  const TemporaryFolder folder;
+  const auto read_with = [&](const char* compression, std::vector<float> coverage, std::vector<float> lengths) {
+    OIIO::ImageSpec spec(static_cast<int>(coverage.size()), 1, 1, OIIO::TypeDesc::FLOAT);
+    spec.attribute("compression", compression);
+    WriteExr(folder / "rim.exr", spec, kNormalAndA, [&](std::size_t c, std::size_t i) {
+      return c == 0 ? coverage[i] : c == 1 ? lengths[i] : 0.0f;
+    });
+    return ReadGuides(folder / "rim.exr", OnlyNormals());
+  };
+  for (const char* compression : {"zip", "dwaa"}) {  // the plain reader's, and the library's
+    const auto read = read_with(compression, {std::nextafter(1.0f, 2.0f), 1.07f, 0.0625f, 0.001f, -0.03f},
+                                {1.0f, 1.07f, 0.05f, 0.0005f, -0.03f});
+    ASSERT_TRUE(read) << compression << ": " << read.error().message;
+    const auto coverage = read->Plane(Layer::kCoverage);
+    EXPECT_EQ(coverage[0], 1.0f);
+    EXPECT_EQ(coverage[1], 1.0f);
+    EXPECT_NEAR(coverage[2], 0.0625f, 1e-3f);
+    EXPECT_EQ(coverage[4], 0.0f);
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(read->Vec3(Layer::kNormal, i), glm::vec3(1, 0, 0)) << i;
+    EXPECT_EQ(read->Vec3(Layer::kNormal, 4), glm::vec3(0.0f)) << "background";
+    ExpectRefusal(read_with(compression, {2.0f}, {1.0f}), ErrorKind::kInput, {"layer A is outside 0 to 1"});
+    ExpectRefusal(read_with(compression, {0.5f}, {0.0f}), ErrorKind::kInput, {"layer normal"});
   }
 }
 

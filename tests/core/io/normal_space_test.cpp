@@ -62,6 +62,40 @@ TEST(NormalSpace, WhatTheWorldOrAnotherAxisMakesOfThemIsFar) {
             60.0);
 }
 
+TEST(NormalSpace, NormalsAwayFromTheEyeAreFound) {
+  const GuideSet right = BallOnFloor(glm::dmat3(1.0));
+  GuideSet turned = BallOnFloor(glm::dmat3(glm::scale(glm::dmat4(1.0), {1.0, 1.0, -1.0})));
+  EXPECT_EQ(internal::ShareTurnedAway(right), 0.0);
+  EXPECT_GT(internal::ShareTurnedAway(turned), 0.95) << "the floor has z = 0";
+  const auto refused = internal::CheckNormalSpace(turned, "left.exr");
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("away from the eye"), std::string::npos) << refused.error().message;
+  turned.Remove(Layer::kDepth);
+  for (float& z : turned.Plane(Layer::kNormal, 2)) z = -1.0f;
+  EXPECT_FALSE(internal::CheckNormalSpace(turned, "left.exr")) << "normals alone tell";
+}
+
+// A floor under a camera that looks up by 30 degrees: it is seen where z of its normals is below 0.
+TEST(NormalSpace, AViewUpwardsOverAFloorIsNoMistake) {
+  GuideSet guides(96, 96);
+  for (const Layer layer : {Layer::kCoverage, Layer::kNormal, Layer::kDepth, Layer::kObject}) guides.Add(layer);
+  const glm::dvec3 normal(0.0, std::cos(glm::radians(30.0)), -0.5);
+  for (int y = 0; y < 96; ++y) {
+    for (int x = 0; x < 96; ++x) {
+      const glm::dvec3 ray((x + 0.5 - 48.0) / 48.0, -(y + 0.5 - 48.0) / 48.0, -1.0);
+      const double across = glm::dot(ray, normal);
+      if (across > -0.05) continue;
+      const std::size_t i = guides.Index(x, y);
+      for (int k = 0; k < 3; ++k) guides.Plane(Layer::kNormal, k)[i] = static_cast<float>(normal[k]);
+      guides.Plane(Layer::kDepth)[i] = static_cast<float>(-1.0 / across);
+      guides.Plane(Layer::kCoverage)[i] = guides.Plane(Layer::kObject)[i] = 1.0f;
+    }
+  }
+  EXPECT_TRUE(internal::CheckNormalSpace(guides, "up.exr"));
+  guides.Remove(Layer::kDepth);
+  EXPECT_TRUE(internal::CheckNormalSpace(guides, "up.exr"));
+}
+
 // Blades of grass of one object beside each other: their depths jump, and their normals are right.
 TEST(NormalSpace, DepthsThatJumpTellNothing) {
   GuideSet guides = BallOnFloor(glm::dmat3(1.0));

@@ -409,7 +409,7 @@ TEST(SphereKit, TheMarginIsInTheGuides) {
   const TemporaryFolder folder;
   ASSERT_TRUE(WriteSphereKit(folder.path(), {KitLight{0, 0, SphereGuides(20)}}));
   const auto guides =
-      ReadGuides(folder / "guides.exr", {{Layer::kCoverage, Layer::kNormal, Layer::kLuminance}, {}, "", "", "", {}});
+      ReadGuides(folder / "guides.exr", {{Layer::kCoverage, Layer::kNormal, Layer::kLuminance}, {}, "", "", {}, {}});
   ASSERT_TRUE(guides) << guides.error().message;
   EXPECT_EQ(SphereMargin(*guides), TemplateMargin(20));
   EXPECT_FALSE(SphereMargin(SphereGuides(20))) << "guides of no kit";
