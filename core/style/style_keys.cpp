@@ -174,7 +174,7 @@ void AddGuideWeights(std::vector<StyleKey>& keys) {
     keys.push_back({GuideWeight(info.layer), kGuideWeights + std::string(info.name), normal ? "1.0" : "0.0",
                     normal ? "how much normals count where paint is looked for and pieces end, 0 to 1000"
                            : "the same of " + std::string(info.meaning),
-                    true, "Guide weights", true});
+                    "Guide weights", true});
   }
 }
 
