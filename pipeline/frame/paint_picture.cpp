@@ -171,7 +171,7 @@ FrameFinish FinishOf(const StyleSet& styles, const GuideSet& given, const GuideS
   if (finish.steps.empty()) return finish;
   state.told_of_finish = true;
   finish.reference_height = styles.first().transfer.reference_height;
-  MeasureFinishOf(styles, given, context, state);
+  MeasureFinishOf(styles, given, {}, context, state);
   if (state.finish_measures) finish.measures = *state.finish_measures;
   if (&given != &guides) finish.small_guides = &given;
   return finish;
@@ -179,12 +179,11 @@ FrameFinish FinishOf(const StyleSet& styles, const GuideSet& given, const GuideS
 
 }  // namespace
 
-void MeasureFinishOf(const StyleSet& styles, const GuideSet& guides, const RunContext& context, PictureState& state) {
+void MeasureFinishOf(const StyleSet& styles, const GuideSet& guides, std::optional<int> frame,
+                     const RunContext& context, PictureState& state) {
   if (state.finish_measures || !EverLooksAtMeasures(styles)) return;
   state.finish_measures = styles.options.finish_measures;
-  if (state.finish_measures) return;
-  state.finish_measures = MeasureFinish(guides);
-  context.Note("finish: --finish-measures " + MeasuresText(*state.finish_measures) + " repeats what was measured");
+  if (!state.finish_measures) state.finish_measures = MeasureAndTell(guides, frame, context);
 }
 
 Expected<Picture> ReadUnderneath(const std::string& file, const std::string& view_layer) {
@@ -263,7 +262,12 @@ Status PrepareFrame(StyleSet& styles, const GuideSet& guides, const PictureReque
   }
   if (state.exposure) return Ok();
   state.exposure = ExposureOf(request.exposure, state.prepared, guides, context.threads);
-  if (MeasuresExposure(styles, request)) {
+  if (!MeasuresExposure(styles, request)) return Ok();
+  if (!ShowsSurface(guides)) {
+    context.Warn(
+        "the picture shows no surface, so no exposure was measured, and it is 0 stops: where it is one of a sequence, "
+        "give --exposure of a frame that shows something");
+  } else {
     context.Note(fmt::format("exposure: {:.2f} stops; --exposure {:.2f} repeats it", *state.exposure, *state.exposure));
   }
   return Ok();

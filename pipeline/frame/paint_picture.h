@@ -61,7 +61,9 @@ Expected<Picture> ReadUnderneath(const std::string& file, const std::string& vie
 Status ReadOver(const PictureRequest& request, PictureState& state);
 
 // Measures what finishing passes look at, unless `state` has it already, and tells it. Nothing where none looks.
-void MeasureFinishOf(const StyleSet& styles, const GuideSet& guides, const RunContext& context, PictureState& state);
+// `frame`: of a sequence.
+void MeasureFinishOf(const StyleSet& styles, const GuideSet& guides, std::optional<int> frame,
+                     const RunContext& context, PictureState& state);
 
 // Of two lighting conditions with one luminance only the first is ever chosen: the others, with what is wrong
 // and how to fix it.

@@ -30,9 +30,10 @@ class PictureSequence {
   PictureSequence(StyleSet& styles, const PictureRequest& request, const RunContext& context)
       : styles_(styles), request_(request), context_(context) {}
 
-  // A measured exposure is measured on the first frame of the range, even where that one is kept: a sequence that is
-  // resumed goes on as it began. One picture underneath all frames must be there, and have the size of the first that
-  // is known.
+  // Exposure and finishing effects are measured on the first frame of the range that shows a surface, even where it is
+  // kept: a sequence that is resumed goes on as it began. `guides_at` is asked for frames of the range in their order,
+  // until one shows some. One picture underneath all frames must be there, and have the size of the first that is
+  // known.
   Status Begin(const Sequence& sequence, int width, int height, const GuidesAt& guides_at, const Progress& progress);
   Status ReadOverOfAll(int width, int height);
 

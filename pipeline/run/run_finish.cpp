@@ -95,11 +95,6 @@ std::string SettingsText(const FinishRequest& request, const FinishChain& chain,
   return text + (request.show_finish.empty() ? "" : "; show " + (kShowFinish + request.show_finish));
 }
 
-void Measure(const GuideSet& guides, const RunContext& context, FinishState& state) {
-  state.measures = MeasureFinish(guides);
-  context.Note("finish: --finish-measures " + MeasuresText(*state.measures) + " repeats what was measured");
-}
-
 // The frame's number, which key frames go by, and its files.
 struct FrameFiles {
   int frame = 0;
@@ -157,9 +152,8 @@ Expected<FrameWrite> Finish(const FinishRequest& request, const FrameFiles& file
       FinishStepsOf(state.chain.passes, size, guides ? &*guides : nullptr, [&](const std::string& text) {
         if (is_first) context.Warn(files.guides + ": " + text);
       });
-  if (!state.measures && guides && EverLooksAtMeasures(state.chain)) {
-    Measure(*guides, context, state);
-  }
+  if (!state.measures && guides && EverLooksAtMeasures(state.chain))
+    state.measures = MeasureAndTell(*guides, {}, context);
   FinishFrame frame{guides ? &*guides : nullptr, state.measures.value_or(FinishMeasures()), 1.0, request.seed};
   const FrameRate fps = RateFor(request, files.guides);
   frame.frame = files.frame, frame.fps_numerator = fps.numerator, frame.fps_denominator = fps.denominator;
@@ -272,13 +266,19 @@ Expected<RunReport> RunFinish(FinishRequest request, const SequenceListener& lis
     if (request.layers_out.empty()) return Ok();
     return CheckWholeLayers(layers.At(frame), header->width, header->height, settings);
   };
-  // A sequence that is resumed goes on with the measures of its first frame.
+  // Where a sequence is resumed, a frame that is kept may be the one to measure.
   work.begin = [&](std::span<const int>, const Progress&) -> Status {
     if (state.measures || !EverLooksAtMeasures(state.chain)) return Ok();
-    const int first = sequence->frames.front();
-    SCUMBLE_ASSIGN(const GuideSet set, ReadGuides(guides.At(first), ReadOptions(request, state.required,
-                                                                                guides.At(first), camera.At(first))));
-    Measure(set, context, state);
+    for (const int frame : sequence->frames) {
+      const std::string file = guides.At(frame);
+      SCUMBLE_ASSIGN(const GuideSet set,
+                     ReadGuides(file, ReadOptions(request, state.required, file, camera.At(frame))));
+      if (!ShowsSurface(set)) continue;
+      state.measures = MeasureAndTell(set, frame, context);
+      return Ok();
+    }
+    state.measures.emplace();
+    context.Warn(NothingToMeasure(sequence->frames, "--finish-measures"));
     return Ok();
   };
   work.make = [&](int frame, const std::string& output, const Progress& progress) {

@@ -12,6 +12,7 @@
 #include "core/style/finish_keys.h"
 #include "core/style/nearest_name.h"
 #include "finish/mask.h"
+#include "pipeline/frame_range.h"
 #include "pipeline/style/assignments.h"
 
 namespace scumble {
@@ -218,6 +219,25 @@ std::vector<FinishStep> FinishStepsOf(const std::vector<FinishPass>& passes, con
     step.share = MaskShares(pass.mask, guides, size.width, size.height);
   }
   return steps;
+}
+
+FinishMeasures MeasureAndTell(const GuideSet& guides, std::optional<int> frame, const RunContext& context) {
+  const FinishMeasures measures = MeasureFinish(guides);
+  if (!ShowsSurface(guides)) {
+    context.Warn(
+        "finish: the picture shows no surface, so neither depths nor light were measured: where it is one of a "
+        "sequence, give --finish-measures of a frame that shows something");
+    return measures;
+  }
+  const std::string where =
+      frame ? fmt::format(" on frame {}: give it to each run where a sequence is cut into several", *frame) : "";
+  context.Note("finish: --finish-measures " + MeasuresText(measures) + " repeats what was measured" + where);
+  return measures;
+}
+
+std::string NothingToMeasure(const std::vector<int>& frames, const std::string& options) {
+  return fmt::format("no surface shows in frames {}, so nothing was measured: give {} of a frame that shows one",
+                     FramesToText(frames), options);
 }
 
 std::string MeasuresText(const FinishMeasures& measures) {

@@ -53,6 +53,12 @@ std::vector<FinishStep> FinishStepsOf(const StyleSet& styles, const GuideSet& gu
 std::vector<FinishStep> FinishStepsOf(const std::vector<FinishPass>& passes, const Size& size, const GuideSet* guides,
                                       const std::function<void(const std::string&)>& tell);
 
+// MeasureFinish, and a note of what repeats it; a warning where the guides show no surface. `frame`: of a sequence.
+FinishMeasures MeasureAndTell(const GuideSet& guides, std::optional<int> frame, const RunContext& context);
+
+// The warning of a sequence in which no frame shows a surface. `options`: those that give what was to be measured.
+std::string NothingToMeasure(const std::vector<int>& frames, const std::string& options);
+
 // "2.1,4,11,0.8,1": near, middle, far, bright, full, as --finish-measures takes them.
 std::string MeasuresText(const FinishMeasures& measures);
 
