@@ -165,8 +165,8 @@ FrameFinish FinishOf(const StyleSet& styles, const GuideSet& given, const GuideS
                      bool over, const RunContext& context, PictureState& state) {
   FrameFinish finish;
   const bool is_first = !state.told_of_finish;
-  finish.steps = FinishStepsOf(styles, guides, map, over, [&](const std::string& text) {
-    if (is_first) context.Warn(text);
+  finish.steps = FinishStepsOf(styles, guides, map, over, [&](const Message& message) {
+    if (is_first && context.on_message) context.on_message(message);
   });
   if (finish.steps.empty()) return finish;
   state.told_of_finish = true;

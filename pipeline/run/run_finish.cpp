@@ -149,8 +149,8 @@ Expected<FrameWrite> Finish(const FinishRequest& request, const FrameFiles& file
   const bool is_first = !std::exchange(state.told, true);
   const Size size{picture->width, picture->height};
   const std::vector<FinishStep> steps =
-      FinishStepsOf(state.chain.passes, size, guides ? &*guides : nullptr, [&](const std::string& text) {
-        if (is_first) context.Warn(files.guides + ": " + text);
+      FinishStepsOf(state.chain.passes, size, guides ? &*guides : nullptr, [&](const Message& message) {
+        if (is_first && context.on_message) context.on_message({message.kind, files.guides + ": " + message.text});
       });
   if (!state.measures && guides && EverLooksAtMeasures(state.chain))
     state.measures = MeasureAndTell(*guides, {}, context);

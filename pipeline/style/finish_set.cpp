@@ -63,7 +63,7 @@ std::set<std::uint32_t> IdsThatFit(const std::vector<std::string>& patterns,
 }
 
 // Takes pixels out of `only` that are not of the objects and materials which the pass names.
-void LimitToNames(const FinishPass& pass, const GuideSet& guides, const std::function<void(const std::string&)>& tell,
+void LimitToNames(const FinishPass& pass, const GuideSet& guides, const TellFinish& tell,
                   std::vector<std::uint8_t>& only) {
   if (pass.objects.empty() && pass.materials.empty()) return;
   std::vector<std::uint8_t> named(guides.pixel_count(), 0);
@@ -71,8 +71,9 @@ void LimitToNames(const FinishPass& pass, const GuideSet& guides, const std::fun
     if (patterns.empty() || !guides.Has(layer)) return;
     const std::set<std::uint32_t> ids = IdsThatFit(patterns, names);
     if (ids.empty()) {
-      tell(fmt::format("finish {}: no {} has the name {}", pass.name, layer == Layer::kObject ? "object" : "material",
-                       fmt::join(patterns, ", ")));
+      tell({Message::Kind::kWarning,
+            fmt::format("finish {}: no {} has the name {}", pass.name, layer == Layer::kObject ? "object" : "material",
+                        fmt::join(patterns, ", "))});
       return;
     }
     const auto plane = guides.Plane(layer);
@@ -105,16 +106,35 @@ double MiddleDepth(const std::string& pattern, const GuideSet& guides) {
 }
 
 // Puts the focus of a depth effect on the object that it names.
-void Focus(const GuideSet& guides, const std::function<void(const std::string&)>& tell, FinishPass& pass) {
+void Focus(const GuideSet& guides, const TellFinish& tell, FinishPass& pass) {
   auto* const depth = std::get_if<DepthPass>(&pass.effect);
   if (!depth || depth->focus_on.empty()) return;
   const double middle = MiddleDepth(depth->focus_on, guides);
   if (middle > 0.0) {
     depth->focus = middle;
   } else {
-    tell(fmt::format("finish {}: no object in the picture has the name {}, so the focus stays at {}", pass.name,
-                     depth->focus_on, depth->focus > 0.0 ? fmt::format("{} m", depth->focus) : "near"));
+    tell({Message::Kind::kWarning,
+          fmt::format("finish {}: no object in the picture has the name {}, so the focus stays at {}", pass.name,
+                      depth->focus_on, depth->focus > 0.0 ? fmt::format("{} m", depth->focus) : "near")});
   }
+}
+
+// Without perspective nothing gets smaller with distance.
+void LeaveOutThin(const GuideSet& guides, const TellFinish& tell, FinishPass& pass) {
+  auto* const outline = std::get_if<OutlinePass>(&pass.effect);
+  if (!outline || !(outline->thin > 0.0) || outline->thin_is_given) return;
+  if (!guides.camera || !guides.camera->IsOrthographic()) return;
+  outline->thin = 0.0;
+  tell({Message::Kind::kNote, fmt::format("finish {}: its thin is left out, because in an orthographic view nothing "
+                                          "gets smaller with distance",
+                                          pass.name)});
+}
+
+// Makes the step fit the frame.
+void Fit(const GuideSet& guides, const TellFinish& tell, FinishStep& step) {
+  Focus(guides, tell, step.pass);
+  LeaveOutThin(guides, tell, step.pass);
+  LimitToNames(step.pass, guides, tell, step.only);
 }
 
 }  // namespace
@@ -172,7 +192,7 @@ bool EverLooksAtMeasures(const StyleSet& styles) {
 }
 
 std::vector<FinishStep> FinishStepsOf(const StyleSet& styles, const GuideSet& guides, const StyleMap* map, bool over,
-                                      const std::function<void(const std::string&)>& tell) {
+                                      const TellFinish& tell) {
   std::vector<FinishStep> steps;
   for (std::size_t i = 0; i < styles.styles.size(); ++i) {
     if (styles.styles[i].finish.empty()) continue;
@@ -184,8 +204,7 @@ std::vector<FinishStep> FinishStepsOf(const StyleSet& styles, const GuideSet& gu
     for (const FinishPass& pass : styles.styles[i].finish) {
       FinishStep& step = steps.emplace_back(FinishStep{pass, own});
       step.reference_height = styles.styles[i].transfer.reference_height;
-      Focus(guides, tell, step.pass);
-      LimitToNames(pass, guides, tell, step.only);
+      Fit(guides, tell, step);
       step.share = MaskShares(pass.mask, &guides, guides.width(), guides.height());
     }
   }
@@ -200,22 +219,18 @@ std::vector<FinishStep> FinishStepsOf(const StyleSet& styles, const GuideSet& gu
   for (const FinishPass& pass : styles.finish.passes) {
     FinishStep& step = steps.emplace_back(FinishStep{pass, shows});
     step.reference_height = styles.first().transfer.reference_height;
-    Focus(guides, tell, step.pass);
-    LimitToNames(pass, guides, tell, step.only);
+    Fit(guides, tell, step);
     step.share = MaskShares(pass.mask, &guides, guides.width(), guides.height());
   }
   return steps;
 }
 
 std::vector<FinishStep> FinishStepsOf(const std::vector<FinishPass>& passes, const Size& size, const GuideSet* guides,
-                                      const std::function<void(const std::string&)>& tell) {
+                                      const TellFinish& tell) {
   std::vector<FinishStep> steps;
   for (const FinishPass& pass : passes) {
     FinishStep& step = steps.emplace_back(FinishStep{pass, {}});
-    if (guides) {
-      Focus(*guides, tell, step.pass);
-      LimitToNames(pass, *guides, tell, step.only);
-    }
+    if (guides) Fit(*guides, tell, step);
     step.share = MaskShares(pass.mask, guides, size.width, size.height);
   }
   return steps;

@@ -42,16 +42,20 @@ std::vector<FinishPass> AllPasses(const StyleSet& styles);
 bool EverLooksAtMeasures(const FinishChain& chain);
 bool EverLooksAtMeasures(const StyleSet& styles);
 
+// What is told of the passes in a frame: a note of what is left out, a warning of names that fit nothing.
+using TellFinish = std::function<void(const Message&)>;
+
 // The passes of these styles and of the run, in their order, each with the pixels that it is for: a style's passes are
 // for its own pixels and lengths, the run's for all that shows: not for shadow catchers, nor for objects that are left
 // as they are where nothing is `over`; `objects`, `materials` and masks limit both. `map`: null where one style paints
-// all. The styles must be at the picture's frame. Names that fit nothing are told to `tell`.
+// all. The styles must be at the picture's frame. Without perspective no line gets thinner with distance, unless --set
+// asks for it, which CheckFinish refuses.
 std::vector<FinishStep> FinishStepsOf(const StyleSet& styles, const GuideSet& guides, const StyleMap* map, bool over,
-                                      const std::function<void(const std::string&)>& tell);
+                                      const TellFinish& tell);
 
 // One chain of passes without styles, likewise, for a picture of that size. `guides`: null where no pass reads any.
 std::vector<FinishStep> FinishStepsOf(const std::vector<FinishPass>& passes, const Size& size, const GuideSet* guides,
-                                      const std::function<void(const std::string&)>& tell);
+                                      const TellFinish& tell);
 
 // MeasureFinish, and a note of what repeats it; a warning where the guides show no surface. `frame`: of a sequence.
 FinishMeasures MeasureAndTell(const GuideSet& guides, std::optional<int> frame, const RunContext& context);
