@@ -19,7 +19,6 @@
 #include "measure/painting/paint_faults.h"
 #include "pipeline/frame/explain_frame.h"
 #include "pipeline/style/finish_order.h"
-#include "pipeline/style/finish_set.h"
 #include "transfer/upsample_guides.h"
 
 namespace scumble {
@@ -162,14 +161,13 @@ void NoteExemplarUse(const Style& style, const RunContext& context) {
 // The passes of a picture that is painted by `guides`, and measured by those that were `given`, before they were
 // upsampled.
 FrameFinish FinishOf(const StyleSet& styles, const GuideSet& given, const GuideSet& guides, const StyleMap* map,
-                     bool over, const RunContext& context, PictureState& state) {
+                     bool over, std::optional<int> frame, const RunContext& context, PictureState& state) {
   FrameFinish finish;
-  const bool is_first = !state.told_of_finish;
-  finish.steps = FinishStepsOf(styles, guides, map, over, [&](const Message& message) {
-    if (is_first && context.on_message) context.on_message(message);
+  finish.steps = FinishStepsOf(styles, guides, map, over, [&](const FinishRemark& remark) {
+    state.finish_remarks.Tell(remark, frame, {}, context);
   });
   if (finish.steps.empty()) return finish;
-  state.told_of_finish = true;
+  state.finish_remarks.EndFrame();
   finish.reference_height = styles.first().transfer.reference_height;
   MeasureFinishOf(styles, given, {}, context, state);
   if (state.finish_measures) finish.measures = *state.finish_measures;
@@ -331,7 +329,7 @@ Expected<PaintedPicture> PaintInMemory(StyleSet& styles, const GuideSet& given, 
   SCUMBLE_RETURN_IF_ERROR(CheckLayersWanted(wanted, AllPasses(styles)));
 
   const FrameFinish finish =
-      FinishOf(styles, given, guides, needs_map ? &map : nullptr, over != nullptr, context, state);
+      FinishOf(styles, given, guides, needs_map ? &map : nullptr, over != nullptr, request.frame, context, state);
   double finish_ms = 0.0;
   FrameSettings settings{request.seed, request.frame.value_or(0), RateOf(request.fps, given), *state.exposure,
                          over,         request.KeepsField()};

@@ -16,6 +16,7 @@
 #include "pipeline/frame/provenance.h"
 #include "pipeline/requests.h"
 #include "pipeline/run_context.h"
+#include "pipeline/style/finish_set.h"
 #include "pipeline/style/style_set.h"
 #include "transfer/transfer.h"
 
@@ -49,8 +50,8 @@ struct PictureState {
   std::string over_file;        // that `over` is from
   std::optional<Picture> over;  // one picture underneath all frames is read once
   int width = 0, height = 0;    // of the first frame's guides
-  bool told_of_finish = false;  // of names in it that fit nothing
-  bool warned = false;          // of options that change nothing
+  FinishRemarks finish_remarks;
+  bool warned = false;  // of options that change nothing
   bool warned_of_size = false;
 };
 

@@ -100,6 +100,13 @@ Expected<FrameWrite> PictureSequence::Make(int frame, const std::string& output,
   return PaintPicture(styles_, *found.guides, found.source, one, context_, Within(progress, guides_share, 1.0), state_);
 }
 
+std::vector<std::string> PictureSequence::Warnings() {
+  std::vector<std::string> warnings = AssignmentReport(styles_);
+  const std::vector<std::string> of_finish = state_.finish_remarks.WarnOfFrames(context_);
+  warnings.insert(warnings.end(), of_finish.begin(), of_finish.end());
+  return warnings;
+}
+
 Expected<RunReport> RunOnePicture(StyleSet& styles, const GuideSet& guides, const GuideSource& source,
                                   const PictureRequest& request, const RunContext& context, const Progress& progress) {
   PictureState state;

@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/image/guides.h"
 #include "pipeline/frame/paint_picture.h"
@@ -45,6 +46,9 @@ class PictureSequence {
 
   Expected<FrameWrite> Make(int frame, const std::string& output, const GuidesAt& guides_at, double guides_share,
                             const Progress& progress);
+
+  // What is warned of when all frames are made, for the report.
+  std::vector<std::string> Warnings();
 
  private:
   StyleSet& styles_;

@@ -37,7 +37,7 @@ struct FinishState {
   FinishChain chain;
   LayerSet required;  // in any frame
   std::optional<FinishMeasures> measures;
-  bool told = false;  // of names that fit nothing
+  FinishRemarks remarks;
 };
 
 LayerSet LayersOf(const FinishChain& chain) {
@@ -97,7 +97,7 @@ std::string SettingsText(const FinishRequest& request, const FinishChain& chain,
 
 // The frame's number, which key frames go by, and its files.
 struct FrameFiles {
-  int frame = 0;
+  std::optional<int> frame;
   std::string picture, guides, camera, output, layers;
 };
 
@@ -129,7 +129,7 @@ Status CheckFinishMemory(const FinishRequest& request, const FrameFiles& files, 
 Expected<FrameWrite> Finish(const FinishRequest& request, const FrameFiles& files, const RunContext& context,
                             const Progress& progress, FinishState& state) {
   SCUMBLE_RETURN_IF_ERROR(CheckFinishMemory(request, files, state, context));
-  SCUMBLE_RETURN_IF_ERROR(SetFinishFrame(state.chain, files.frame));
+  SCUMBLE_RETURN_IF_ERROR(SetFinishFrame(state.chain, files.frame.value_or(0)));
   StepTimes times;
   Stopwatch watch;
   const auto picture = std::make_shared<Picture>();
@@ -146,17 +146,16 @@ Expected<FrameWrite> Finish(const FinishRequest& request, const FrameFiles& file
   }
   times.emplace_back("read", watch.Lap());
   context.EndStage("read");
-  const bool is_first = !std::exchange(state.told, true);
   const Size size{picture->width, picture->height};
-  const std::vector<FinishStep> steps =
-      FinishStepsOf(state.chain.passes, size, guides ? &*guides : nullptr, [&](const Message& message) {
-        if (is_first && context.on_message) context.on_message({message.kind, files.guides + ": " + message.text});
-      });
+  const std::vector<FinishStep> steps = FinishStepsOf(
+      state.chain.passes, size, guides ? &*guides : nullptr,
+      [&](const FinishRemark& remark) { state.remarks.Tell(remark, files.frame, files.guides, context); });
+  state.remarks.EndFrame();
   if (!state.measures && guides && EverLooksAtMeasures(state.chain))
     state.measures = MeasureAndTell(*guides, {}, context);
   FinishFrame frame{guides ? &*guides : nullptr, state.measures.value_or(FinishMeasures()), 1.0, request.seed};
   const FrameRate fps = RateFor(request, files.guides);
-  frame.frame = files.frame, frame.fps_numerator = fps.numerator, frame.fps_denominator = fps.denominator;
+  frame.frame = files.frame.value_or(0), frame.fps_numerator = fps.numerator, frame.fps_denominator = fps.denominator;
   if (request.reference_height > 0) frame.scale = double(picture->height) / request.reference_height;
   if (guides && ChangesGuides(steps)) {
     SCUMBLE_RETURN_IF_ERROR(ApplyToGuides(steps, frame, context.threads, {}, *guides));
@@ -240,8 +239,8 @@ Expected<RunReport> RunFinish(FinishRequest request, const SequenceListener& lis
   report.paints = true;
   if (!sequence) {
     SCUMBLE_ASSIGN(const FrameWrite write, Finish(request,
-                                                  {request.frame.value_or(0), request.picture, request.guides,
-                                                   request.camera, request.output, request.layers_out},
+                                                  {request.frame, request.picture, request.guides, request.camera,
+                                                   request.output, request.layers_out},
                                                   context, context.StartProgress("finish"), state));
     SCUMBLE_ASSIGN(report.frame, write());
     context.EndStage("write");
@@ -286,6 +285,7 @@ Expected<RunReport> RunFinish(FinishRequest request, const SequenceListener& lis
                   context, progress, state);
   };
   SCUMBLE_ASSIGN(report.sequence, RunSequence(*sequence, work, listener, context, context.StartProgress("finish")));
+  report.warnings = state.remarks.WarnOfFrames(context);
   return report;
 }
 

@@ -98,7 +98,7 @@ Expected<RunReport> StylizeSequence(const StylizeRequest& request, const Sequenc
   RunReport report;
   report.sequence = std::move(totals);
   report.paints = true;
-  report.warnings = AssignmentReport(styles);
+  report.warnings = pictures.Warnings();
   return report;
 }
 

@@ -71,9 +71,9 @@ void LimitToNames(const FinishPass& pass, const GuideSet& guides, const TellFini
     if (patterns.empty() || !guides.Has(layer)) return;
     const std::set<std::uint32_t> ids = IdsThatFit(patterns, names);
     if (ids.empty()) {
-      tell({Message::Kind::kWarning,
-            fmt::format("finish {}: no {} has the name {}", pass.name, layer == Layer::kObject ? "object" : "material",
-                        fmt::join(patterns, ", "))});
+      tell({{Message::Kind::kWarning,
+             fmt::format("finish {}: no {} has the name {}", pass.name, layer == Layer::kObject ? "object" : "material",
+                         fmt::join(patterns, ", "))}});
       return;
     }
     const auto plane = guides.Plane(layer);
@@ -112,10 +112,18 @@ void Focus(const GuideSet& guides, const TellFinish& tell, FinishPass& pass) {
   const double middle = MiddleDepth(depth->focus_on, guides);
   if (middle > 0.0) {
     depth->focus = middle;
+    return;
+  }
+  const std::string text =
+      fmt::format("finish {}: no object in the picture has the name {}, so the focus ", pass.name, depth->focus_on);
+  if (depth->focus > 0.0) {
+    tell({{Message::Kind::kWarning, text + fmt::format("stays at {} m", depth->focus)}});
   } else {
-    tell({Message::Kind::kWarning,
-          fmt::format("finish {}: no object in the picture has the name {}, so the focus stays at {}", pass.name,
-                      depth->focus_on, depth->focus > 0.0 ? fmt::format("{} m", depth->focus) : "near")});
+    const std::string fix = fmt::format(
+        "is near: where it leaves the view, say how the focus goes on, with --set "
+        "'finish.{}.focus=[[FRAME, METRES], ...]'",
+        pass.name);
+    tell({{Message::Kind::kWarning, text + fix}, true});
   }
 }
 
@@ -125,9 +133,9 @@ void LeaveOutThin(const GuideSet& guides, const TellFinish& tell, FinishPass& pa
   if (!outline || !(outline->thin > 0.0) || outline->thin_is_given) return;
   if (!guides.camera || !guides.camera->IsOrthographic()) return;
   outline->thin = 0.0;
-  tell({Message::Kind::kNote, fmt::format("finish {}: its thin is left out, because in an orthographic view nothing "
-                                          "gets smaller with distance",
-                                          pass.name)});
+  tell({{Message::Kind::kNote, fmt::format("finish {}: its thin is left out, because in an orthographic view nothing "
+                                           "gets smaller with distance",
+                                           pass.name)}});
 }
 
 // Makes the step fit the frame.
@@ -138,6 +146,28 @@ void Fit(const GuideSet& guides, const TellFinish& tell, FinishStep& step) {
 }
 
 }  // namespace
+
+void FinishRemarks::Tell(const FinishRemark& remark, std::optional<int> frame, const std::string& place,
+                         const RunContext& context) {
+  bool is_new = is_first_;
+  std::string start = place.empty() ? "" : place + ": ";
+  if (remark.is_of_frame && frame) {
+    is_new = frames_[remark.message.text].insert(*frame).second && frames_[remark.message.text].size() == 1;
+    if (place.empty()) start = fmt::format("frame {}: ", *frame);
+  }
+  if (is_new && context.on_message) context.on_message({remark.message.kind, start + remark.message.text});
+}
+
+std::vector<std::string> FinishRemarks::WarnOfFrames(const RunContext& context) const {
+  std::vector<std::string> warnings;
+  for (const auto& [text, frames] : frames_) {
+    if (frames.size() < 2) continue;
+    const std::vector<int> numbers(frames.begin(), frames.end());
+    warnings.push_back("frames " + FramesToText(numbers) + ": " + text);
+    context.Warn(warnings.back());
+  }
+  return warnings;
+}
 
 Expected<std::vector<FinishPreset>> FinishPresets(const RunContext& context) {
   std::vector<FinishPreset> presets;

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -43,7 +45,26 @@ bool EverLooksAtMeasures(const FinishChain& chain);
 bool EverLooksAtMeasures(const StyleSet& styles);
 
 // What is told of the passes in a frame: a note of what is left out, a warning of names that fit nothing.
-using TellFinish = std::function<void(const Message&)>;
+struct FinishRemark {
+  Message message;
+  bool is_of_frame = false;  // another frame may be without it
+};
+using TellFinish = std::function<void(const FinishRemark&)>;
+
+// Passes on the remarks of a run: those of its first frame, and of one frame or another where they are first made.
+class FinishRemarks {
+ public:
+  // `frame`: none of a single picture. `place`: the file that they are about, or empty.
+  void Tell(const FinishRemark& remark, std::optional<int> frame, const std::string& place, const RunContext& context);
+  void EndFrame() { is_first_ = false; }
+
+  // At the end of a sequence: what held in several frames, with their numbers, is warned of, and returned.
+  std::vector<std::string> WarnOfFrames(const RunContext& context) const;
+
+ private:
+  bool is_first_ = true;
+  std::map<std::string, std::set<int>> frames_;
+};
 
 // The passes of these styles and of the run, in their order, each with the pixels that it is for: a style's passes are
 // for its own pixels and lengths, the run's for all that shows: not for shadow catchers, nor for objects that are left

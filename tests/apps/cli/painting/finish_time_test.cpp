@@ -66,7 +66,7 @@ class CliFinishLateWall : public CliFinishInTime {
     GltfBuilder b;
     const int position = b.Floats({-2, -2, 2, 2, -2, 2, 2, 2, -2, -2, 2, -2}, 3);
     const int mesh = b.Mesh({{{"attributes", {{"POSITION", position}}}, {"indices", b.Indices({0, 1, 2, 0, 2, 3})}}});
-    const int wall = b.Root({{"mesh", mesh}});
+    const int wall = b.Root({{"name", "Wall"}, {"mesh", mesh}});
     b.Append("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 0.8}, {"znear", 0.1}}}});
     b.Root({{"camera", 0}, {"translation", {0, 0, 8}}});
     b.Animate(wall, "translation", {3, 4}, {0, 0, 60, 0, 0, 0});
@@ -137,6 +137,26 @@ TEST_F(CliFinishLateWall, NothingToMeasureIsWarnedOf) {
       RunOk(With({"finish", "p.#.png", "g.#.exr", "--frames", "1-2", "-o", "f.#.png"}, finish_));
   EXPECT_TRUE(Contains(after.err, "no surface shows in frames 1-2")) << after.err;
   EXPECT_TRUE(Contains(after.err, "give --finish-measures of a frame")) << after.err;
+}
+
+// The object in focus leaves the view: the first frame says so at once, the end of the run has them all.
+TEST_F(CliFinishLateWall, FramesWithoutTheObjectInFocusAreNamed) {
+  const Arguments focus = {"--finish", "depth", "--set", "finish.depth.focus_on=Wall", "--frames", "5-1", "--json"};
+  const std::string lost = "finish depth: no object in the picture has the name Wall, so the focus is near";
+  const std::string fix = "finish.depth.focus=[[FRAME, METRES], ...]";
+  const CommandResult run =
+      RunOk(With({"stylize", "late.glb", "--fps", "1", "--size", "48x32", "--style", "lit", "-o", "p.#.png"}, focus));
+  EXPECT_TRUE(Contains(run.err, "warning: frame 3: " + lost)) << run.err;
+  EXPECT_FALSE(Contains(run.err, "warning: frame 2: " + lost)) << run.err;
+  EXPECT_TRUE(Contains(run.err, "warning: frames 1-3: " + lost)) << run.err;
+  EXPECT_TRUE(Contains(run.err, fix)) << run.err;
+  EXPECT_TRUE(Contains(run.Json()["warnings"][0].get<std::string>(), "frames 1-3: " + lost)) << run.out;
+  RunOk({"guidegen", "late.glb", "--fps", "1", "--size", "48x32", "--frames", "1-5", "-o", "g.#.exr"});
+  const CommandResult after = RunOk(With({"finish", "p.#.png", "g.#.exr", "-o", "f.#.png"}, focus));
+  EXPECT_TRUE(Contains(after.err, "warning: g.3.exr: " + lost)) << after.err;
+  EXPECT_TRUE(Contains(after.err, "warning: frames 1-3: " + lost)) << after.err;
+  const Arguments keyed = With(focus, {"--set", "finish.depth.focus=[[4, 8], [5, 9]]"});
+  EXPECT_FALSE(Contains(RunOk(With({"finish", "p.#.png", "g.#.exr", "-o", "f.#.png"}, keyed)).err, "focus is near"));
 }
 
 // A frame is kept by what it was measured with, whether that was given or not.
