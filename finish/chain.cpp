@@ -260,7 +260,7 @@ void ApplyToAll(const FinishStep& step, const FinishFrame& frame, Picture& pictu
   } else if (const auto* smooth = std::get_if<SmoothPass>(&pass.effect)) {
     internal::Smooth(*smooth, pass.strength, step.only, frame, picture);
   } else if (const auto* edges = std::get_if<EdgesPass>(&pass.effect)) {
-    internal::DrawEdges(*edges, pass.strength, step.only, frame, picture);
+    internal::DrawEdges(*edges, pass.strength, step.only, IsOfGuides(step), frame, picture);
   } else if (const auto* hatch = std::get_if<HatchPass>(&pass.effect)) {
     internal::DrawHatch(*hatch, pass.strength, step.only, IsOfGuides(step), frame, picture);
   } else if (const auto* pigment = std::get_if<PigmentPass>(&pass.effect)) {

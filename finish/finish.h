@@ -1,6 +1,6 @@
 // Finishing effects over a painted or rendered picture: the manual of this library.
 //
-//   MeasureFinish(guides)               what a sequence measures once, on its first picture
+//   MeasureFinish(guides)               what a sequence measures once
 //   ApplyToGuides(steps, frame, …)      applies the passes that change guides, before the paint is matched
 //   ApplyFinish(steps, stage, frame, …) applies the passes of one stage, in order, in place
 //   FinishInLayers(steps, frame, …)     applies all stages, and gives what each pass does as a layer of its own
@@ -24,7 +24,7 @@
 
 namespace scumble {
 
-// What passes take from the first picture of a sequence where a key is 0. Of the covered pixels.
+// What passes take from the first picture of a sequence that shows a surface, where a key is 0. Of the covered pixels.
 struct FinishMeasures {
   double near = 0.0, middle = 0.0, far = 0.0;  // the 2nd, 50th and 98th percentile of depth, metres
   double bright = 1.0;                         // the 90th percentile of luminance; 1 without light
@@ -33,6 +33,9 @@ struct FinishMeasures {
 
 // Whether any of the passes looks at them.
 bool LooksAtMeasures(std::span<const FinishPass> passes);
+
+// Whether a pixel is covered: without one there is nothing to measure.
+bool ShowsSurface(const GuideSet& guides);
 
 // Of layers that the guides lack, and of nothing covered, the values stay as they are above.
 FinishMeasures MeasureFinish(const GuideSet& guides);

@@ -60,6 +60,11 @@ bool LooksAtMeasures(std::span<const FinishPass> passes) {
   });
 }
 
+bool ShowsSurface(const GuideSet& guides) {
+  const auto coverage = guides.Plane(Layer::kCoverage);
+  return std::any_of(coverage.begin(), coverage.end(), [](float value) { return value > 0.0f; });
+}
+
 FinishMeasures MeasureFinish(const GuideSet& guides) {
   FinishMeasures measures;
   if (std::vector<float> depth = CoveredValues(guides, Layer::kDepth); !depth.empty()) {

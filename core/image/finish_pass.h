@@ -45,6 +45,7 @@ struct OutlinePass {
   double suggestive_reach = 8.0;                                     // 1 … 64: across a valley, to either side
   double suggestive_depth = 0.03;  // 0 … 1: what the cosine to the viewer must rise by over that reach
   double thin = 0.0;               // 0 … 2: the width is multiplied by (thin_at / depth)^thin
+  bool thin_is_given = false;      // by --set: then a view without perspective is an error, else `thin` is left out
   double thin_at = 0.0;            // metres; 0: the middle depth of the first picture
   double light = 0.0;              // -2 … 2: the width is multiplied by 1 + light · (1/2 - luminance)
   double taper = 0.0;              // 0 … 512: ends grow thin over this length

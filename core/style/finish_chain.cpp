@@ -45,6 +45,15 @@ Expected<std::optional<StyleTrack>> FramesIn(const std::string& text) {
   return std::optional(std::move(track));
 }
 
+// What the user sets himself is refused where it has no effect.
+void NoteGiven(const std::string& text, std::span<FinishPass> passes) {
+  const std::string key = text.substr(0, text.find('='));
+  for (FinishPass& pass : passes) {
+    auto* const outline = std::get_if<OutlinePass>(&pass.effect);
+    if (outline && IsOfPass(key, pass) && LastOf(key) == "thin") outline->thin_is_given = true;
+  }
+}
+
 Error AtSet(const std::string& text, const Error& error) {
   return Error{error.kind, "--set " + text + ": " + error.message};
 }
@@ -123,6 +132,7 @@ LayerSet LayersOverTime(const FinishChain& chain) {
 }
 
 Expected<std::size_t> OverrideFinish(FinishChain& chain, const std::string& text) {
+  NoteGiven(text, chain.passes);
   SCUMBLE_ASSIGN(const std::optional<StyleTrack> frames, FramesIn(text));
   if (!frames) {
     if (text.rfind(kDialKeys, 0) == 0 && !chain.tracks.empty()) {
@@ -144,6 +154,7 @@ Expected<std::size_t> OverrideFinish(FinishChain& chain, const std::string& text
 }
 
 Expected<std::size_t> OverrideFinish(Style& style, const std::string& text) {
+  NoteGiven(text, style.finish);
   SCUMBLE_ASSIGN(const std::optional<StyleTrack> frames, FramesIn(text));
   if (!frames) {
     SCUMBLE_RETURN_IF_ERROR(CheckDial(style, text));

@@ -31,9 +31,10 @@ FloatPlane ToonLight(const ToonPass& pass, const FinishFrame& frame);
 // its depth. With `fill` f below 1 the first term becomes f G(σ) + 1 - f, which keeps lines and fills less.
 // With `flow` the difference is taken across edges and evened out along them (finish/area/edges_flow.h).
 // With `borders` each Gaussian is over pixels of the same object alone, so that a border of two objects makes no line.
+// Of guides, only the surface's share of a pixel has ink (SurfaceShares, with `of_guides`).
 // O(pixels · (width + flow)).
-void DrawEdges(const EdgesPass& pass, double strength, std::span<const std::uint8_t> only, const FinishFrame& frame,
-               Picture& picture);
+void DrawEdges(const EdgesPass& pass, double strength, std::span<const std::uint8_t> only, bool of_guides,
+               const FinishFrame& frame, Picture& picture);
 
 // Strokes in patches of one direction. Patches are the cells of the nearest of the jittered grid points in 3 × 3 grid
 // cells, apart by object; a patch's direction is the main axis of its structure tensor of normals, J = Σ ∇n ∇nᵀ, which

@@ -9,6 +9,7 @@
 #include "finish/area/oklab_blocks.h"
 #include "finish/tone/fast_tanh.h"
 #include "finish/tone/point_effect.h"
+#include "finish/tone/surface_share.h"
 
 namespace scumble::internal {
 namespace {
@@ -73,8 +74,8 @@ SCUMBLE_WIDE_LOOPS void TakeShares(const Inking& inking, const float* responses,
 
 }  // namespace
 
-void DrawEdges(const EdgesPass& pass, double strength, std::span<const std::uint8_t> only, const FinishFrame& frame,
-               Picture& picture) {
+void DrawEdges(const EdgesPass& pass, double strength, std::span<const std::uint8_t> only, bool of_guides,
+               const FinishFrame& frame, Picture& picture) {
   const FloatPlane tone = ToneOf(pass.tone, frame, picture);
   const bool on_paper = pass.draw == EdgesPass::Draw::kPaint;
   const LabColor fixed = ToOklab(on_paper ? pass.paper : pass.ink);
@@ -83,12 +84,19 @@ void DrawEdges(const EdgesPass& pass, double strength, std::span<const std::uint
   const float chroma = pass.color == OutlinePass::Color::kComplement ? -0.5f : 0.5f;
   const Inking inking{static_cast<float>(pass.threshold), static_cast<float>(pass.slope), static_cast<float>(strength),
                       on_paper};
+  const auto coverage =
+      pass.tone != EdgesPass::Tone::kPaint ? frame.guides->Plane(Layer::kCoverage) : std::span<const float>();
   const auto draw = [&](std::size_t first, std::size_t count, const float* responses) {
     if (!on_paper && !AnyBelow(responses, count, inking.threshold)) return;
     std::array<float, kOklabBlock> shares;
     TakeShares(inking, responses, count, shares.data());
     // Few pixels have ink: these alone are mixed, side by side.
     std::uint16_t* const texels = picture.rgba.data() + 4 * first;
+    if (!coverage.empty()) {  // light and base colours are the surface's, paint the whole pixel's
+      std::array<float, kOklabBlock> surface;
+      SurfaceShares(coverage.data() + first, texels, of_guides, count, surface.data());
+      for (std::size_t i = 0; i < count; ++i) shares[i] *= surface[i];
+    }
     std::array<std::uint16_t, 4 * kOklabBlock> made;
     std::array<std::uint16_t, kOklabBlock> where;
     std::array<float, kOklabBlock> share;

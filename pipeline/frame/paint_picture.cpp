@@ -19,7 +19,6 @@
 #include "measure/painting/paint_faults.h"
 #include "pipeline/frame/explain_frame.h"
 #include "pipeline/style/finish_order.h"
-#include "pipeline/style/finish_set.h"
 #include "transfer/upsample_guides.h"
 
 namespace scumble {
@@ -162,16 +161,15 @@ void NoteExemplarUse(const Style& style, const RunContext& context) {
 // The passes of a picture that is painted by `guides`, and measured by those that were `given`, before they were
 // upsampled.
 FrameFinish FinishOf(const StyleSet& styles, const GuideSet& given, const GuideSet& guides, const StyleMap* map,
-                     bool over, const RunContext& context, PictureState& state) {
+                     bool over, std::optional<int> frame, const RunContext& context, PictureState& state) {
   FrameFinish finish;
-  const bool is_first = !state.told_of_finish;
-  finish.steps = FinishStepsOf(styles, guides, map, over, [&](const std::string& text) {
-    if (is_first) context.Warn(text);
+  finish.steps = FinishStepsOf(styles, guides, map, over, [&](const FinishRemark& remark) {
+    state.finish_remarks.Tell(remark, frame, {}, context);
   });
   if (finish.steps.empty()) return finish;
-  state.told_of_finish = true;
+  state.finish_remarks.EndFrame();
   finish.reference_height = styles.first().transfer.reference_height;
-  MeasureFinishOf(styles, given, context, state);
+  MeasureFinishOf(styles, given, {}, context, state);
   if (state.finish_measures) finish.measures = *state.finish_measures;
   if (&given != &guides) finish.small_guides = &given;
   return finish;
@@ -179,12 +177,11 @@ FrameFinish FinishOf(const StyleSet& styles, const GuideSet& given, const GuideS
 
 }  // namespace
 
-void MeasureFinishOf(const StyleSet& styles, const GuideSet& guides, const RunContext& context, PictureState& state) {
+void MeasureFinishOf(const StyleSet& styles, const GuideSet& guides, std::optional<int> frame,
+                     const RunContext& context, PictureState& state) {
   if (state.finish_measures || !EverLooksAtMeasures(styles)) return;
   state.finish_measures = styles.options.finish_measures;
-  if (state.finish_measures) return;
-  state.finish_measures = MeasureFinish(guides);
-  context.Note("finish: --finish-measures " + MeasuresText(*state.finish_measures) + " repeats what was measured");
+  if (!state.finish_measures) state.finish_measures = MeasureAndTell(guides, frame, context);
 }
 
 Expected<Picture> ReadUnderneath(const std::string& file, const std::string& view_layer) {
@@ -263,7 +260,12 @@ Status PrepareFrame(StyleSet& styles, const GuideSet& guides, const PictureReque
   }
   if (state.exposure) return Ok();
   state.exposure = ExposureOf(request.exposure, state.prepared, guides, context.threads);
-  if (MeasuresExposure(styles, request)) {
+  if (!MeasuresExposure(styles, request)) return Ok();
+  if (!ShowsSurface(guides)) {
+    context.Warn(
+        "the picture shows no surface, so no exposure was measured, and it is 0 stops: where it is one of a sequence, "
+        "give --exposure of a frame that shows something");
+  } else {
     context.Note(fmt::format("exposure: {:.2f} stops; --exposure {:.2f} repeats it", *state.exposure, *state.exposure));
   }
   return Ok();
@@ -327,7 +329,7 @@ Expected<PaintedPicture> PaintInMemory(StyleSet& styles, const GuideSet& given, 
   SCUMBLE_RETURN_IF_ERROR(CheckLayersWanted(wanted, AllPasses(styles)));
 
   const FrameFinish finish =
-      FinishOf(styles, given, guides, needs_map ? &map : nullptr, over != nullptr, context, state);
+      FinishOf(styles, given, guides, needs_map ? &map : nullptr, over != nullptr, request.frame, context, state);
   double finish_ms = 0.0;
   FrameSettings settings{request.seed, request.frame.value_or(0), RateOf(request.fps, given), *state.exposure,
                          over,         request.KeepsField()};

@@ -16,6 +16,7 @@
 #include "pipeline/frame/provenance.h"
 #include "pipeline/requests.h"
 #include "pipeline/run_context.h"
+#include "pipeline/style/finish_set.h"
 #include "pipeline/style/style_set.h"
 #include "transfer/transfer.h"
 
@@ -49,8 +50,8 @@ struct PictureState {
   std::string over_file;        // that `over` is from
   std::optional<Picture> over;  // one picture underneath all frames is read once
   int width = 0, height = 0;    // of the first frame's guides
-  bool told_of_finish = false;  // of names in it that fit nothing
-  bool warned = false;          // of options that change nothing
+  FinishRemarks finish_remarks;
+  bool warned = false;  // of options that change nothing
   bool warned_of_size = false;
 };
 
@@ -61,7 +62,9 @@ Expected<Picture> ReadUnderneath(const std::string& file, const std::string& vie
 Status ReadOver(const PictureRequest& request, PictureState& state);
 
 // Measures what finishing passes look at, unless `state` has it already, and tells it. Nothing where none looks.
-void MeasureFinishOf(const StyleSet& styles, const GuideSet& guides, const RunContext& context, PictureState& state);
+// `frame`: of a sequence.
+void MeasureFinishOf(const StyleSet& styles, const GuideSet& guides, std::optional<int> frame,
+                     const RunContext& context, PictureState& state);
 
 // Of two lighting conditions with one luminance only the first is ever chosen: the others, with what is wrong
 // and how to fix it.

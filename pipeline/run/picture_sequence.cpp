@@ -25,28 +25,39 @@ Expected<PictureRequest> RequestAt(const PictureRequest& request, int frame, con
   return one;
 }
 
+bool MeasuresFinish(const StyleSet& styles) { return !styles.options.finish_measures && EverLooksAtMeasures(styles); }
+
 }  // namespace
 
 Status PictureSequence::Begin(const Sequence& sequence, int width, int height, const GuidesAt& guides_at,
                               const Progress& progress) {
   SCUMBLE_RETURN_IF_ERROR(ReadOverOfAll(width, height));
   if (!MustLookAhead(sequence)) return Ok();
-  const int first = sequence.frames.front();
-  const Expected<FrameGuides> found = guides_at(first, progress);
-  if (!found) {
-    const std::string fix = MeasuresExposure(styles_, request_)
-                                ? " is the one that --exposure auto is measured on: give --exposure STOPS"
-                                : " is the one that finishing effects are measured on: begin with another";
-    return Error{found.error().kind, found.error().message + "; frame " + std::to_string(first) + fix};
+  const auto is_exposed = [&] { return MeasuresExposure(styles_, request_); };  // a scene's styles come with its guides
+  for (const int frame : sequence.frames) {
+    const Expected<FrameGuides> found = guides_at(frame, progress);
+    if (!found) {
+      const std::string fix = is_exposed() ? " is the one that --exposure auto is measured on: give --exposure STOPS"
+                                           : " is the one that finishing effects are measured on: begin with another";
+      return Error{found.error().kind, found.error().message + "; frame " + std::to_string(frame) + fix};
+    }
+    if (!ShowsSurface(*found->guides)) continue;
+    SCUMBLE_ASSIGN(const PictureRequest one, RequestAt(request_, frame, request_.output));
+    SCUMBLE_RETURN_IF_ERROR(PrepareFrame(styles_, *found->guides, one, context_, state_));
+    MeasureFinishOf(styles_, *found->guides, frame, context_, state_);
+    if (!is_exposed()) return Ok();
+    context_.Warn(
+        fmt::format("the exposure of all frames was measured on frame {}: where a sequence is cut into several runs, "
+                    "give each --exposure {:.2f}",
+                    frame, *state_.exposure));
+    return Ok();
   }
-  SCUMBLE_ASSIGN(const PictureRequest one, RequestAt(request_, first, request_.output));
-  SCUMBLE_RETURN_IF_ERROR(PrepareFrame(styles_, *found->guides, one, context_, state_));
-  MeasureFinishOf(styles_, *found->guides, context_, state_);
-  if (!MeasuresExposure(styles_, request_)) return Ok();
-  context_.Warn(
-      fmt::format("the exposure of all frames was measured on frame {}: where a sequence is cut into several runs, "
-                  "give each --exposure {:.2f}",
-                  first, *state_.exposure));
+  if (is_exposed()) state_.exposure = 0.0;
+  if (MeasuresFinish(styles_)) state_.finish_measures.emplace();
+  const char* const options = !is_exposed()             ? "--finish-measures"
+                              : MeasuresFinish(styles_) ? "--exposure and --finish-measures"
+                                                        : "--exposure";
+  context_.Warn(NothingToMeasure(sequence.frames, options));
   return Ok();
 }
 
@@ -79,7 +90,7 @@ Status PictureSequence::Check(int frame, const std::string& output, int width, i
 }
 
 bool PictureSequence::MustLookAhead(const Sequence& sequence) const {
-  return sequence.frames.size() > 1 && (MeasuresExposure(styles_, request_) || EverLooksAtMeasures(styles_));
+  return sequence.frames.size() > 1 && (MeasuresExposure(styles_, request_) || MeasuresFinish(styles_));
 }
 
 Expected<FrameWrite> PictureSequence::Make(int frame, const std::string& output, const GuidesAt& guides_at,
@@ -87,6 +98,13 @@ Expected<FrameWrite> PictureSequence::Make(int frame, const std::string& output,
   SCUMBLE_ASSIGN(const PictureRequest one, RequestAt(request_, frame, output));
   SCUMBLE_ASSIGN(const FrameGuides found, guides_at(frame, Within(progress, 0.0, guides_share)));
   return PaintPicture(styles_, *found.guides, found.source, one, context_, Within(progress, guides_share, 1.0), state_);
+}
+
+std::vector<std::string> PictureSequence::Warnings() {
+  std::vector<std::string> warnings = AssignmentReport(styles_);
+  const std::vector<std::string> of_finish = state_.finish_remarks.WarnOfFrames(context_);
+  warnings.insert(warnings.end(), of_finish.begin(), of_finish.end());
+  return warnings;
 }
 
 Expected<RunReport> RunOnePicture(StyleSet& styles, const GuideSet& guides, const GuideSource& source,

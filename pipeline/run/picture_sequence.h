@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/image/guides.h"
 #include "pipeline/frame/paint_picture.h"
@@ -30,9 +31,10 @@ class PictureSequence {
   PictureSequence(StyleSet& styles, const PictureRequest& request, const RunContext& context)
       : styles_(styles), request_(request), context_(context) {}
 
-  // A measured exposure is measured on the first frame of the range, even where that one is kept: a sequence that is
-  // resumed goes on as it began. One picture underneath all frames must be there, and have the size of the first that
-  // is known.
+  // Exposure and finishing effects are measured on the first frame of the range that shows a surface, even where it is
+  // kept: a sequence that is resumed goes on as it began. `guides_at` is asked for frames of the range in their order,
+  // until one shows some. One picture underneath all frames must be there, and have the size of the first that is
+  // known.
   Status Begin(const Sequence& sequence, int width, int height, const GuidesAt& guides_at, const Progress& progress);
   Status ReadOverOfAll(int width, int height);
 
@@ -44,6 +46,9 @@ class PictureSequence {
 
   Expected<FrameWrite> Make(int frame, const std::string& output, const GuidesAt& guides_at, double guides_share,
                             const Progress& progress);
+
+  // What is warned of when all frames are made, for the report.
+  std::vector<std::string> Warnings();
 
  private:
   StyleSet& styles_;

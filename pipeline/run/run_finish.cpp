@@ -37,7 +37,7 @@ struct FinishState {
   FinishChain chain;
   LayerSet required;  // in any frame
   std::optional<FinishMeasures> measures;
-  bool told = false;  // of names that fit nothing
+  FinishRemarks remarks;
 };
 
 LayerSet LayersOf(const FinishChain& chain) {
@@ -95,14 +95,9 @@ std::string SettingsText(const FinishRequest& request, const FinishChain& chain,
   return text + (request.show_finish.empty() ? "" : "; show " + (kShowFinish + request.show_finish));
 }
 
-void Measure(const GuideSet& guides, const RunContext& context, FinishState& state) {
-  state.measures = MeasureFinish(guides);
-  context.Note("finish: --finish-measures " + MeasuresText(*state.measures) + " repeats what was measured");
-}
-
 // The frame's number, which key frames go by, and its files.
 struct FrameFiles {
-  int frame = 0;
+  std::optional<int> frame;
   std::string picture, guides, camera, output, layers;
 };
 
@@ -134,7 +129,7 @@ Status CheckFinishMemory(const FinishRequest& request, const FrameFiles& files, 
 Expected<FrameWrite> Finish(const FinishRequest& request, const FrameFiles& files, const RunContext& context,
                             const Progress& progress, FinishState& state) {
   SCUMBLE_RETURN_IF_ERROR(CheckFinishMemory(request, files, state, context));
-  SCUMBLE_RETURN_IF_ERROR(SetFinishFrame(state.chain, files.frame));
+  SCUMBLE_RETURN_IF_ERROR(SetFinishFrame(state.chain, files.frame.value_or(0)));
   StepTimes times;
   Stopwatch watch;
   const auto picture = std::make_shared<Picture>();
@@ -151,18 +146,16 @@ Expected<FrameWrite> Finish(const FinishRequest& request, const FrameFiles& file
   }
   times.emplace_back("read", watch.Lap());
   context.EndStage("read");
-  const bool is_first = !std::exchange(state.told, true);
   const Size size{picture->width, picture->height};
-  const std::vector<FinishStep> steps =
-      FinishStepsOf(state.chain.passes, size, guides ? &*guides : nullptr, [&](const std::string& text) {
-        if (is_first) context.Warn(files.guides + ": " + text);
-      });
-  if (!state.measures && guides && EverLooksAtMeasures(state.chain)) {
-    Measure(*guides, context, state);
-  }
+  const std::vector<FinishStep> steps = FinishStepsOf(
+      state.chain.passes, size, guides ? &*guides : nullptr,
+      [&](const FinishRemark& remark) { state.remarks.Tell(remark, files.frame, files.guides, context); });
+  state.remarks.EndFrame();
+  if (!state.measures && guides && EverLooksAtMeasures(state.chain))
+    state.measures = MeasureAndTell(*guides, {}, context);
   FinishFrame frame{guides ? &*guides : nullptr, state.measures.value_or(FinishMeasures()), 1.0, request.seed};
   const FrameRate fps = RateFor(request, files.guides);
-  frame.frame = files.frame, frame.fps_numerator = fps.numerator, frame.fps_denominator = fps.denominator;
+  frame.frame = files.frame.value_or(0), frame.fps_numerator = fps.numerator, frame.fps_denominator = fps.denominator;
   if (request.reference_height > 0) frame.scale = double(picture->height) / request.reference_height;
   if (guides && ChangesGuides(steps)) {
     SCUMBLE_RETURN_IF_ERROR(ApplyToGuides(steps, frame, context.threads, {}, *guides));
@@ -246,8 +239,8 @@ Expected<RunReport> RunFinish(FinishRequest request, const SequenceListener& lis
   report.paints = true;
   if (!sequence) {
     SCUMBLE_ASSIGN(const FrameWrite write, Finish(request,
-                                                  {request.frame.value_or(0), request.picture, request.guides,
-                                                   request.camera, request.output, request.layers_out},
+                                                  {request.frame, request.picture, request.guides, request.camera,
+                                                   request.output, request.layers_out},
                                                   context, context.StartProgress("finish"), state));
     SCUMBLE_ASSIGN(report.frame, write());
     context.EndStage("write");
@@ -272,13 +265,19 @@ Expected<RunReport> RunFinish(FinishRequest request, const SequenceListener& lis
     if (request.layers_out.empty()) return Ok();
     return CheckWholeLayers(layers.At(frame), header->width, header->height, settings);
   };
-  // A sequence that is resumed goes on with the measures of its first frame.
+  // Where a sequence is resumed, a frame that is kept may be the one to measure.
   work.begin = [&](std::span<const int>, const Progress&) -> Status {
     if (state.measures || !EverLooksAtMeasures(state.chain)) return Ok();
-    const int first = sequence->frames.front();
-    SCUMBLE_ASSIGN(const GuideSet set, ReadGuides(guides.At(first), ReadOptions(request, state.required,
-                                                                                guides.At(first), camera.At(first))));
-    Measure(set, context, state);
+    for (const int frame : sequence->frames) {
+      const std::string file = guides.At(frame);
+      SCUMBLE_ASSIGN(const GuideSet set,
+                     ReadGuides(file, ReadOptions(request, state.required, file, camera.At(frame))));
+      if (!ShowsSurface(set)) continue;
+      state.measures = MeasureAndTell(set, frame, context);
+      return Ok();
+    }
+    state.measures.emplace();
+    context.Warn(NothingToMeasure(sequence->frames, "--finish-measures"));
     return Ok();
   };
   work.make = [&](int frame, const std::string& output, const Progress& progress) {
@@ -286,6 +285,7 @@ Expected<RunReport> RunFinish(FinishRequest request, const SequenceListener& lis
                   context, progress, state);
   };
   SCUMBLE_ASSIGN(report.sequence, RunSequence(*sequence, work, listener, context, context.StartProgress("finish")));
+  report.warnings = state.remarks.WarnOfFrames(context);
   return report;
 }
 

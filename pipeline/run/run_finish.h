@@ -35,8 +35,8 @@ struct FinishRequest {
   SequenceRequest sequence;
 };
 
-// The effects see the picture as it is, with its alpha. What they measure is measured on the first frame. Errors leave
-// older files as they are.
+// The effects see the picture as it is, with its alpha. What they measure is measured on the first frame that shows
+// a surface. Errors leave older files as they are.
 Expected<RunReport> RunFinish(FinishRequest request, const SequenceListener& listener, const RunContext& context);
 
 }  // namespace scumble

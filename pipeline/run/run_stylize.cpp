@@ -59,7 +59,12 @@ Expected<RunReport> StylizeSequence(const StylizeRequest& request, const Sequenc
     SCUMBLE_ASSIGN(const SceneGuides* const made, scene.At(frame, progress));
     return source(*made);
   };
+  // The first frame of the range is among those that were started with, one after it need not be.
+  bool looks_further = false;
   const GuidesAt guides_ahead = [&](int frame, const Progress& progress) -> Expected<FrameGuides> {
+    if (frame != sequence.frames.front() && !std::exchange(looks_further, true)) {
+      SCUMBLE_RETURN_IF_ERROR(scene.Restart(std::span(sequence.frames).subspan(1)));
+    }
     SCUMBLE_ASSIGN(const SceneGuides* const made, scene.Peek(frame, progress));
     return source(*made);
   };
@@ -82,7 +87,8 @@ Expected<RunReport> StylizeSequence(const StylizeRequest& request, const Sequenc
     if (look && wanted.front() != first) wanted.insert(wanted.begin(), first);
     SCUMBLE_RETURN_IF_ERROR(scene.Start(wanted, progress));
     if (look && !pictures.MustLookAhead(sequence) && !guides_ahead(first, {})) return Ok();  // reported when it is made
-    return pictures.Begin(sequence, width, height, guides_ahead, {});
+    SCUMBLE_RETURN_IF_ERROR(pictures.Begin(sequence, width, height, guides_ahead, {}));
+    return looks_further ? scene.Restart(frames) : Ok();
   };
   work.make = [&](int frame, const std::string& output, const Progress& progress) {
     return pictures.Make(frame, output, guides_at, 0.5, progress);
@@ -92,7 +98,7 @@ Expected<RunReport> StylizeSequence(const StylizeRequest& request, const Sequenc
   RunReport report;
   report.sequence = std::move(totals);
   report.paints = true;
-  report.warnings = AssignmentReport(styles);
+  report.warnings = pictures.Warnings();
   return report;
 }
 

@@ -128,7 +128,7 @@ Expected<RunReport> TransferSequence(const TransferRequest& request, const Seque
   RunReport report;
   report.sequence = std::move(totals);
   report.paints = true;
-  report.warnings = AssignmentReport(styles);
+  report.warnings = pictures.Warnings();
   return report;
 }
 

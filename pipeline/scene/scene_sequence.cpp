@@ -55,10 +55,18 @@ void StoreFrameRate(const SceneRequest& options, const BlenderAnimation& animati
 Status SceneFrames::Start(std::span<const int> frames, const Progress& progress) {
   SCUMBLE_RETURN_IF_ERROR(CheckSceneRequest(options_));
   rate_ = options_.fps.value_or(FrameRate());
-  return IsBlenderScene(options_.scene) ? StartBlender(frames) : StartFile(progress);
+  return IsBlenderScene(options_.scene) ? StartBlender(frames, context_) : StartFile(progress);
 }
 
-Status SceneFrames::StartBlender(std::span<const int> frames) {
+Status SceneFrames::Restart(std::span<const int> frames) {
+  if (!blender_) return Ok();
+  blender_.reset();
+  exported_.clear(), needed_by_.clear(), place_.clear(), scenes_.clear();
+  loaded_ = 0;
+  return StartBlender(frames, silent_);
+}
+
+Status SceneFrames::StartBlender(std::span<const int> frames, const RunContext& context) {
   for (std::size_t i = 0; i < frames.size(); ++i) {
     place_[frames[i]] = static_cast<int>(i);
     for (int frame = frames[i]; frame <= frames[i] + motion_; ++frame) {
@@ -67,7 +75,7 @@ Status SceneFrames::StartBlender(std::span<const int> frames) {
     }
   }
   options_.blender.wants_start = options_.view.has_value();
-  SCUMBLE_ASSIGN(blender_, BlenderRange::Start(options_.scene, options_.blender, exported_, context_));
+  SCUMBLE_ASSIGN(blender_, BlenderRange::Start(options_.scene, options_.blender, exported_, context));
   return Ok();
 }
 
@@ -106,7 +114,7 @@ Status SceneFrames::StartFile(const Progress& progress) {
 
 Expected<const SceneGuides*> SceneFrames::At(int frame, const Progress& progress) {
   SCUMBLE_ASSIGN(const SceneGuides* const guides, Peek(frame, progress));
-  used_ = true;
+  used_ = planned_ = true;
   return guides;
 }
 
@@ -116,14 +124,21 @@ Expected<const SceneGuides*> SceneFrames::Peek(int frame, const Progress& progre
   if ((!blender_ && !animation_) || frame_ == frame) return guides_.get();
   frame_.reset();
   guides_ = std::make_shared<SceneGuides>();  // the last one may be being written
-  SCUMBLE_ASSIGN(*guides_, blender_ ? CastBlender(frame, progress) : CastFile(frame, progress));
+  const RunContext& context = ContextFor(frame);
+  SCUMBLE_ASSIGN(*guides_, blender_ ? CastBlender(frame, context, progress) : CastFile(frame, context, progress));
   SCUMBLE_RETURN_IF_ERROR(guides_->guides.Validate(options_.scene));
-  if (noted_) guides_->plan.clear();
+  if (planned_) guides_->plan.clear();
   noted_ = true, frame_ = frame;
+  seen_.insert(frame);
   return guides_.get();
 }
 
-Expected<SceneGuides> SceneFrames::CastFile(int frame, const Progress& progress) {
+const RunContext& SceneFrames::ContextFor(int frame) const {
+  if (seen_.count(frame)) return mute_;
+  return noted_ && blender_ ? silent_ : context_;
+}
+
+Expected<SceneGuides> SceneFrames::CastFile(int frame, const RunContext& context, const Progress& progress) {
   Stopwatch watch;
   SCUMBLE_RETURN_IF_ERROR(animation_->MoveTo(SecondsAt(frame, rate_), now_));
   if (motion_) SCUMBLE_RETURN_IF_ERROR(animation_->MoveTo(SecondsAt(frame + 1, rate_), next_));
@@ -134,7 +149,7 @@ Expected<SceneGuides> SceneFrames::CastFile(int frame, const Progress& progress)
   // Without motion the next scene is empty: it has no camera either.
   const auto next = motion_ ? std::optional(NextFrame{next_, camera_of(next_)}) : std::nullopt;
   SCUMBLE_ASSIGN(SceneGuides guides, CastScene(now_, camera_of(now_), next ? &*next : nullptr, options_, layers_,
-                                               context_, progress, false));
+                                               context, progress, false));
   StoreFrameRate(options_, {}, guides.guides);
   guides.times.insert(guides.times.begin(), {"move", move_ms});
   if (load_ms_) guides.times.insert(guides.times.begin(), {"load", *load_ms_});
@@ -145,8 +160,7 @@ Expected<SceneGuides> SceneFrames::CastFile(int frame, const Progress& progress)
   return guides;
 }
 
-Expected<SceneGuides> SceneFrames::CastBlender(int frame, const Progress& progress) {
-  const RunContext& context = noted_ ? silent_ : context_;
+Expected<SceneGuides> SceneFrames::CastBlender(int frame, const RunContext& context, const Progress& progress) {
   Stopwatch watch;
   SCUMBLE_ASSIGN(Scene* const loaded, BlenderFrame(frame));
   const int place = place_.at(frame);

@@ -30,8 +30,10 @@ class SceneFrames {
         layers_for_(std::move(layers_for)),
         motion_(motion),
         context_(context),
-        silent_(context.WithoutNotes()) {
+        silent_(context.WithoutNotes()),
+        mute_(context) {
     silent_.clock = context.clock;
+    mute_.on_message = nullptr;
   }
 
   // A scene that does not move is loaded and cast here, once for all frames. One that moves is loaded here. How it is
@@ -39,6 +41,10 @@ class SceneFrames {
   // camera of the file moves as the file says. Of a .blend, one Blender begins to export these frames, for the layer
   // motion the next ones too. Time 0 is then the scene's first frame.
   Status Start(std::span<const int> frames, const Progress& progress);
+
+  // From here on these frames are asked for, in this order, instead of what is left of those of Start: of a .blend,
+  // another Blender exports them. Notes nothing again.
+  Status Restart(std::span<const int> frames);
 
   // The guides of one of the frames, in their order; one frame may be asked for again. Cameras, lights and warnings are
   // noted once. Plan, times and cost are those of the work that this call did. Valid until the next call.
@@ -54,10 +60,11 @@ class SceneFrames {
   SceneGuides Take() { return std::move(*guides_); }
 
  private:
-  Status StartBlender(std::span<const int> frames);
+  Status StartBlender(std::span<const int> frames, const RunContext& context);
   Status StartFile(const Progress& progress);
-  Expected<SceneGuides> CastFile(int frame, const Progress& progress);
-  Expected<SceneGuides> CastBlender(int frame, const Progress& progress);
+  const RunContext& ContextFor(int frame) const;
+  Expected<SceneGuides> CastFile(int frame, const RunContext& context, const Progress& progress);
+  Expected<SceneGuides> CastBlender(int frame, const RunContext& context, const Progress& progress);
   Expected<Scene*> BlenderFrame(int frame);
   void WarnOnce(const Scene& scene);
 
@@ -65,7 +72,8 @@ class SceneFrames {
   LayersFor layers_for_;
   bool motion_;
   const RunContext& context_;
-  RunContext silent_;
+  RunContext silent_;  // without notes
+  RunContext mute_;    // without warnings too
 
   // A file that moves.
   std::optional<AnimatedScene> animation_;  // none: the scene stands still, or is Blender's
@@ -86,9 +94,11 @@ class SceneFrames {
 
   std::optional<int> frame_;  // that guides_ are of
   std::shared_ptr<SceneGuides> guides_ = std::make_shared<SceneGuides>();
-  bool used_ = false;   // At has returned guides_
-  bool noted_ = false;  // the first frame is made: plan, cameras and lights are noted
+  bool used_ = false;     // At has returned guides_
+  bool noted_ = false;    // the first frame is made: cameras and lights are noted
+  bool planned_ = false;  // At has returned the plan
   std::set<std::string> warned_;
+  std::set<int> seen_;  // frames that were cast: what there is to warn of is said
 };
 
 // Stores the frames' rate among the attributes, where the request or the .blend names one.

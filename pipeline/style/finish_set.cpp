@@ -12,6 +12,7 @@
 #include "core/style/finish_keys.h"
 #include "core/style/nearest_name.h"
 #include "finish/mask.h"
+#include "pipeline/frame_range.h"
 #include "pipeline/style/assignments.h"
 
 namespace scumble {
@@ -62,7 +63,7 @@ std::set<std::uint32_t> IdsThatFit(const std::vector<std::string>& patterns,
 }
 
 // Takes pixels out of `only` that are not of the objects and materials which the pass names.
-void LimitToNames(const FinishPass& pass, const GuideSet& guides, const std::function<void(const std::string&)>& tell,
+void LimitToNames(const FinishPass& pass, const GuideSet& guides, const TellFinish& tell,
                   std::vector<std::uint8_t>& only) {
   if (pass.objects.empty() && pass.materials.empty()) return;
   std::vector<std::uint8_t> named(guides.pixel_count(), 0);
@@ -70,8 +71,9 @@ void LimitToNames(const FinishPass& pass, const GuideSet& guides, const std::fun
     if (patterns.empty() || !guides.Has(layer)) return;
     const std::set<std::uint32_t> ids = IdsThatFit(patterns, names);
     if (ids.empty()) {
-      tell(fmt::format("finish {}: no {} has the name {}", pass.name, layer == Layer::kObject ? "object" : "material",
-                       fmt::join(patterns, ", ")));
+      tell({{Message::Kind::kWarning,
+             fmt::format("finish {}: no {} has the name {}", pass.name, layer == Layer::kObject ? "object" : "material",
+                         fmt::join(patterns, ", "))}});
       return;
     }
     const auto plane = guides.Plane(layer);
@@ -104,19 +106,68 @@ double MiddleDepth(const std::string& pattern, const GuideSet& guides) {
 }
 
 // Puts the focus of a depth effect on the object that it names.
-void Focus(const GuideSet& guides, const std::function<void(const std::string&)>& tell, FinishPass& pass) {
+void Focus(const GuideSet& guides, const TellFinish& tell, FinishPass& pass) {
   auto* const depth = std::get_if<DepthPass>(&pass.effect);
   if (!depth || depth->focus_on.empty()) return;
   const double middle = MiddleDepth(depth->focus_on, guides);
   if (middle > 0.0) {
     depth->focus = middle;
+    return;
+  }
+  const std::string text =
+      fmt::format("finish {}: no object in the picture has the name {}, so the focus ", pass.name, depth->focus_on);
+  if (depth->focus > 0.0) {
+    tell({{Message::Kind::kWarning, text + fmt::format("stays at {} m", depth->focus)}});
   } else {
-    tell(fmt::format("finish {}: no object in the picture has the name {}, so the focus stays at {}", pass.name,
-                     depth->focus_on, depth->focus > 0.0 ? fmt::format("{} m", depth->focus) : "near"));
+    const std::string fix = fmt::format(
+        "is near: where it leaves the view, say how the focus goes on, with --set "
+        "'finish.{}.focus=[[FRAME, METRES], ...]'",
+        pass.name);
+    tell({{Message::Kind::kWarning, text + fix}, true});
   }
 }
 
+// Without perspective nothing gets smaller with distance.
+void LeaveOutThin(const GuideSet& guides, const TellFinish& tell, FinishPass& pass) {
+  auto* const outline = std::get_if<OutlinePass>(&pass.effect);
+  if (!outline || !(outline->thin > 0.0) || outline->thin_is_given) return;
+  if (!guides.camera || !guides.camera->IsOrthographic()) return;
+  outline->thin = 0.0;
+  tell({{Message::Kind::kNote, fmt::format("finish {}: its thin is left out, because in an orthographic view nothing "
+                                           "gets smaller with distance",
+                                           pass.name)}});
+}
+
+// Makes the step fit the frame.
+void Fit(const GuideSet& guides, const TellFinish& tell, FinishStep& step) {
+  Focus(guides, tell, step.pass);
+  LeaveOutThin(guides, tell, step.pass);
+  LimitToNames(step.pass, guides, tell, step.only);
+}
+
 }  // namespace
+
+void FinishRemarks::Tell(const FinishRemark& remark, std::optional<int> frame, const std::string& place,
+                         const RunContext& context) {
+  bool is_new = is_first_;
+  std::string start = place.empty() ? "" : place + ": ";
+  if (remark.is_of_frame && frame) {
+    is_new = frames_[remark.message.text].insert(*frame).second && frames_[remark.message.text].size() == 1;
+    if (place.empty()) start = fmt::format("frame {}: ", *frame);
+  }
+  if (is_new && context.on_message) context.on_message({remark.message.kind, start + remark.message.text});
+}
+
+std::vector<std::string> FinishRemarks::WarnOfFrames(const RunContext& context) const {
+  std::vector<std::string> warnings;
+  for (const auto& [text, frames] : frames_) {
+    if (frames.size() < 2) continue;
+    const std::vector<int> numbers(frames.begin(), frames.end());
+    warnings.push_back("frames " + FramesToText(numbers) + ": " + text);
+    context.Warn(warnings.back());
+  }
+  return warnings;
+}
 
 Expected<std::vector<FinishPreset>> FinishPresets(const RunContext& context) {
   std::vector<FinishPreset> presets;
@@ -171,7 +222,7 @@ bool EverLooksAtMeasures(const StyleSet& styles) {
 }
 
 std::vector<FinishStep> FinishStepsOf(const StyleSet& styles, const GuideSet& guides, const StyleMap* map, bool over,
-                                      const std::function<void(const std::string&)>& tell) {
+                                      const TellFinish& tell) {
   std::vector<FinishStep> steps;
   for (std::size_t i = 0; i < styles.styles.size(); ++i) {
     if (styles.styles[i].finish.empty()) continue;
@@ -183,8 +234,7 @@ std::vector<FinishStep> FinishStepsOf(const StyleSet& styles, const GuideSet& gu
     for (const FinishPass& pass : styles.styles[i].finish) {
       FinishStep& step = steps.emplace_back(FinishStep{pass, own});
       step.reference_height = styles.styles[i].transfer.reference_height;
-      Focus(guides, tell, step.pass);
-      LimitToNames(pass, guides, tell, step.only);
+      Fit(guides, tell, step);
       step.share = MaskShares(pass.mask, &guides, guides.width(), guides.height());
     }
   }
@@ -199,25 +249,40 @@ std::vector<FinishStep> FinishStepsOf(const StyleSet& styles, const GuideSet& gu
   for (const FinishPass& pass : styles.finish.passes) {
     FinishStep& step = steps.emplace_back(FinishStep{pass, shows});
     step.reference_height = styles.first().transfer.reference_height;
-    Focus(guides, tell, step.pass);
-    LimitToNames(pass, guides, tell, step.only);
+    Fit(guides, tell, step);
     step.share = MaskShares(pass.mask, &guides, guides.width(), guides.height());
   }
   return steps;
 }
 
 std::vector<FinishStep> FinishStepsOf(const std::vector<FinishPass>& passes, const Size& size, const GuideSet* guides,
-                                      const std::function<void(const std::string&)>& tell) {
+                                      const TellFinish& tell) {
   std::vector<FinishStep> steps;
   for (const FinishPass& pass : passes) {
     FinishStep& step = steps.emplace_back(FinishStep{pass, {}});
-    if (guides) {
-      Focus(*guides, tell, step.pass);
-      LimitToNames(pass, *guides, tell, step.only);
-    }
+    if (guides) Fit(*guides, tell, step);
     step.share = MaskShares(pass.mask, guides, size.width, size.height);
   }
   return steps;
+}
+
+FinishMeasures MeasureAndTell(const GuideSet& guides, std::optional<int> frame, const RunContext& context) {
+  const FinishMeasures measures = MeasureFinish(guides);
+  if (!ShowsSurface(guides)) {
+    context.Warn(
+        "finish: the picture shows no surface, so neither depths nor light were measured: where it is one of a "
+        "sequence, give --finish-measures of a frame that shows something");
+    return measures;
+  }
+  const std::string where =
+      frame ? fmt::format(" on frame {}: give it to each run where a sequence is cut into several", *frame) : "";
+  context.Note("finish: --finish-measures " + MeasuresText(measures) + " repeats what was measured" + where);
+  return measures;
+}
+
+std::string NothingToMeasure(const std::vector<int>& frames, const std::string& options) {
+  return fmt::format("no surface shows in frames {}, so nothing was measured: give {} of a frame that shows one",
+                     FramesToText(frames), options);
 }
 
 std::string MeasuresText(const FinishMeasures& measures) {

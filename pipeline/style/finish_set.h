@@ -2,7 +2,9 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -42,16 +44,45 @@ std::vector<FinishPass> AllPasses(const StyleSet& styles);
 bool EverLooksAtMeasures(const FinishChain& chain);
 bool EverLooksAtMeasures(const StyleSet& styles);
 
+// What is told of the passes in a frame: a note of what is left out, a warning of names that fit nothing.
+struct FinishRemark {
+  Message message;
+  bool is_of_frame = false;  // another frame may be without it
+};
+using TellFinish = std::function<void(const FinishRemark&)>;
+
+// Passes on the remarks of a run: those of its first frame, and of one frame or another where they are first made.
+class FinishRemarks {
+ public:
+  // `frame`: none of a single picture. `place`: the file that they are about, or empty.
+  void Tell(const FinishRemark& remark, std::optional<int> frame, const std::string& place, const RunContext& context);
+  void EndFrame() { is_first_ = false; }
+
+  // At the end of a sequence: what held in several frames, with their numbers, is warned of, and returned.
+  std::vector<std::string> WarnOfFrames(const RunContext& context) const;
+
+ private:
+  bool is_first_ = true;
+  std::map<std::string, std::set<int>> frames_;
+};
+
 // The passes of these styles and of the run, in their order, each with the pixels that it is for: a style's passes are
 // for its own pixels and lengths, the run's for all that shows: not for shadow catchers, nor for objects that are left
 // as they are where nothing is `over`; `objects`, `materials` and masks limit both. `map`: null where one style paints
-// all. The styles must be at the picture's frame. Names that fit nothing are told to `tell`.
+// all. The styles must be at the picture's frame. Without perspective no line gets thinner with distance, unless --set
+// asks for it, which CheckFinish refuses.
 std::vector<FinishStep> FinishStepsOf(const StyleSet& styles, const GuideSet& guides, const StyleMap* map, bool over,
-                                      const std::function<void(const std::string&)>& tell);
+                                      const TellFinish& tell);
 
 // One chain of passes without styles, likewise, for a picture of that size. `guides`: null where no pass reads any.
 std::vector<FinishStep> FinishStepsOf(const std::vector<FinishPass>& passes, const Size& size, const GuideSet* guides,
-                                      const std::function<void(const std::string&)>& tell);
+                                      const TellFinish& tell);
+
+// MeasureFinish, and a note of what repeats it; a warning where the guides show no surface. `frame`: of a sequence.
+FinishMeasures MeasureAndTell(const GuideSet& guides, std::optional<int> frame, const RunContext& context);
+
+// The warning of a sequence in which no frame shows a surface. `options`: those that give what was to be measured.
+std::string NothingToMeasure(const std::vector<int>& frames, const std::string& options);
 
 // "2.1,4,11,0.8,1": near, middle, far, bright, full, as --finish-measures takes them.
 std::string MeasuresText(const FinishMeasures& measures);

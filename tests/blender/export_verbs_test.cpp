@@ -68,6 +68,21 @@ TEST_F(BlenderVerbs, StylizeToo) {
   EXPECT_TRUE(Exists("p.png"));
 }
 
+// Frames that show nothing are looked through first, and then made from the first one on.
+TEST_F(BlenderVerbs, TheFirstFrameThatShowsSomethingIsMeasured) {
+  WriteStyle("style");
+  const Arguments stylize = {"stylize", Blend("old"), "--size", "48x27", "--style", "style", "--finish", "depth"};
+  const CommandResult run = RunHere(With(stylize, {"--frames", "9,1", "-o", "p#.png", "--explain"}));
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("repeats what was measured on frame 1"));
+  const std::size_t note = run.err.find("blender exports frames 9,1");
+  EXPECT_EQ(run.err.find("blender exports", note + 1), std::string::npos) << "it is noted once\n" << run.err;
+  EXPECT_THAT(run.out + run.err, HasSubstr("read by finish depth")) << "the plan";
+  const std::string first = Pixels("p1.png");
+  ASSERT_EQ(RunHere(With(stylize, {"--frame", "1", "-o", "p1.png"})).code, 0);
+  EXPECT_TRUE(Pixels("p1.png") == first);
+}
+
 // A .blend is measured in the frame and view in which it is painted.
 TEST_F(BlenderVerbs, TradeoffAndBudgetTakeAFrame) {
   WriteStyle("style");

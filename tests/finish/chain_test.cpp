@@ -183,7 +183,10 @@ TEST(Chain, ASurfacesEffectIsOnItsShareOfAPixel) {
   toon.bands = 1;
   ShadowsPass shadows;
   shadows.mode = ShadowsPass::Mode::kBlack, shadows.source = ShadowsPass::Source::kCast;
-  for (const FinishPass::Effect& effect : {FinishPass::Effect(toon), FinishPass::Effect(shadows)}) {
+  EdgesPass edges;  // ink all over
+  edges.fill = edges.threshold = 1.0, edges.slope = 100.0;
+  for (const FinishPass::Effect& effect :
+       {FinishPass::Effect(toon), FinishPass::Effect(shadows), FinishPass::Effect(edges)}) {
     EXPECT_NEAR(ShareChanged(effect, 16384), 1.0, 1e-6) << effect.index();
     EXPECT_NEAR(ShareChanged(effect, 16448), 1.0, 1e-6) << "alpha of 8 bits; " << effect.index();
     EXPECT_NEAR(ShareChanged(effect, 65535), 0.25, 2e-3) << effect.index();

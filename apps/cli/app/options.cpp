@@ -278,8 +278,8 @@ void AddFinishOptions(CLI::App& verb, std::vector<std::string>& finishes, std::o
             const std::vector<double> given = ParseNumbers(text, 5, 5, "").value();
             measures = FinishMeasures{given[0], given[1], given[2], given[3], given[4]};
           },
-          "what --finish measures on the first picture, as a run prints it: near, middle and far depth, and how bright "
-          "luminance and lpe.full are; for frames that are made by several runs")
+          "what --finish measures on the first picture that shows a surface, as a run prints it: near, middle and far "
+          "depth, and how bright luminance and lpe.full are; for frames that are made by several runs")
       ->type_name("A,B,C,D,E")
       ->check([](const std::string& text) {
         const auto given = ParseNumbers(text, 5, 5, "--finish-measures");

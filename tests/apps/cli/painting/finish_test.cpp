@@ -312,6 +312,28 @@ TEST_F(CliFinish, RefusesThinLinesWithoutPerspective) {
       {"finish outline", "orthographic", "thin to 0"});
 }
 
+// A preset and a style are for any scene: what they ask for does not apply.
+TEST_F(CliFinish, PresetsDoWithoutThinLinesWherePerspectiveLacks) {
+  RunOk({"sphere", "--size", "64", "-o", "kit"});
+  WriteStyle("plain");
+  WriteStyle("thinning", "[[finish]]\neffect = \"outline\"\nthin = 1.0\n");
+  const Arguments paint = {"transfer", "kit/guides.exr", "--style", "plain", "-o", "o.png", "--finish", "outline"};
+  RunOk(paint);
+  const auto plain = Read("o.png").rgba;
+  WriteText("thin.toml", "[[finish]]\neffect = \"outline\"\nthin = [[1, 0.5], [9, 1]]\n");
+  const std::string note = "finish outline: its thin is left out";
+  for (const Arguments& run : {Arguments{"transfer", "kit/guides.exr", "--style", "plain", "--finish", "thin.toml"},
+                               {"transfer", "kit/guides.exr", "--style", "thinning"}}) {
+    EXPECT_TRUE(Contains(RunOk(With(run, {"-o", "o.png"})).err, note));
+    EXPECT_EQ(Read("o.png").rgba, plain);
+    ExpectError(With(run, {"-o", "x.png", "--set", "finish.outline.thin=0.5"}), 3, {"orthographic", "thin to 0"});
+    ExpectError(With(run, {"-o", "x.png", "--set", "finish.outline.thin=[[1, 0.5], [2, 1]]"}), 3,
+                {"orthographic", "thin to 0"});
+  }
+  RunOk({"transfer", "kit/guides.exr", "--style", "plain", "-o", "p.png"});
+  EXPECT_TRUE(Contains(RunOk({"finish", "p.png", "kit/guides.exr", "--finish", "thin.toml", "-o", "o.png"}).err, note));
+}
+
 TEST_F(CliFinish, MasksLimitAnEffect) {
   RunOk({"guidegen", kToys, "--size", "96x64", "--aa", "2", "-o", "g.exr"});
   ASSERT_TRUE(WritePicture(At("p.png"), [] {

@@ -6,6 +6,7 @@
 
 #include "tests/apps/cli/painting/finish_harness.h"
 #include "tests/support/cli_harness.h"
+#include "tests/support/gltf_builder.h"
 
 namespace scumble {
 namespace {
@@ -56,6 +57,106 @@ TEST_F(CliFinishInTime, MeasuresCanBeGiven) {
   EXPECT_NE(Read("m.png").rgba, first);
   ExpectError({"stylize", kToys, "--style", "plain", "--finish-measures", "1,2", "-o", "x.png"}, 2,
               {"--finish-measures"});
+}
+
+// A wall before the camera from frame 4 on, behind it before.
+class CliFinishLateWall : public CliFinishInTime {
+ protected:
+  void SetUp() override {
+    GltfBuilder b;
+    const int position = b.Floats({-2, -2, 2, 2, -2, 2, 2, 2, -2, -2, 2, -2}, 3);
+    const int mesh = b.Mesh({{{"attributes", {{"POSITION", position}}}, {"indices", b.Indices({0, 1, 2, 0, 2, 3})}}});
+    const int wall = b.Root({{"name", "Wall"}, {"mesh", mesh}});
+    b.Append("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 0.8}, {"znear", 0.1}}}});
+    b.Root({{"camera", 0}, {"translation", {0, 0, 8}}});
+    b.Animate(wall, "translation", {3, 4}, {0, 0, 60, 0, 0, 0});
+    const std::vector<unsigned char> glb = b.Glb();
+    WriteText("late.glb", std::string(glb.begin(), glb.end()));
+    // Light and its exposure matter.
+    WriteStyle("lit", "luminance = 0.8\n[[exemplar]]\nimage = \"lit.png\"\nfills = true\nluminance = 0.1\n");
+  }
+  static std::string Behind(const std::string& text, const std::string& option) {
+    const std::size_t at = text.find(option + " ");
+    if (at == std::string::npos) return "";
+    const std::size_t begin = at + option.size() + 1;
+    return text.substr(begin, text.find_first_of(" \n", begin) - begin);
+  }
+  const Arguments finish_ = {"--finish", "toon", "--finish", "depth"};
+  const Arguments stylize_ =
+      With({"stylize", "late.glb", "--fps", "1", "--size", "48x32", "--style", "lit", "-o", "p.#.png"}, finish_);
+};
+
+TEST_F(CliFinishLateWall, TheFirstFrameThatShowsSomethingIsMeasured) {
+  const CommandResult late = RunOk(With(stylize_, {"--frames", "4-5"}));
+  const std::string measures = Behind(late.err, "--finish-measures"), stops = Behind(late.err, "give each --exposure");
+  EXPECT_NE(measures, "");
+  EXPECT_NE(stops, "0.00") << "the test could not fail";
+  const auto whole = Read("p.5.png").rgba;
+  const CommandResult all = RunOk(With(stylize_, {"--frames", "2-5"}));
+  EXPECT_TRUE(Contains(all.err, "--finish-measures " + measures + " repeats what was measured on frame 4")) << all.err;
+  EXPECT_TRUE(Contains(all.err, "give it to each run")) << all.err;
+  EXPECT_TRUE(Contains(all.err, "measured on frame 4")) << all.err;
+  EXPECT_TRUE(Contains(all.err, "--exposure " + stops)) << all.err;
+  EXPECT_EQ(Read("p.5.png").rgba, whole);
+  // What is printed repeats it: then nothing is measured.
+  const CommandResult piece =
+      RunOk(With(stylize_, {"--frames", "3-5", "--finish-measures", measures, "--exposure", stops}));
+  EXPECT_FALSE(Contains(piece.err, "measure")) << piece.err;
+  EXPECT_EQ(Read("p.5.png").rgba, whole);
+  // Of files, too.
+  RunOk({"guidegen", "late.glb", "--fps", "1", "--size", "48x32", "--layers", "luminance,shadow,albedo", "--frames",
+         "3-5", "-o", "g.#.exr"});
+  const CommandResult transfer =
+      RunOk(With({"transfer", "g.#.exr", "--style", "lit", "--frames", "3-5", "-o", "t.#.png"}, finish_));
+  EXPECT_EQ(Behind(transfer.err, "--finish-measures"), measures);
+  EXPECT_EQ(Read("t.5.png").rgba, whole);
+  const CommandResult after =
+      RunOk(With({"finish", "t.#.png", "g.#.exr", "--frames", "3-5", "-o", "f.#.png"}, finish_));
+  EXPECT_TRUE(Contains(after.err, "--finish-measures " + measures + " repeats what was measured on frame 4"))
+      << after.err;
+}
+
+TEST_F(CliFinishLateWall, NothingToMeasureIsWarnedOf) {
+  const CommandResult run = RunOk(With(stylize_, {"--frames", "1-3"}));
+  const std::string both = "give --exposure and --finish-measures of a frame that shows one";
+  EXPECT_TRUE(Contains(run.err, "no surface shows in frames 1-3")) << run.err;
+  EXPECT_TRUE(Contains(run.err, both)) << run.err;
+  const std::string nothing = "the camera sees nothing";
+  std::size_t count = 0;
+  for (std::size_t at = 0; (at = run.err.find(nothing, at)) != std::string::npos; ++at) ++count;
+  EXPECT_EQ(count, 3u) << "once for each frame\n" << run.err;
+  EXPECT_FALSE(Contains(run.err, "repeats")) << run.err;
+  const CommandResult one = RunOk(With(stylize_, {"--frame", "2"}));
+  EXPECT_TRUE(Contains(one.err, "shows no surface")) << one.err;
+  EXPECT_TRUE(Contains(one.err, "give --finish-measures")) << one.err;
+  EXPECT_TRUE(Contains(one.err, "give --exposure")) << one.err;
+  EXPECT_FALSE(Contains(one.err, "repeats")) << one.err;
+  RunOk({"guidegen", "late.glb", "--fps", "1", "--size", "48x32", "--layers", "luminance,shadow,albedo", "--frames",
+         "1-2", "-o", "g.#.exr"});
+  const CommandResult after =
+      RunOk(With({"finish", "p.#.png", "g.#.exr", "--frames", "1-2", "-o", "f.#.png"}, finish_));
+  EXPECT_TRUE(Contains(after.err, "no surface shows in frames 1-2")) << after.err;
+  EXPECT_TRUE(Contains(after.err, "give --finish-measures of a frame")) << after.err;
+}
+
+// The object in focus leaves the view: the first frame says so at once, the end of the run has them all.
+TEST_F(CliFinishLateWall, FramesWithoutTheObjectInFocusAreNamed) {
+  const Arguments focus = {"--finish", "depth", "--set", "finish.depth.focus_on=Wall", "--frames", "5-1", "--json"};
+  const std::string lost = "finish depth: no object in the picture has the name Wall, so the focus is near";
+  const std::string fix = "finish.depth.focus=[[FRAME, METRES], ...]";
+  const CommandResult run =
+      RunOk(With({"stylize", "late.glb", "--fps", "1", "--size", "48x32", "--style", "lit", "-o", "p.#.png"}, focus));
+  EXPECT_TRUE(Contains(run.err, "warning: frame 3: " + lost)) << run.err;
+  EXPECT_FALSE(Contains(run.err, "warning: frame 2: " + lost)) << run.err;
+  EXPECT_TRUE(Contains(run.err, "warning: frames 1-3: " + lost)) << run.err;
+  EXPECT_TRUE(Contains(run.err, fix)) << run.err;
+  EXPECT_TRUE(Contains(run.Json()["warnings"][0].get<std::string>(), "frames 1-3: " + lost)) << run.out;
+  RunOk({"guidegen", "late.glb", "--fps", "1", "--size", "48x32", "--frames", "1-5", "-o", "g.#.exr"});
+  const CommandResult after = RunOk(With({"finish", "p.#.png", "g.#.exr", "-o", "f.#.png"}, focus));
+  EXPECT_TRUE(Contains(after.err, "warning: g.3.exr: " + lost)) << after.err;
+  EXPECT_TRUE(Contains(after.err, "warning: frames 1-3: " + lost)) << after.err;
+  const Arguments keyed = With(focus, {"--set", "finish.depth.focus=[[4, 8], [5, 9]]"});
+  EXPECT_FALSE(Contains(RunOk(With({"finish", "p.#.png", "g.#.exr", "-o", "f.#.png"}, keyed)).err, "focus is near"));
 }
 
 // A frame is kept by what it was measured with, whether that was given or not.
