@@ -247,9 +247,9 @@ BorderOwner::BorderOwner(const GuideSet& guides)
       width_(static_cast<std::size_t>(guides.width())),
       give_(guides, kDepthTolerance) {}
 
-float BorderOwner::DepthTowards(std::size_t pixel, std::optional<std::size_t> before) const {
-  if (!before || !(coverage_[*before] > 0.0f) || object_[*before] != object_[pixel]) return depth_[pixel];
-  return depth_[pixel] + 0.5f * (depth_[pixel] - depth_[*before]);
+float BorderOwner::SlopeTowards(std::size_t pixel, std::optional<std::size_t> before) const {
+  const bool goes_on = before && coverage_[*before] > 0.0f && object_[*before] == object_[pixel];
+  return goes_on ? depth_[pixel] - depth_[*before] : 0.0f;
 }
 
 bool BorderOwner::Meet(std::size_t p, std::size_t q) const {
@@ -259,8 +259,12 @@ bool BorderOwner::Meet(std::size_t p, std::size_t q) const {
   const auto at = [&](bool is_inside, std::size_t pixel) { return is_inside ? std::optional(pixel) : std::nullopt; };
   const auto before = at(is_below ? p >= step : p % width_ > 0, p - step);
   const auto after = at(is_below ? q + step < count : (q + 1) % width_ > 0, q + step);
-  const float from = DepthTowards(p, before), to = DepthTowards(q, after);
-  return std::fabs(to - from) <= give_.At(std::min(from, to));
+  // How much farther q's surface is than that of p, in the middle of p and in that of q. Between them it changes
+  // evenly.
+  const float in_p = depth_[q] + SlopeTowards(q, after) - depth_[p],
+              in_q = depth_[q] - depth_[p] - SlopeTowards(p, before);
+  const float least = (in_p < 0.0f) == (in_q < 0.0f) ? std::min(std::fabs(in_p), std::fabs(in_q)) : 0.0f;
+  return least <= give_.At(std::min(depth_[p], depth_[q]));
 }
 
 bool BorderOwner::IsSecond(std::size_t p, std::size_t q) const {

@@ -435,6 +435,26 @@ TEST(Outline, OnlyDrawsBordersOfItsPixels) {
   EXPECT_EQ(right, 0.0);
 }
 
+// A wall on a floor, which meet in a line that crosses rows of pixels: that is the wall's, wherever it crosses them.
+// The wall behind the floor's edge has none.
+TEST(Outline, OfOneObjectGoesOnWhereItStandsOnAnother) {
+  for (const bool stands : {true, false}) {
+    const GuideSet guides = GuidesOf(160, 80, [&](glm::vec2 at) {
+      const float below = at.y - 25.3f - 0.17f * at.x;
+      if (below < 0.0f) return SeenPoint{true, {0.9f, 0.0f, 0.436f}, stands ? 20.0f : 24.0f, 1.0f};
+      return SeenPoint{true, {0.0f, 0.98f, 0.2f}, 20.0f - 0.3f * below, 2.0f};
+    });
+    FinishStep step = StepOf(OutlinePass());
+    for (const float object : guides.Plane(Layer::kObject)) step.only.push_back(object == 1.0f);
+    const Picture drawn = Finished(step, &guides, Picture(160, 80));
+    for (int x = 5; x < 155; ++x) {
+      double ink = 0.0;
+      for (int y = 0; y < 80; ++y) ink += drawn.At(x, y)[3] / 65535.0;
+      EXPECT_NEAR(ink, stands ? 2.5 : 0.0, 0.2) << x;
+    }
+  }
+}
+
 TEST(Outline, SmallestPictures) {
   EXPECT_EQ(InkOf({}, FlatGuides(1, 1)), std::vector<double>{0.0});
   EXPECT_EQ(Sum(InkOf({}, BallGuides(3, 0.4f))), 0.0) << "a speck";
