@@ -263,6 +263,52 @@ TEST(Outline, ACreaseGoesOnToTwoThirdsOfItsAngle) {
   EXPECT_NEAR(Sum(InkOf(creases, two)), 60.0, 2.0);
 }
 
+// Beside a crease neither surface is nearer, whichever pixel is.
+TEST(Outline, CreasesHaveNoSide) {
+  const float h = std::sqrt(0.5f);
+  const GuideSet guides = GuidesOf(120, 80, [&](glm::vec2 at) {
+    const float across = at.x - 57.3f - 0.1f * at.y;
+    return SeenPoint{true, {across < 0.0f ? -h : h, 0.0f, h}, 5.0f + 0.01f * std::fabs(across), 1.0f};
+  });
+  OutlinePass pass;
+  pass.width = 8.0;
+  const std::vector<double> centre = InkOf(pass, guides);
+  EXPECT_GT(Sum(centre), 350.0);
+  for (const auto side : {OutlinePass::Side::kInside, OutlinePass::Side::kOutside}) {
+    pass.side = side;
+    EXPECT_EQ(InkOf(pass, guides), centre);
+  }
+}
+
+// A line between two things ends behind a nearer one, whose own line goes straight on.
+TEST(Outline, ContoursKeepTheirSideWhereLinesEndBehindThem) {
+  const GuideSet guides = GuidesOf(120, 80, [](glm::vec2 at) {
+    if (at.y > 40.0f) return SeenPoint{true, {0, 0, 1}, 3.0f, 1.0f};
+    return at.x < 60.0f ? SeenPoint{true, {0, 0, 1}, 5.0f, 2.0f} : SeenPoint{true, {0, 0, 1}, 7.0f, 3.0f};
+  });
+  OutlinePass pass;
+  pass.width = 8.0, pass.side = OutlinePass::Side::kInside;
+  const std::vector<double> ink = InkOf(pass, guides);
+  const auto at = [&](int x, int y) { return ink[std::size_t(y * 120 + x)]; };
+  for (int x = 0; x < 120; ++x) {
+    EXPECT_NEAR(at(x, 46), 1.0, 0.01) << x;
+    EXPECT_NEAR(at(x, 48), 0.0, 0.01) << x;
+    if (x < 52 || x > 61) {
+      EXPECT_NEAR(at(x, 38), 0.0, 0.01) << x;
+    }
+  }
+  for (int y = 0; y < 39; ++y) {
+    EXPECT_NEAR(at(54, y), 1.0, 0.01) << y;
+    EXPECT_NEAR(at(61, y), 0.0, 0.01) << y;
+  }
+  // Outside, a line that ends there does not stick out into the nearer thing.
+  pass.side = OutlinePass::Side::kOutside;
+  const std::vector<double> outside = InkOf(pass, guides);
+  for (int y = 42; y < 80; ++y) {
+    for (int x = 0; x < 120; ++x) EXPECT_NEAR(outside[std::size_t(y * 120 + x)], 0.0, 0.01) << x << ' ' << y;
+  }
+}
+
 // The nearer of two overlapping things has the line, whatever lies behind.
 TEST(Outline, StepInDepthIsALineOfTheNearerSide) {
   GuideSet guides = GuidesOf(120, 80, [](glm::vec2 at) {
