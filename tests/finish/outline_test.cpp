@@ -263,6 +263,27 @@ TEST(Outline, ACreaseGoesOnToTwoThirdsOfItsAngle) {
   EXPECT_NEAR(Sum(InkOf(creases, two)), 60.0, 2.0);
 }
 
+// A fold that turns by 150 degrees within three pixels, wherever these lie, and a rim one pixel wide beside the
+// outline.
+TEST(Outline, FoldsAndRimsOfFewPixelsAreNoCreases) {
+  OutlinePass pass;
+  for (double& width : pass.of_class) width = 0.0;
+  pass.of_class[std::size_t(LineClass::kCrease)] = 1.0;
+  for (const double place : {60.0, 60.25, 60.5, 60.75}) {
+    const GuideSet fold = GuidesOf(120, 80, [=](glm::vec2 at) {
+      const double turn = 75.0 * std::tanh(at.x - place) * std::numbers::pi / 180.0;
+      return SeenPoint{true, {float(std::sin(turn)), 0.0f, float(std::cos(turn))}, 5.0f, 1.0f};
+    });
+    EXPECT_EQ(Sum(InkOf(pass, fold)), 0.0) << place;
+  }
+  const GuideSet rim = GuidesOf(120, 80, [](glm::vec2 at) {
+    const float below = at.y - 20.0f - 0.1f * at.x;
+    if (below < 1.0f) return SeenPoint{below >= 0.0f, {0.0f, 0.9f, 0.436f}, 5.0f, 1.0f};
+    return SeenPoint{true, {0.0f, 0.0f, 1.0f}, 5.0f, 1.0f};
+  });
+  EXPECT_EQ(Sum(InkOf(pass, rim)), 0.0);
+}
+
 // Beside a crease neither surface is nearer, whichever pixel is.
 TEST(Outline, CreasesHaveNoSide) {
   const float h = std::sqrt(0.5f);
