@@ -43,6 +43,13 @@ struct Tensor {
 // axis of its own.
 constexpr float kLeastBend = 0.003f, kLeastCoherence = 0.15f;
 
+// Bends are measured over so many pixels of the reference height to both sides. Beside a crease or a bevel one side is
+// flat: these belong to no face.
+constexpr double kBendReach = 4.0;
+
+// A patch is flat where it is flat over this share, and in all if over that one.
+constexpr float kFlatShare = 0.25f, kMostlyFlat = 0.75f;
+
 // Strokes run in one of so many directions. So those of neighbouring patches join, and a smaller picture or the next
 // frame repeats them.
 constexpr int kDirections = 24;
@@ -74,6 +81,9 @@ class Patches {
  public:
   Patches(const HatchPass& pass, const FinishFrame& frame, int width, int height)
       : width_(width),
+        height_(height),
+        reach_(std::max(1, static_cast<int>(kBendReach * frame.scale + 0.5))),
+        least_(static_cast<float>(kLeastBend / frame.scale)),  // normals turn more a pixel in small pictures
         cell_(static_cast<float>(std::max(4.0, pass.patch * frame.scale))),
         columns_(static_cast<int>(static_cast<float>(width) / cell_) + 3),
         rows_(static_cast<int>(static_cast<float>(height) / cell_) + 3),
@@ -83,20 +93,21 @@ class Patches {
     if (pass.along == HatchPass::Along::kFixed) return;
     const GuideSet& guides = *frame.guides;
     object_ = guides.Plane(Layer::kObject);
-    patch_.resize(guides.pixel_count());
+    patch_.resize(guides.pixel_count()), is_flat_.resize(guides.pixel_count());
     for (int row = -1; row < rows_; ++row) {
       for (int column = -1; column + 1 < columns_; ++column) points_.push_back(PointOf(column, row));
     }
     tbb::parallel_for(0, height, [&](int y) {
       for (int x = 0; x < width; ++x) patch_[guides.Index(x, y)] = NearestPoint(x, y);
     });
-    Sum(guides, height);
-    const auto least = static_cast<float>(kLeastBend / frame.scale);  // normals turn more a pixel there
+    Sum(guides);
     for (auto& patch : of_cell_) {
       for (Part& part : patch) {
         Tensor& sum = part.tensor;
         if (pass.along == HatchPass::Along::kAlong) sum = {sum.yy, -sum.xy, sum.xx};
-        part.axis = MainAxis(sum, least * part.pixels, directions_, fixed_);
+        if (!(part.flat > kMostlyFlat * part.pixels))
+          part.axis = MainAxis(sum, least_ * (part.pixels - part.flat), directions_, fixed_);
+        if (!(part.flat > kFlatShare * part.pixels)) part.flat_axis = part.axis;
       }
     }
   }
@@ -104,7 +115,7 @@ class Patches {
   Axis At(std::size_t pixel) const {
     if (patch_.empty()) return fixed_;
     for (const Part& part : of_cell_[std::size_t(patch_[pixel])]) {
-      if (part.object == object_[pixel]) return part.axis;
+      if (part.object == object_[pixel]) return is_flat_[pixel] ? part.flat_axis : part.axis;
     }
     return fixed_;
   }
@@ -112,9 +123,9 @@ class Patches {
  private:
   // One object's share of a patch.
   struct Part {
-    float object = 0.0f, pixels = 0.0f;
+    float object, pixels, flat;  // of the pixels
     Tensor tensor;
-    Axis axis{1.0f, 0.0f};
+    Axis axis, flat_axis;
   };
 
   // The grid point's place, in cells.
@@ -142,62 +153,82 @@ class Patches {
   using Parts = std::vector<std::vector<Part>>;  // by cell
 
   // Strips are added in one fixed order, since sums of floats depend on it.
-  void Sum(const GuideSet& guides, int height) {
+  void Sum(const GuideSet& guides) {
     constexpr int kStrip = 64;
-    std::vector<Parts> strips(std::size_t((height + kStrip - 1) / kStrip));
+    std::vector<Parts> strips(std::size_t((height_ + kStrip - 1) / kStrip));
     tbb::parallel_for(std::size_t(0), strips.size(), [&](std::size_t s) {
       const int first = static_cast<int>(s) * kStrip;
-      strips[s] = SumOf(guides, first, std::min(height - 1, first + kStrip));
+      strips[s] = SumOf(guides, first, std::min(height_, first + kStrip));
     });
     of_cell_.resize(std::size_t(columns_) * std::size_t(rows_ + 1));
     for (const Parts& strip : strips) {
       for (std::size_t cell = 0; cell < strip.size(); ++cell) {
         for (const Part& more : strip[cell]) {
           Part& part = PartOf(of_cell_[cell], more.object);
-          part.pixels += more.pixels;
+          part.pixels += more.pixels, part.flat += more.flat;
           part.tensor.xx += more.tensor.xx, part.tensor.xy += more.tensor.xy, part.tensor.yy += more.tensor.yy;
         }
       }
     }
   }
-  Parts SumOf(const GuideSet& guides, int first, int last) const {
+  Parts SumOf(const GuideSet& guides, int first, int last) {
     Parts parts(std::size_t(columns_) * std::size_t(rows_ + 1));
     const auto coverage = guides.Plane(Layer::kCoverage);
     for (int y = first; y < last; ++y) {
-      for (int x = 0; x + 1 < width_; ++x) {
-        const std::size_t p = guides.Index(x, y), right = p + 1, below = p + std::size_t(width_);
+      for (int x = 0; x < width_; ++x) {
+        const std::size_t p = guides.Index(x, y);
         if (!(coverage[p] > 0.0f)) continue;
         Part& part = PartOf(parts[std::size_t(patch_[p])], object_[p]);
         part.pixels += 1.0f;
-        if (object_[right] != object_[p] || object_[below] != object_[p]) continue;
-        const glm::vec3 n = guides.Vec3(Layer::kNormal, p);
-        const glm::vec3 dx = guides.Vec3(Layer::kNormal, right) - n, dy = guides.Vec3(Layer::kNormal, below) - n;
+        const glm::vec3 dx = Bend(guides, p, 1, x, width_), dy = Bend(guides, p, width_, y, height_);
         const float xx = dx.x * dx.x + dx.y * dx.y + dx.z * dx.z, xy = dx.x * dy.x + dx.y * dy.y + dx.z * dy.z,
                     yy = dy.x * dy.x + dy.y * dy.y + dy.z * dy.z;
-        // Lengths, not their squares: a crease then counts as much beside a bend in pictures of any size.
+        // Lengths, not their squares: a tight bend then counts as much beside a wide one in pictures of any size.
         const float length = std::sqrt(xx + yy);
-        if (!(length > 0.0f)) continue;
+        if (!(length > least_)) {
+          is_flat_[p] = 1, part.flat += 1.0f;
+          continue;
+        }
         part.tensor.xx += xx / length, part.tensor.xy += xy / length, part.tensor.yy += yy / length;
       }
     }
     return parts;
   }
-  static Part& PartOf(std::vector<Part>& parts, float object) {
+  // How the normal turns a pixel along a row or a column, whose pixels are `step` apart. p is the `nth` of `count`.
+  glm::vec3 Bend(const GuideSet& guides, std::size_t p, int step, int nth, int count) const {
+    const glm::vec3 normal = guides.Vec3(Layer::kNormal, p);
+    for (const int reach : {reach_, 1}) {  // thin objects have no pixels farther on
+      const std::size_t off = std::size_t(reach) * std::size_t(step);
+      const bool has_before = nth >= reach && object_[p - off] == object_[p];
+      const bool has_after = nth + reach < count && object_[p + off] == object_[p];
+      if (!has_before && !has_after) continue;
+      const auto share = 1.0f / static_cast<float>(reach);
+      const glm::vec3 before = has_before ? (normal - guides.Vec3(Layer::kNormal, p - off)) * share : glm::vec3();
+      const glm::vec3 after = has_after ? (guides.Vec3(Layer::kNormal, p + off) - normal) * share : glm::vec3();
+      if (!has_before || !has_after) return has_before ? before : after;
+      // Their mean, or none where one side is flat.
+      const float b = glm::dot(before, before), a = glm::dot(after, after);
+      return a + b > 0.0f ? (before * a + after * b) / (a + b) : glm::vec3();
+    }
+    return glm::vec3();
+  }
+  Part& PartOf(std::vector<Part>& parts, float object) const {
     for (Part& part : parts) {
       if (part.object == object) return part;
     }
-    parts.push_back({object, 0.0f, {}, {}});
+    parts.push_back({object, 0.0f, 0.0f, {}, fixed_, fixed_});
     return parts.back();
   }
 
-  int width_;
-  float cell_;
+  int width_, height_, reach_;
+  float least_, cell_;
   int columns_, rows_;
   std::uint64_t seed_;
   std::array<Axis, kDirections> directions_;
   Axis fixed_;  // where the surface has no direction
   std::span<const float> object_;
-  std::vector<int> patch_;         // by pixel; empty: all strokes have one direction
+  std::vector<int> patch_;  // by pixel; empty: all strokes have one direction
+  std::vector<std::uint8_t> is_flat_;
   std::vector<glm::vec2> points_;  // of the grid, in cells, from the cell (-1, -1) on
   Parts of_cell_;
 };

@@ -27,8 +27,12 @@ constexpr float kSlopeGive = 1.0f, kSlopeGiveAtEnd = 1.5f;
 // A crease goes on where the angle is no smaller than this share of `crease_angle`: a fold whose angle is about that
 // would be dashed otherwise. Two thresholds, as Canny's edges have them (1986, section VIII).
 constexpr double kCreaseGoesOn = 2.0 / 3.0;
+// Where a crease begins, its sides turn by no more than this share of its angle.
+constexpr double kMostBeside = 0.25;
 // In a map that is not finished: an angle that is enough for a crease to go on, not for one to begin.
 constexpr std::uint8_t kWeakCrease = 0xff;
+// The same, where one may go on from a step in depth.
+constexpr std::uint8_t kFullCrease = 0xfe;
 
 std::vector<glm::vec3> OklabOf(const GuideSet& guides) {
   std::vector<glm::vec3> colors(guides.pixel_count());
@@ -110,7 +114,7 @@ class Classifier {
     if (!only_.empty() && !IsWanted(p, q)) return 0;
     const std::optional<LineClass> line = covers_p == covers_q ? Inside(before, p, q, after) : LineClass::kSilhouette;
     if (line) return IsOn(*line) ? CodeOf(*line) : 0;
-    return IsOn(LineClass::kCrease) && CreaseBetween(before, p, q, after) >= weak_crease_ ? kWeakCrease : 0;
+    return IsOn(LineClass::kCrease) ? GoingOn(p, q) : 0;
   }
 
  private:
@@ -142,15 +146,45 @@ class Classifier {
     return 2.0 * std::asin(std::min(1.0, 0.5 * glm::length(a - b)));
   }
 
-  // The angle between the normals of p and q, less what the surface bends on both sides of them anyway: a round fold is
-  // no crease, however few pixels it has.
-  double CreaseBetween(std::optional<std::size_t> before, std::size_t p, std::size_t q,
-                       std::optional<std::size_t> after) const {
-    const auto bend = [&](std::optional<std::size_t> beyond, std::size_t pixel) {
-      const bool goes_on = beyond && coverage_[*beyond] > 0.0f && object_[*beyond] == object_[pixel];
-      return goes_on ? AngleBetween(*beyond, pixel) : 0.0;
-    };
-    return AngleBetween(p, q) - std::min(bend(before, p), bend(after, q));
+  // By how much the normal turns from `pixel` to the one `reach` pixels on, or to the last one there that is of its
+  // object. Infinite, if the object ends before `least` pixels; the picture's edge is no such end.
+  double TurnFrom(std::size_t pixel, std::ptrdiff_t step, int least, int reach) const {
+    const auto count = static_cast<std::ptrdiff_t>(depth_.size()), width = std::ptrdiff_t(guides_.width());
+    std::size_t last = pixel;
+    std::ptrdiff_t next = static_cast<std::ptrdiff_t>(pixel) + step;
+    for (int k = 0; k < std::max(least, reach); ++k, next += step) {
+      if (next < 0 || next >= count) break;
+      if ((step == 1 && next % width == 0) || (step == -1 && (next + 1) % width == 0)) break;
+      const auto beyond = static_cast<std::size_t>(next);
+      if (!(coverage_[beyond] > 0.0f) || object_[beyond] != object_[pixel]) {
+        if (k < least) return std::numeric_limits<double>::infinity();
+        break;
+      }
+      if (k < reach) last = beyond;
+    }
+    return AngleBetween(pixel, last);
+  }
+
+  // Whether a crease begins between p and q: their normals are that much farther apart than either side turns within
+  // three pixels, and these are flat compared with the step. A round fold is no crease, however few pixels it has, nor
+  // is the border of a bevel one or two pixels wide beside an outline.
+  bool CreaseBegins(std::size_t p, std::size_t q) const {
+    const double angle = AngleBetween(p, q);
+    if (!(angle >= crease_)) return false;
+    const auto step = static_cast<std::ptrdiff_t>(q - p);
+    const double turn = std::max(TurnFrom(p, -step, 2, 3), TurnFrom(q, step, 2, 3));
+    return angle - turn >= crease_ && turn <= kMostBeside * angle;
+  }
+
+  // Whether one that began beside goes on there, and whether from a step in depth. One of its sides may be round.
+  std::uint8_t GoingOn(std::size_t p, std::size_t q) const {
+    const double angle = AngleBetween(p, q);
+    if (!(angle >= weak_crease_)) return 0;
+    const auto step = static_cast<std::ptrdiff_t>(q - p);
+    const double from_p = TurnFrom(p, -step, 2, 1), from_q = TurnFrom(q, step, 2, 1);
+    if (!(std::max(from_p, from_q) <= std::numbers::pi)) return 0;
+    const double rest = angle - std::min(from_p, from_q);
+    return rest >= crease_ ? kFullCrease : rest >= weak_crease_ ? kWeakCrease : 0;
   }
 
   // Both pixels are covered.
@@ -158,7 +192,7 @@ class Classifier {
                                   std::optional<std::size_t> after) const {
     if (object_[p] != object_[q]) return LineClass::kObject;
     if (!DepthGoesOn(before, p, q, after)) return LineClass::kOcclusion;
-    if (CreaseBetween(before, p, q, after) >= crease_) return LineClass::kCrease;
+    if (CreaseBegins(p, q)) return LineClass::kCrease;
     if (!material_.empty() && material_[p] != material_[q]) return LineClass::kMaterial;
     if (!shadow_.empty() && (shadow_[p] >= 0.5f) != (shadow_[q] >= 0.5f)) return LineClass::kShadow;
     if (!colors_.empty()) {
@@ -181,7 +215,8 @@ class Classifier {
   std::optional<Valleys> valleys_;
 };
 
-// Makes creases of the weak ones that lie end to end with one of the same object, and drops the others.
+// Makes creases of the weak ones that lie end to end with one of the same object, of full ones also beside a step in
+// depth there, and drops the others.
 class CreaseJoiner {
  public:
   CreaseJoiner(std::span<const float> object, BorderMap& map) : object_(object), map_(map) {}
@@ -190,10 +225,12 @@ class CreaseJoiner {
     const auto count = static_cast<std::int64_t>(map_.right.size());
     for (std::int64_t p = 0; p < count; ++p) {
       for (const bool is_below : {false, true}) {
-        if (At({p, is_below}) == kCrease) Follow({p, is_below});
+        if (At({p, is_below}) == kCrease || At({p, is_below}) == kOcclusion) Follow({p, is_below});
       }
     }
-    for (auto* borders : {&map_.right, &map_.below}) std::replace(borders->begin(), borders->end(), kWeakCrease, kNone);
+    for (auto* borders : {&map_.right, &map_.below})
+      std::replace_if(
+          borders->begin(), borders->end(), [](std::uint8_t border) { return border >= kFullCrease; }, kNone);
   }
 
  private:
@@ -201,7 +238,8 @@ class CreaseJoiner {
     std::int64_t pixel;
     bool is_below;
   };
-  static constexpr std::uint8_t kNone = 0, kCrease = CodeOf(LineClass::kCrease);
+  static constexpr std::uint8_t kNone = 0, kCrease = CodeOf(LineClass::kCrease),
+                                kOcclusion = CodeOf(LineClass::kOcclusion);
 
   std::uint8_t& At(Border of) { return (of.is_below ? map_.below : map_.right)[static_cast<std::size_t>(of.pixel)]; }
 
@@ -210,6 +248,7 @@ class CreaseJoiner {
     while (!todo_.empty()) {
       const Border at = todo_.back();
       todo_.pop_back();
+      last_code_ = At(at) == kOcclusion ? kFullCrease : kWeakCrease;
       // The six that share an end with it: two in its own direction, four in the other.
       const std::int64_t p = at.pixel, on = at.is_below ? 1 : map_.width, aside = at.is_below ? map_.width : 1;
       const bool other = !at.is_below;
@@ -227,7 +266,7 @@ class CreaseJoiner {
   // A crease has the same object on both of its sides.
   void Take(Border next, float object) {
     if (next.pixel < 0 || next.pixel >= static_cast<std::int64_t>(map_.right.size())) return;
-    if (At(next) != kWeakCrease || object_[std::size_t(next.pixel)] != object) return;
+    if (At(next) < kFullCrease || At(next) > last_code_ || object_[std::size_t(next.pixel)] != object) return;
     At(next) = kCrease;
     todo_.push_back(next);
   }
@@ -235,6 +274,7 @@ class CreaseJoiner {
   std::span<const float> object_;
   BorderMap& map_;
   std::vector<Border> todo_;
+  std::uint8_t last_code_ = kWeakCrease;  // which may follow: up to that
 };
 
 }  // namespace
@@ -247,9 +287,9 @@ BorderOwner::BorderOwner(const GuideSet& guides)
       width_(static_cast<std::size_t>(guides.width())),
       give_(guides, kDepthTolerance) {}
 
-float BorderOwner::DepthTowards(std::size_t pixel, std::optional<std::size_t> before) const {
-  if (!before || !(coverage_[*before] > 0.0f) || object_[*before] != object_[pixel]) return depth_[pixel];
-  return depth_[pixel] + 0.5f * (depth_[pixel] - depth_[*before]);
+float BorderOwner::SlopeTowards(std::size_t pixel, std::optional<std::size_t> before) const {
+  const bool goes_on = before && coverage_[*before] > 0.0f && object_[*before] == object_[pixel];
+  return goes_on ? depth_[pixel] - depth_[*before] : 0.0f;
 }
 
 bool BorderOwner::Meet(std::size_t p, std::size_t q) const {
@@ -259,8 +299,12 @@ bool BorderOwner::Meet(std::size_t p, std::size_t q) const {
   const auto at = [&](bool is_inside, std::size_t pixel) { return is_inside ? std::optional(pixel) : std::nullopt; };
   const auto before = at(is_below ? p >= step : p % width_ > 0, p - step);
   const auto after = at(is_below ? q + step < count : (q + 1) % width_ > 0, q + step);
-  const float from = DepthTowards(p, before), to = DepthTowards(q, after);
-  return std::fabs(to - from) <= give_.At(std::min(from, to));
+  // How much farther q's surface is than that of p, in the middle of p and in that of q. Between them it changes
+  // evenly.
+  const float in_p = depth_[q] + SlopeTowards(q, after) - depth_[p],
+              in_q = depth_[q] - depth_[p] - SlopeTowards(p, before);
+  const float least = (in_p < 0.0f) == (in_q < 0.0f) ? std::min(std::fabs(in_p), std::fabs(in_q)) : 0.0f;
+  return least <= give_.At(std::min(depth_[p], depth_[q]));
 }
 
 bool BorderOwner::IsSecond(std::size_t p, std::size_t q) const {

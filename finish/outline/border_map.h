@@ -27,12 +27,13 @@ class BorderOwner {
   // Where two objects meet neither is nearer: there it is the one that faces the viewer more.
   bool IsSecond(std::size_t p, std::size_t q) const;
   std::size_t Of(std::size_t p, std::size_t q) const { return IsSecond(p, q) ? q : p; }
-  // Whether two objects meet in the border: their surfaces reach it at one depth, to a tolerance.
+  // Whether two objects meet near the border: somewhere between the middles of p and q their surfaces reach one depth,
+  // to a tolerance.
   bool Meet(std::size_t p, std::size_t q) const;
 
  private:
-  // Of the pixel's surface in its border, half a pixel further; `before`: the pixel on its other side.
-  float DepthTowards(std::size_t pixel, std::optional<std::size_t> before) const;
+  // How much the depth of the pixel's surface grows to the next one; `before`: the pixel on its other side.
+  float SlopeTowards(std::size_t pixel, std::optional<std::size_t> before) const;
 
   std::span<const float> coverage_, depth_, object_, facing_;
   std::size_t width_;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 
 namespace scumble::internal {
 namespace {
@@ -140,6 +141,7 @@ class Tracer {
     const Corner start = corner;
     chain.first = {corner.x, corner.y};
     chain.begin = EndAt(corner);
+    if (chain.begin == LineEnd::kJunction) chain.begin_contour = ContourAt(corner, border, chain.begins_in_contour);
     for (;;) {
       At(border) |= kTaken;
       const std::array<Corner, 2> ends = Corners(border);
@@ -157,15 +159,55 @@ class Tracer {
     chain.last = {corner.x, corner.y};
     chain.closed = corner == start && Degree(start) == 2;
     chain.end = EndAt(corner);
+    if (chain.end == LineEnd::kJunction) chain.end_contour = ContourAt(corner, border, chain.ends_in_contour);
     return chain;
+  }
+
+  LineClass LineOf(const Border& border) { return static_cast<LineClass>((At(border) & ~kTaken) - 1); }
+
+  static bool HasSide(LineClass line) {
+    return line == LineClass::kSilhouette || line == LineClass::kObject || line == LineClass::kOcclusion;
+  }
+
+  // The pixel to the left of a border, or above it, and whether the other one is the owner.
+  std::size_t First(const Border& border) const { return std::size_t(border.y) * map_.width + std::size_t(border.x); }
+  bool IsSecond(const Border& border) const {
+    const std::size_t p = First(border);
+    return owner_.IsSecond(p, border.is_right ? p + 1 : p + std::size_t(map_.width));
+  }
+
+  // The contour that passes a junction: two borders that belong to one surface, which lies between them. `end`: the
+  // last border of a line there; `is_of_it`: whether it is one of the two.
+  std::optional<PassingContour> ContourAt(const Corner& corner, const Border& end, bool& is_of_it) {
+    const auto [x, y] = corner;
+    // Clockwise from the top. 1: the owner is the next pixel clockwise, -1: the one before, 0: no border with a side.
+    const std::array<Border, 4> around = {Border{x - 1, y - 1, true}, Border{x, y - 1, false}, Border{x - 1, y, true},
+                                          Border{x - 1, y - 1, false}};
+    std::array<int, 4> owners{};
+    ForEachAt(corner, [&](const Border& one) {
+      const auto k = std::size_t(std::find(around.begin(), around.end(), one) - around.begin());
+      if (HasSide(LineOf(one))) owners[k] = IsSecond(one) == (k < 2) ? 1 : -1;
+    });
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (owners[k] != 1) continue;
+      std::size_t next = (k + 1) % 4;
+      while (owners[next] == 0) next = (next + 1) % 4;
+      if (owners[next] != -1) continue;
+      is_of_it = end == around[k] || end == around[next];
+      const LinePoint point = PointOf(around[k]);
+      const glm::vec2 sum = point.to_owner + PointOf(around[next]).to_owner;
+      const float length = std::sqrt(sum.x * sum.x + sum.y * sum.y);
+      return PassingContour{length > 0.0f ? sum / length : point.to_owner, point.owner, point.line};
+    }
+    return std::nullopt;
   }
 
   LinePoint PointOf(const Border& border) {
     const auto [x, y, is_right] = border;
-    const std::size_t p = std::size_t(y) * map_.width + x, q = is_right ? p + 1 : p + std::size_t(map_.width);
-    const bool q_owns = owner_.IsSecond(p, q);
+    const std::size_t p = First(border), q = is_right ? p + 1 : p + std::size_t(map_.width);
+    const bool q_owns = IsSecond(border);
     const glm::vec2 across = is_right ? glm::vec2(1, 0) : glm::vec2(0, 1);  // from p to q
-    const auto line = static_cast<LineClass>((At(border) & ~kTaken) - 1);
+    const LineClass line = LineOf(border);
     const glm::vec2 at = is_right ? glm::vec2(x + 1, y + 0.5f) : glm::vec2(x + 0.5f, y + 1);
     const glm::vec2 to_owner = q_owns ? across : -across;
     const std::size_t owner = q_owns ? q : p;
@@ -176,7 +218,7 @@ class Tracer {
       const float from = shadow_[p], to = shadow_[q];
       shift = (std::clamp((0.5f - from) / (to - from), 0.0f, 1.0f) - 0.5f) * (q_owns ? 1.0f : -1.0f);
     }
-    return {at, to_owner, static_cast<std::uint32_t>(owner), line, owner_.Meet(p, q), shift};
+    return {at, to_owner, static_cast<std::uint32_t>(owner), line, HasSide(line), owner_.Meet(p, q), shift};
   }
 
   // How far behind its border a silhouette runs: what is not covered of the pixels from (x, y) inwards. A line at less

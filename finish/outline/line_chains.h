@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -17,17 +18,28 @@ struct LinePoint {
   glm::vec2 to_owner;   // unit vector along x or y, to the pixel that the line belongs to
   std::uint32_t owner;  // that pixel: the nearer one
   LineClass line;
-  bool meets = false;  // two objects meet there, and neither is nearer
-  float shift = 0.0f;  // pixels towards the owner, by which the line misses the border where it runs along that
+  bool has_side = true;  // the line lies at the end of a surface, and is no crease, shadow or other line on one
+  bool meets = false;    // two objects meet there, and neither is nearer
+  float shift = 0.0f;    // pixels towards the owner, by which the line misses the border where it runs along that
 };
 
 enum class LineEnd { kFree, kJunction, kPictureEdge };
+
+// A contour that passes a junction, in front of all else.
+struct PassingContour {
+  glm::vec2 to_owner;   // a unit vector, at the junction
+  std::uint32_t owner;  // a pixel there that the contour belongs to
+  LineClass line;
+};
 
 struct LineChain {
   std::vector<LinePoint> points;
   bool closed = false;                                   // the last point is next to the first
   LineEnd begin = LineEnd::kFree, end = LineEnd::kFree;  // of an open line
   glm::vec2 first, last;                                 // where an open line begins and ends
+  // Where it begins or ends at a junction that a contour passes. The line may be of that contour itself.
+  std::optional<PassingContour> begin_contour, end_contour;
+  bool begins_in_contour = false, ends_in_contour = false;
 };
 
 // Joins borders to lines from junction to junction, or round. Takes borders out of the map. Lines shorter than

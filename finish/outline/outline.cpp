@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <iterator>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/image/color.h"
@@ -50,7 +51,7 @@ StrokeCover CoverByStrokes(const OutlinePass& pass, const FinishFrame& frame, in
   }
   std::vector<std::vector<StrokePiece>> strokes(chains.size());
   tbb::parallel_for(std::size_t(0), chains.size(),
-                    [&](std::size_t i) { strokes[i] = StrokeOf(pass, frame, noise, chains[i]); });
+                    [&](std::size_t i) { strokes[i] = StrokeOf(pass, frame, noise, std::move(chains[i])); });
   std::vector<StrokePiece> pieces;
   for (const auto& stroke : strokes) {
     std::copy_if(stroke.begin(), stroke.end(), std::back_inserter(pieces),

@@ -79,8 +79,9 @@ struct Middle {
 
 // Towards which side of a line its owners lie, as a factor of the line's width, -1 … 1, 1 being the left. Where the
 // nearer surface changes, owners count over a stretch of the line, so that it passes from one side to the other. Where
-// two objects meet neither is nearer, and the rest of the line decides, if it has any. Towards a junction a line runs
-// back to its middle, where the others meet it.
+// two objects meet neither is nearer, and the rest of the line decides, if it has any. A line on a surface, as a
+// crease, keeps to its middle. So does each towards a junction, where the others meet it; but a contour that passes
+// goes on, and the others end at that.
 std::vector<float> SidesOf(const LineChain& chain, const std::vector<float>& widths) {
   const auto& points = chain.points;
   const auto count = static_cast<std::ptrdiff_t>(points.size());
@@ -88,17 +89,18 @@ std::vector<float> SidesOf(const LineChain& chain, const std::vector<float>& wid
     return static_cast<std::size_t>(chain.closed ? (i % count + count) % count
                                                  : std::clamp<std::ptrdiff_t>(i, 0, count - 1));
   };
-  const bool all_meet = std::ranges::all_of(points, [](const LinePoint& point) { return point.meets; });
+  const bool all_meet =
+      std::ranges::all_of(points, [](const LinePoint& point) { return point.meets || !point.has_side; });
   std::vector<float> own(points.size());
   float most = 0.0f;
   for (std::ptrdiff_t i = 0; i < count; ++i) {
-    if (points[std::size_t(i)].meets && !all_meet) continue;
+    if (!points[std::size_t(i)].has_side || (points[std::size_t(i)].meets && !all_meet)) continue;
     const glm::vec2 along = points[at(i + 1)].at - points[at(i - 1)].at;
     own[std::size_t(i)] = Dot(glm::vec2(-along.y, along.x), points[std::size_t(i)].to_owner) < 0.0f ? -1.0f : 1.0f;
     most += own[std::size_t(i)];
   }
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (points[i].meets) own[i] = most < 0.0f ? -1.0f : 1.0f;
+    if (points[i].has_side && points[i].meets) own[i] = most < 0.0f ? -1.0f : 1.0f;
   }
   constexpr std::ptrdiff_t kStretch = 8;
   std::vector<float> sides(points.size());
@@ -116,29 +118,60 @@ std::vector<float> SidesOf(const LineChain& chain, const std::vector<float>& wid
       sides[nth(k)] *= along / widths[nth(k)];
     }
   };
-  if (chain.begin == LineEnd::kJunction) run_back([](std::size_t k) { return k; });
-  if (chain.end == LineEnd::kJunction) run_back([&](std::size_t k) { return points.size() - 1 - k; });
+  if (chain.begin == LineEnd::kJunction && !chain.begin_contour) run_back([](std::size_t k) { return k; });
+  if (chain.end == LineEnd::kJunction && !chain.end_contour)
+    run_back([&](std::size_t k) { return points.size() - 1 - k; });
   return sides;
 }
 
-Middle MiddleOf(const OutlinePass& pass, const FinishFrame& frame, const LineNoise& noise, const LineChain& chain,
+// How far the middle of a stroke is moved to the line's owners.
+float Shift(const OutlinePass& pass, float width) {
+  if (pass.side == OutlinePass::Side::kCentre) return 0.0f;
+  return (pass.side == OutlinePass::Side::kInside ? 0.5f : -0.5f) * std::max(0.0f, width - kOverlap);
+}
+
+// Lets a line end in the middle of the contour's stroke that passes there, so that it neither sticks out beyond that
+// nor falls short of it. `from`, `to`: which of the line's points are left.
+void EndInContours(const OutlinePass& pass, const LineWidth& width, LineChain& chain, std::size_t& from,
+                   std::size_t& to) {
+  const auto end_in = [&](const PassingContour& contour, glm::vec2& end, const auto& drop) {
+    const float shift = Shift(pass, width.At(contour.owner, contour.line));
+    const glm::vec2 towards = contour.to_owner * (shift < 0.0f ? -1.0f : 1.0f);
+    const glm::vec2 corner = end;
+    end += contour.to_owner * shift;
+    drop([&](glm::vec2 at) { return Dot(at - corner, towards) > 0.0f && Dot(at - end, towards) < 0.0f; });
+  };
+  const auto& points = chain.points;
+  if (chain.begin_contour && !chain.begins_in_contour) {
+    end_in(*chain.begin_contour, chain.first, [&](const auto& is_beyond) {
+      while (from < to && is_beyond(points[from].at)) ++from;
+    });
+  }
+  if (chain.end_contour && !chain.ends_in_contour) {
+    end_in(*chain.end_contour, chain.last, [&](const auto& is_beyond) {
+      while (from < to && is_beyond(points[to - 1].at)) --to;
+    });
+  }
+}
+
+Middle MiddleOf(const OutlinePass& pass, const FinishFrame& frame, const LineNoise& noise, LineChain& chain,
                 const std::vector<float>& widths) {
   const auto& points = chain.points;
   const std::size_t count = points.size();
-  const float side = pass.side == OutlinePass::Side::kInside    ? 0.5f
-                     : pass.side == OutlinePass::Side::kOutside ? -0.5f
-                                                                : 0.0f;
-  const std::vector<float> to_side = side != 0.0f ? SidesOf(chain, widths) : std::vector<float>();
+  const bool has_side = pass.side != OutlinePass::Side::kCentre;
+  const std::vector<float> to_side = has_side ? SidesOf(chain, widths) : std::vector<float>();
+  std::size_t from = 0, to = count;
+  if (has_side && !chain.closed) EndInContours(pass, LineWidth(pass, frame, noise.gaps), chain, from, to);
   const auto wobble = static_cast<float>(pass.wobble * frame.scale);
   const auto per_wave = static_cast<float>(1.0 / (pass.wobble_length * frame.scale));
   const auto moved = [&](glm::vec2 at, std::size_t i) {
-    if (side != 0.0f) {
+    if (has_side) {
       const std::size_t before = i > 0 ? i - 1 : chain.closed ? count - 1 : 0;
       const std::size_t after = i + 1 < count ? i + 1 : chain.closed ? 0 : i;
       const glm::vec2 along = points[after].at - points[before].at;
       const float length = std::sqrt(Dot(along, along));
       const glm::vec2 left = length > 0.0f ? glm::vec2(-along.y, along.x) / length : points[i].to_owner;
-      at += left * (to_side[i] * side * std::max(0.0f, widths[i] - kOverlap));
+      at += left * (to_side[i] * Shift(pass, widths[i]));
     }
     if (wobble > 0.0f && noise.across) {
       const auto width = static_cast<std::uint32_t>(frame.guides->width());
@@ -156,9 +189,9 @@ Middle MiddleOf(const OutlinePass& pass, const FinishFrame& frame, const LineNoi
     middle.width.push_back(widths[i]);
     middle.owner.push_back(points[i].owner);
   };
-  if (!chain.closed) add(chain.first, 0);
-  for (std::size_t i = 0; i < count; ++i) add(points[i].at, i);
-  chain.closed ? add(points[0].at, 0) : add(chain.last, count - 1);
+  if (!chain.closed) add(chain.first, std::min(from, count - 1));
+  for (std::size_t i = from; i < to; ++i) add(points[i].at, i);
+  chain.closed ? add(points[0].at, 0) : add(chain.last, to > 0 ? to - 1 : 0);
   return middle;
 }
 
@@ -237,7 +270,7 @@ float LineWidth::At(std::size_t owner, LineClass line) const {
 }
 
 std::vector<StrokePiece> StrokeOf(const OutlinePass& pass, const FinishFrame& frame, const LineNoise& noise,
-                                  const LineChain& chain) {
+                                  LineChain chain) {
   std::vector<float> widths = WidthsOf(pass, frame, noise.gaps, chain);
   Taper(pass.taper * frame.scale, chain, widths);
   const Middle middle = MiddleOf(pass, frame, noise, chain, widths);

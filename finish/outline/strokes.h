@@ -44,7 +44,7 @@ class LineWidth {
 // One line's stroke: its widths by class, depth, light and taper, its wobble and side. Pieces are as long as they may
 // be without leaving the line by a tenth of a pixel.
 std::vector<StrokePiece> StrokeOf(const OutlinePass& pass, const FinishFrame& frame, const LineNoise& noise,
-                                  const LineChain& chain);
+                                  LineChain chain);
 
 // How much of each pixel the strokes cover, 0 … 1, and the owner of the piece that covers most of it.
 struct StrokeCover {

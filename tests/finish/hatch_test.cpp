@@ -110,6 +110,46 @@ TEST(Hatch, FlatSurfacesTakeTheAngle) {
   EXPECT_GT(Change(ink, 300, 300, 4, 0), 0.1);
 }
 
+// Two faces of one object, with a crease or a round edge of four pixels between them, have one direction each, up to
+// the edge; so has the lid of a cylinder.
+TEST(Hatch, EdgesOfFlatFacesDoNotTurnTheirStrokes) {
+  HatchPass pass, fixed;
+  fixed.along = HatchPass::Along::kFixed;
+  const auto lit = [](GuideSet guides) {
+    guides.Add(Layer::kLuminance);
+    for (float& value : guides.Plane(Layer::kLuminance)) value = 0.125f;
+    return guides;
+  };
+  for (const float round : {0.001f, 4.0f}) {
+    const GuideSet faces = lit(GuidesOf(300, 100, [=](glm::vec2 at) {
+      const float turn = 0.8f * std::clamp((at.x - 150.0f - 0.2f * at.y) / round, -1.0f, 1.0f);
+      return SeenPoint{true, {std::sin(turn), 0.0f, std::cos(turn)}, 5.0f, 1.0f};
+    }));
+    const auto ink = HatchOf(pass, faces), plain = HatchOf(fixed, faces);
+    for (std::size_t i = 0; i < ink.size(); ++i) {
+      const float across = std::fabs(float(i % 300) - 150.0f - 0.2f * float(i / 300));
+      if (across > round + 2.0f) {
+        ASSERT_EQ(ink[i], plain[i]) << i % 300 << ' ' << i / 300;
+      }
+    }
+  }
+  const GuideSet can = lit(GuidesOf(300, 200, [](glm::vec2 at) {
+    if (at.y < 100.0f) return SeenPoint{true, {0.0f, 0.9f, 0.436f}, 5.0f, 1.0f};
+    const float x = (at.x - 150.0f) / 151.0f;
+    return SeenPoint{true, {x, 0.0f, std::sqrt(1.0f - x * x)}, 5.0f, 1.0f};
+  }));
+  const auto ink = HatchOf(pass, can), plain = HatchOf(fixed, can);
+  double side = 0.0;
+  for (std::size_t i = 0; i < ink.size(); ++i) {
+    // Where a patch shows little of the lid, that takes the directions of the side.
+    if (i < 300 * 60) {
+      ASSERT_EQ(ink[i], plain[i]) << i % 300 << ' ' << i / 300;
+    }
+    side += std::fabs(ink[i] - plain[i]) / (300.0 * 100.0);
+  }
+  EXPECT_GT(side, 0.2);
+}
+
 TEST(Hatch, ObjectsHaveTheirOwnPatches) {
   GuideSet guides = Cylinder(200, 1.0f);
   for (std::size_t i = 0; i < guides.pixel_count(); ++i) {

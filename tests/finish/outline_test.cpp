@@ -263,6 +263,73 @@ TEST(Outline, ACreaseGoesOnToTwoThirdsOfItsAngle) {
   EXPECT_NEAR(Sum(InkOf(creases, two)), 60.0, 2.0);
 }
 
+// A fold that turns by 150 degrees within three pixels, wherever these lie, and a rim one pixel wide beside the
+// outline.
+TEST(Outline, FoldsAndRimsOfFewPixelsAreNoCreases) {
+  OutlinePass pass;
+  for (double& width : pass.of_class) width = 0.0;
+  pass.of_class[std::size_t(LineClass::kCrease)] = 1.0;
+  for (const double place : {60.0, 60.25, 60.5, 60.75}) {
+    const GuideSet fold = GuidesOf(120, 80, [=](glm::vec2 at) {
+      const double turn = 75.0 * std::tanh(at.x - place) * std::numbers::pi / 180.0;
+      return SeenPoint{true, {float(std::sin(turn)), 0.0f, float(std::cos(turn))}, 5.0f, 1.0f};
+    });
+    EXPECT_EQ(Sum(InkOf(pass, fold)), 0.0) << place;
+  }
+  const GuideSet rim = GuidesOf(120, 80, [](glm::vec2 at) {
+    const float below = at.y - 20.0f - 0.1f * at.x;
+    if (below < 1.0f) return SeenPoint{below >= 0.0f, {0.0f, 0.9f, 0.436f}, 5.0f, 1.0f};
+    return SeenPoint{true, {0.0f, 0.0f, 1.0f}, 5.0f, 1.0f};
+  });
+  EXPECT_EQ(Sum(InkOf(pass, rim)), 0.0);
+}
+
+// Beside a crease neither surface is nearer, whichever pixel is.
+TEST(Outline, CreasesHaveNoSide) {
+  const float h = std::sqrt(0.5f);
+  const GuideSet guides = GuidesOf(120, 80, [&](glm::vec2 at) {
+    const float across = at.x - 57.3f - 0.1f * at.y;
+    return SeenPoint{true, {across < 0.0f ? -h : h, 0.0f, h}, 5.0f + 0.01f * std::fabs(across), 1.0f};
+  });
+  OutlinePass pass;
+  pass.width = 8.0;
+  const std::vector<double> centre = InkOf(pass, guides);
+  EXPECT_GT(Sum(centre), 350.0);
+  for (const auto side : {OutlinePass::Side::kInside, OutlinePass::Side::kOutside}) {
+    pass.side = side;
+    EXPECT_EQ(InkOf(pass, guides), centre);
+  }
+}
+
+// A line between two things ends behind a nearer one, whose own line goes straight on.
+TEST(Outline, ContoursKeepTheirSideWhereLinesEndBehindThem) {
+  const GuideSet guides = GuidesOf(120, 80, [](glm::vec2 at) {
+    if (at.y > 40.0f) return SeenPoint{true, {0, 0, 1}, 3.0f, 1.0f};
+    return at.x < 60.0f ? SeenPoint{true, {0, 0, 1}, 5.0f, 2.0f} : SeenPoint{true, {0, 0, 1}, 7.0f, 3.0f};
+  });
+  OutlinePass pass;
+  pass.width = 8.0, pass.side = OutlinePass::Side::kInside;
+  const std::vector<double> ink = InkOf(pass, guides);
+  const auto at = [&](int x, int y) { return ink[std::size_t(y * 120 + x)]; };
+  for (int x = 0; x < 120; ++x) {
+    EXPECT_NEAR(at(x, 46), 1.0, 0.01) << x;
+    EXPECT_NEAR(at(x, 48), 0.0, 0.01) << x;
+    if (x < 52 || x > 61) {
+      EXPECT_NEAR(at(x, 38), 0.0, 0.01) << x;
+    }
+  }
+  for (int y = 0; y < 39; ++y) {
+    EXPECT_NEAR(at(54, y), 1.0, 0.01) << y;
+    EXPECT_NEAR(at(61, y), 0.0, 0.01) << y;
+  }
+  // Outside, a line that ends there does not stick out into the nearer thing.
+  pass.side = OutlinePass::Side::kOutside;
+  const std::vector<double> outside = InkOf(pass, guides);
+  for (int y = 42; y < 80; ++y) {
+    for (int x = 0; x < 120; ++x) EXPECT_NEAR(outside[std::size_t(y * 120 + x)], 0.0, 0.01) << x << ' ' << y;
+  }
+}
+
 // The nearer of two overlapping things has the line, whatever lies behind.
 TEST(Outline, StepInDepthIsALineOfTheNearerSide) {
   GuideSet guides = GuidesOf(120, 80, [](glm::vec2 at) {
@@ -433,6 +500,26 @@ TEST(Outline, OnlyDrawsBordersOfItsPixels) {
   for (std::size_t i = 0; i < guides.pixel_count(); ++i) (i % 240 < 120 ? left : right) += drawn.rgba[4 * i + 3];
   EXPECT_GT(left, 0.0);
   EXPECT_EQ(right, 0.0);
+}
+
+// A wall on a floor, which meet in a line that crosses rows of pixels: that is the wall's, wherever it crosses them.
+// The wall behind the floor's edge has none.
+TEST(Outline, OfOneObjectGoesOnWhereItStandsOnAnother) {
+  for (const bool stands : {true, false}) {
+    const GuideSet guides = GuidesOf(160, 80, [&](glm::vec2 at) {
+      const float below = at.y - 25.3f - 0.17f * at.x;
+      if (below < 0.0f) return SeenPoint{true, {0.9f, 0.0f, 0.436f}, stands ? 20.0f : 24.0f, 1.0f};
+      return SeenPoint{true, {0.0f, 0.98f, 0.2f}, 20.0f - 0.3f * below, 2.0f};
+    });
+    FinishStep step = StepOf(OutlinePass());
+    for (const float object : guides.Plane(Layer::kObject)) step.only.push_back(object == 1.0f);
+    const Picture drawn = Finished(step, &guides, Picture(160, 80));
+    for (int x = 5; x < 155; ++x) {
+      double ink = 0.0;
+      for (int y = 0; y < 80; ++y) ink += drawn.At(x, y)[3] / 65535.0;
+      EXPECT_NEAR(ink, stands ? 2.5 : 0.0, 0.2) << x;
+    }
+  }
 }
 
 TEST(Outline, SmallestPictures) {
