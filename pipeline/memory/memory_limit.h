@@ -60,6 +60,9 @@ inline constexpr std::uint64_t kMuchMemory = std::uint64_t(4) << 30;
 // For StyleRequest::room: adds up what the pictures of a run's styles take, and refuses as CheckMemory does where they
 // alone are more than there is. Copies add up together. kCancelled where the context is cancelled.
 std::function<Status(std::uint64_t bytes)> RoomForStyles(const RunContext& context);
+
+// The most that this process has held so far, as the system counts it (VmHWM of proc(5)); 0 where it does not.
+std::uint64_t PeakMemory();
 // Makes PeakMemory begin again at what is held now. Does nothing where the system cannot.
 void ForgetPeakMemory();
 
