@@ -67,14 +67,16 @@ Expected<std::vector<std::byte>> Exr(const std::string& name, const Picture& pic
 
 }  // namespace
 
-Expected<Picture> ReadPicture(const std::filesystem::path& path, const std::string& view_layer, Profiles profiles) {
+Expected<Picture> ReadPicture(const std::filesystem::path& path, const std::string& view_layer, Profiles profiles,
+                              PictureLosses* losses) {
+  if (losses) *losses = {};
   if (IsZip(path)) return ReadMergedLayers(path);
   if (internal::IsPngFile(path)) {
     SCUMBLE_ASSIGN(const auto bytes, ReadWholeFile(path));
     if (auto picture = ReadIfPlainPng(bytes, path.string(), profiles)) return *std::move(picture);
   }
   SCUMBLE_ASSIGN(const Formats* const formats, LoadFormatsToRead(path));
-  return formats->read_picture(path, view_layer, profiles);
+  return formats->read_picture(path, view_layer, profiles, losses);
 }
 
 Expected<PictureHeader> InspectPicture(const std::filesystem::path& path) {
