@@ -48,6 +48,10 @@ Expected<PictureHeader> InspectPicture(const std::filesystem::path& path);
 Expected<std::uint64_t> CountPixels(const std::filesystem::path& path);
 Expected<std::uint64_t> CountPixels(std::span<const std::byte> bytes, const std::string& name);
 
+// Whether ReadPicture loads OpenImageIO for the file, which takes memory for the rest of the process. Where the file is
+// not there, that of a file with its ending. Thread-safe.
+bool NeedsOpenImageIo(const std::filesystem::path& path);
+
 // ReadPicture from memory, for pictures inside .glb files, which have no orientation. `name` stands for the picture in
 // messages.
 Expected<Picture> DecodePicture(std::span<const std::byte> bytes, const std::string& name,

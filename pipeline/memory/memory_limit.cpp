@@ -113,6 +113,10 @@ void MemoryNeed::TakeTransient(const std::string& name, std::uint64_t bytes) {
   LookForPeak(parts);
 }
 
+bool MemoryNeed::Holds(const std::string& name) const {
+  return std::any_of(held_.begin(), held_.end(), [&](const Part& part) { return part.name == name; });
+}
+
 void MemoryNeed::LookForPeak(const std::vector<Part>& parts) {
   std::uint64_t sum = 0;
   for (const Part& part : parts) sum = Sum(sum, part.bytes);

@@ -26,6 +26,9 @@ class MemoryNeed {
   // Is given back before the next call.
   void TakeTransient(const std::string& name, std::uint64_t bytes);
 
+  // Whether a part of that name has been taken to stay.
+  bool Holds(const std::string& name) const;
+
   std::uint64_t peak() const { return peak_; }
   // What there is at the peak.
   const std::vector<Part>& parts() const { return at_peak_; }

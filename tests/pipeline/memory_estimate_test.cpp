@@ -66,7 +66,22 @@ TEST_F(MemoryNeedTest, NothingTakesMoreThanItSays) {
   ExpectHonest(With(stylize, {"-o", "p.png", "--finish", "hatch", "--show", "finish:hatch"}));
   ExpectHonest({"guidegen", Scene("snail.glb"), "--size", "800", "--layers", "luminance,shadow", "-o", "s.exr"});
   ExpectHonest({"transfer", "s.exr", "--style", "style", "--finish", "charcoal-lines", "-o", "p.png"});
+  ExpectHonest({"finish", "p.png", "s.exr", "--finish", "charcoal-lines", "-o", "f.png"});
   ExpectHonest({"sphere", "--size", "500", "-o", "kit"});
+}
+
+// Large papers and pictures underneath, by our own readers and by OpenImageIO, which stays.
+TEST_F(MemoryNeedTest, PicturesThatAreReadTakeNoMoreThanTheySay) {
+  WriteStyle("style");
+  WriteGuideFile("g.exr", Ball(1600));
+  const Picture paper = Painted(1600, 1600);
+  for (const std::string file : {"sheet.png", "sheet.jpg", "sheet.tif", "sheet.exr"}) {
+    ASSERT_TRUE(WritePicture(At(file), paper).ok());
+    ExpectHonest({"stylize", Scene("ball.glb"), "--size", "160", "--style", "style", "--set",
+                  "transfer.paper=" + At(file).string(), "-o", "p.png"});
+    ExpectHonest({"transfer", "g.exr", "--style", "style", "--over", file, "-o", "p.png"});
+    ExpectHonest({"finish", file, "--finish", "grade", "-o", "p.png"});
+  }
 }
 
 // A finish whose keys change takes what its greediest frame does, in every frame.
