@@ -73,15 +73,15 @@ TEST_F(MemoryNeedTest, NothingTakesMoreThanItSays) {
 // Large papers and pictures underneath, by our own readers and by OpenImageIO, which stays.
 TEST_F(MemoryNeedTest, PicturesThatAreReadTakeNoMoreThanTheySay) {
   WriteStyle("style");
-  WriteGuideFile("g.exr", Ball(1600));
-  const Picture paper = Painted(1600, 1600);
-  for (const std::string file : {"sheet.png", "sheet.jpg", "sheet.tif", "sheet.exr"}) {
-    ASSERT_TRUE(WritePicture(At(file), paper).ok());
-    ExpectHonest({"stylize", Scene("ball.glb"), "--size", "160", "--style", "style", "--set",
-                  "transfer.paper=" + At(file).string(), "-o", "p.png"});
-    ExpectHonest({"transfer", "g.exr", "--style", "style", "--over", file, "-o", "p.png"});
-    ExpectHonest({"finish", file, "--finish", "grade", "-o", "p.png"});
+  WriteGuideFile("g.exr", Ball(1000));
+  for (const char* const file : {"sheet.png", "sheet.jpg", "sheet.tif", "sheet.exr"}) {
+    ASSERT_TRUE(WritePicture(At(file), Painted(1000, 1000)).ok());
   }
+  const Arguments stylize = {"stylize", Scene("ball.glb"), "--size", "160", "--style", "style", "-o", "p.png", "--set"};
+  ExpectHonest(With(stylize, {"transfer.paper=" + At("sheet.png").string()}));
+  ExpectHonest(With(stylize, {"transfer.paper=" + At("sheet.jpg").string()}));
+  ExpectHonest({"transfer", "g.exr", "--style", "style", "--over", "sheet.tif", "-o", "p.png"});
+  ExpectHonest({"finish", "sheet.exr", "--finish", "grade", "-o", "p.png"});
 }
 
 // A finish whose keys change takes what its greediest frame does, in every frame.
