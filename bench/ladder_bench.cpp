@@ -144,11 +144,12 @@ void Measure(const std::string& scene_name, const std::string& style_name, const
   };
   const std::vector<std::size_t> front = ParetoFront(whole), alone = ParetoFront(transfer_alone);
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    std::fputs(fmt::format("{}\t{}\t{}\t{:.1f}\t{:.1f}\t{:.4f}\t{:.4f}\t{:.4f}\t{}\t{}\n", scene_name, style_name,
-                           candidates[i].name, whole[i].time, SpreadOf(ms[i]).median, whole[i].error, texture.floor(),
-                           error[i].both.mean, on(front, i) ? "*" : "", on(alone, i) ? "*" : "")
-                   .c_str(),
-               stdout);
+    std::fputs(
+        fmt::format("{}\t{}\t{}\t{:.1f}\t{:.1f}\t{:.4f}\t{:.4f}\t{:.4f}\t{}\t{}\n", scene_name, style_name,
+                    candidates[i].name, whole[i].time, SpreadOf(ms[i]).median, whole[i].error,
+                    texture.floor().value_or(0.0), error[i].both.mean, on(front, i) ? "*" : "", on(alone, i) ? "*" : "")
+            .c_str(),
+        stdout);
   }
   std::fflush(stdout);
 }

@@ -249,7 +249,7 @@ Expected<PreparedStyle> PrepareInArena(const Style& style, int output_height, co
     if (!std::all_of(prepared.rims.begin(), prepared.rims.end(), has_edge)) prepared.rims.clear();
   }
   SCUMBLE_RETURN_IF_ERROR(CheckNotCancelled(options));
-  prepared.paper = style.paper;
+  prepared.paper.color = style.paper.color;
   if (style.paper.picture) {
     prepared.paper.picture = ScaledPaper(*style.paper.picture, settings.reference_height, output_height);
   }

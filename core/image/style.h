@@ -161,6 +161,7 @@ inline constexpr int kMaxMatchStep = 8;
 struct Paper {
   std::optional<std::array<std::uint16_t, 3>> color;  // 16-bit sRGB
   std::optional<Picture> picture;                     // tiled
+  std::filesystem::path file = {};                    // of the picture
 };
 
 // A key of style.toml that changes over time, as core/style/style_keyframes.h defines it. Without tracks a style is the

@@ -37,7 +37,8 @@ namespace formats {
 
 // The library's versions of the functions of these names outside of this namespace. The module writes no file itself:
 // it would have its own copy of WriteFileAtomically, whose temporary files no signal handler removes.
-Expected<Picture> ReadPicture(const std::filesystem::path& path, const std::string& view_layer, Profiles profiles);
+Expected<Picture> ReadPicture(const std::filesystem::path& path, const std::string& view_layer, Profiles profiles,
+                              PictureLosses* losses);
 Expected<Picture> DecodePicture(std::span<const std::byte> bytes, const std::string& name, Profiles profiles);
 Expected<PictureHeader> InspectPicture(const std::filesystem::path& path);
 Expected<PictureHeader> InspectEncoded(std::span<const std::byte> bytes, const std::string& name);  // in memory
@@ -57,9 +58,9 @@ inline constexpr std::uint64_t kFormatsLayout = [] {
   std::uint64_t layout = 0;
   for (const std::size_t size :
        {sizeof(Expected<Picture>), sizeof(Picture), sizeof(PictureHeader), sizeof(StoredPicture),
-        sizeof(PictureWriteOptions), sizeof(ChannelImage), sizeof(GuideSet), sizeof(GuideReadOptions),
-        sizeof(GuideFileInfo), sizeof(Expected<std::vector<std::byte>>), sizeof(LayerSet), sizeof(Error),
-        sizeof(std::string), sizeof(std::filesystem::path)}) {
+        sizeof(PictureWriteOptions), sizeof(PictureLosses), sizeof(ChannelImage), sizeof(GuideSet),
+        sizeof(GuideReadOptions), sizeof(GuideFileInfo), sizeof(Expected<std::vector<std::byte>>), sizeof(LayerSet),
+        sizeof(Error), sizeof(std::string), sizeof(std::filesystem::path)}) {
     layout = HashOn(layout, size);
   }
   return layout;

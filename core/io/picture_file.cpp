@@ -26,6 +26,14 @@ std::optional<Picture> ReadIfPlainPng(std::span<const std::byte> bytes, const st
   return internal::ReadPlainPng(bytes, profiles);
 }
 
+std::optional<PictureHeader> HeaderIfPlainPng(const std::filesystem::path& path) {
+  constexpr std::size_t kMostBeforePixels = 1 << 18;  // bytes; where more comes before them, the library reads it
+  std::vector<std::byte> start(kMostBeforePixels);
+  std::ifstream file(path, std::ios::binary);
+  file.read(reinterpret_cast<char*>(start.data()), std::streamsize(start.size()));
+  return internal::PlainPngHeader(std::span<const std::byte>(start).first(static_cast<std::size_t>(file.gcount())));
+}
+
 Expected<std::uint64_t> PixelsOf(std::int64_t width, std::int64_t height, const std::string& name) {
   if (width >= 1 && height >= 1 && width <= kMaxImageSide && height <= kMaxImageSide &&
       width * height <= kMaxPicturePixels) {
@@ -67,14 +75,16 @@ Expected<std::vector<std::byte>> Exr(const std::string& name, const Picture& pic
 
 }  // namespace
 
-Expected<Picture> ReadPicture(const std::filesystem::path& path, const std::string& view_layer, Profiles profiles) {
+Expected<Picture> ReadPicture(const std::filesystem::path& path, const std::string& view_layer, Profiles profiles,
+                              PictureLosses* losses) {
+  if (losses) *losses = {};
   if (IsZip(path)) return ReadMergedLayers(path);
   if (internal::IsPngFile(path)) {
     SCUMBLE_ASSIGN(const auto bytes, ReadWholeFile(path));
     if (auto picture = ReadIfPlainPng(bytes, path.string(), profiles)) return *std::move(picture);
   }
   SCUMBLE_ASSIGN(const Formats* const formats, LoadFormatsToRead(path));
-  return formats->read_picture(path, view_layer, profiles);
+  return formats->read_picture(path, view_layer, profiles, losses);
 }
 
 Expected<PictureHeader> InspectPicture(const std::filesystem::path& path) {
@@ -83,15 +93,16 @@ Expected<PictureHeader> InspectPicture(const std::filesystem::path& path) {
     return PictureHeader{merged.width, merged.height, merged.bits, 0};
   }
   if (internal::IsPngFile(path)) {
-    constexpr std::size_t kMostBeforePixels = 1 << 18;  // bytes; where more comes before them, the library reads it
-    std::vector<std::byte> start(kMostBeforePixels);
-    std::ifstream file(path, std::ios::binary);
-    file.read(reinterpret_cast<char*>(start.data()), std::streamsize(start.size()));
-    const auto taken = std::span<const std::byte>(start).first(static_cast<std::size_t>(file.gcount()));
-    if (const auto header = internal::PlainPngHeader(taken)) return *header;
+    if (const auto header = HeaderIfPlainPng(path)) return *header;
   }
   SCUMBLE_ASSIGN(const Formats* const formats, LoadFormatsToRead(path));
   return formats->inspect_picture(path);
+}
+
+bool NeedsOpenImageIo(const std::filesystem::path& path) {
+  std::error_code failed;
+  if (!std::filesystem::exists(path, failed)) return internal::Upper(path.extension().string()) != ".PNG";
+  return !IsZip(path) && !(internal::IsPngFile(path) && HeaderIfPlainPng(path));
 }
 
 Expected<Picture> DecodePicture(std::span<const std::byte> bytes, const std::string& name, Profiles profiles) {

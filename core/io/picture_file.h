@@ -17,15 +17,22 @@ namespace scumble {
 // What becomes of an ICC profile in a file. Textures of scenes ignore it, as glTF 2.0 demands and Blender does.
 enum class Profiles { kApply, kIgnore };
 
+// What a picture of 0 to 1 cannot hold of a file of floats. An excess of up to 0.002 of the light that the pixel shows
+// is the rounding of half floats, and is not counted.
+struct PictureLosses {
+  std::size_t clamped = 0;  // values of colour below 0 or above 1, infinities included
+  std::size_t nan = 0;      // values of colour and alpha that are no numbers
+};
+
 // Reads any picture as 16-bit sRGB-encoded RGBA with straight alpha. 8-bit values v become v · 257, 16-bit values are
 // kept; float files (EXR, HDR) are taken as linear and associated, unpremultiplied, clamped to [0, 1] and encoded.
 // Grey is spread over the three colours; a missing alpha is opaque, a NaN one transparent. A photograph is
 // turned upright by its Exif orientation; RGB and grey with an ICC profile become sRGB. A file that ends early is
 // an error, JPEG included. Of a file of layers (.ora, Krita's .kra) the picture of all that are visible is read, of an
 // EXR of several parts the one that holds R, G and B, and of a render of several view layers that of `view_layer`.
-// Thread-safe.
+// `losses`, if given, is set. Thread-safe.
 Expected<Picture> ReadPicture(const std::filesystem::path& path, const std::string& view_layer = {},
-                              Profiles profiles = Profiles::kApply);
+                              Profiles profiles = Profiles::kApply, PictureLosses* losses = nullptr);
 
 // The header of a file, without its pixels. Of a file of layers, that of the merged picture. Thread-safe.
 struct PictureHeader {
@@ -40,6 +47,10 @@ Expected<PictureHeader> InspectPicture(const std::filesystem::path& path);
 // taken. An error where ReadPicture would fail, as far as the header shows. Thread-safe.
 Expected<std::uint64_t> CountPixels(const std::filesystem::path& path);
 Expected<std::uint64_t> CountPixels(std::span<const std::byte> bytes, const std::string& name);
+
+// Whether ReadPicture loads OpenImageIO for the file, which takes memory for the rest of the process. Where the file is
+// not there, that of a file with its ending. Thread-safe.
+bool NeedsOpenImageIo(const std::filesystem::path& path);
 
 // ReadPicture from memory, for pictures inside .glb files, which have no orientation. `name` stands for the picture in
 // messages.

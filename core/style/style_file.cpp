@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "core/io/channel_file.h"
 #include "core/io/file/atomic_file.h"
 #include "core/io/file/readable_file.h"
 #include "core/io/guide_file.h"
@@ -458,6 +459,20 @@ Expected<Style> ReadPictureStyle(const fs::path& path, const StyleReading& readi
   return style;
 }
 
+Status CheckIsPainted(const Exemplar& exemplar) {
+  const std::vector<std::uint16_t>& rgba = exemplar.picture.rgba;
+  for (std::size_t i = 3; i < rgba.size(); i += 4) {
+    if (rgba[i] > 0) return Ok();
+  }
+  const auto channels = ReadChannels(exemplar.name);
+  const auto* const alpha = channels ? channels->Find("A") : nullptr;
+  const bool has_nan = alpha && std::any_of(alpha->begin(), alpha->end(), [](float a) { return std::isnan(a); });
+  return InputError(exemplar.name + " shows no paint: " +
+                    (has_nan ? "its alpha is NaN, which counts as transparent, where it is not 0; write the picture "
+                               "with an alpha of 0 to 1"
+                             : "all of its pixels are transparent; paint on it, or show its layers and save it again"));
+}
+
 // Of a value, or of key frames at frame 0.
 std::optional<KeyValue> ValueAtStart(const StyleKey& key, const toml::node& node) {
   const auto* pairs = node.as_array();
@@ -529,6 +544,7 @@ Expected<Style> LoadStyle(const fs::path& path, const std::vector<std::string>& 
   SCUMBLE_RETURN_IF_ERROR(ApplyOverrides(style, overrides));
   SCUMBLE_RETURN_IF_ERROR(ReadWeighedGuides(style, reading.room));
   for (Exemplar& exemplar : style.exemplars) {
+    SCUMBLE_RETURN_IF_ERROR(CheckIsPainted(exemplar));
     SCUMBLE_RETURN_IF_ERROR(PlaceSphere(exemplar));
     const Picture& picture = exemplar.picture;
     if (!exemplar.is_sphere || picture.width == picture.height) continue;

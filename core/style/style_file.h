@@ -40,7 +40,8 @@ struct StyleReading {
 //
 // An [[exemplar]] picture is a square that the sphere fills. With `guides` naming the guides.exr that `scumble sphere`
 // wrote, the picture may also be the whole painted template: its margin is cut off. Any other guides with A and normal,
-// of the picture's size, make it an exemplar of that scene, of any shape.
+// of the picture's size, make it an exemplar of that scene, of any shape. A picture that is wholly transparent is
+// refused.
 Expected<Style> LoadStyle(const std::filesystem::path& path, const std::vector<std::string>& overrides = {},
                           const StyleReading& reading = {});
 

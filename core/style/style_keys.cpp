@@ -150,6 +150,7 @@ Status SetPaper(Style& style, const KeyValue& value, const std::filesystem::path
   }
   const std::filesystem::path file = folder / *text;
   SCUMBLE_ASSIGN(style.paper.picture, style.read_picture ? style.read_picture(file) : ReadPicture(file));
+  style.paper.file = file;
   return Ok();
 }
 

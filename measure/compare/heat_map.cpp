@@ -63,7 +63,9 @@ Expected<HeatMap> DifferenceHeatMap(const ChannelImage& a, const ChannelImage& b
   map.picture = Picture(a.width, a.height);
   for (std::size_t i = 0; i < largest.size(); ++i) {
     HeatColor color = {65535, 0, 65535};
-    if (std::isfinite(largest[i])) {
+    if (!std::isfinite(largest[i])) {
+      ++map.incomparable;
+    } else {
       const double share = largest[i] == 0.0 ? 0.0 : std::min(largest[i] / map.full_scale, 1.0);
       color = ramp[static_cast<std::size_t>(std::lround(share * kSteps))];
     }

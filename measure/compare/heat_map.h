@@ -1,6 +1,7 @@
 // A picture of the differences between two files.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,7 +19,8 @@ struct HeatMapOptions {
 
 struct HeatMap {
   Picture picture;
-  double full_scale = 0.0;  // the one that was used; 0 where nothing differs
+  double full_scale = 0.0;       // the one that was used; 0 where no finite value differs
+  std::size_t incomparable = 0;  // pixels, drawn in magenta
 };
 
 // Per pixel the largest |a − b| of the channels that both files have: dark blue where equal, over grey, to yellow at

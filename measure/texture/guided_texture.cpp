@@ -205,7 +205,7 @@ int OctaveOf(std::size_t group) { return group == 0 ? 0 : int(group) - 1; }
 
 struct GuidedTexture::Impl {
   std::vector<OneExemplar> exemplars;
-  double floor = 0.0;
+  std::optional<double> floor;
 };
 
 GuidedTexture::GuidedTexture(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -256,7 +256,8 @@ Expected<GuidedTexture> GuidedTexture::Of(std::span<const EnergyExemplar> exempl
       }
       impl->exemplars.push_back(std::move(one));
     }
-    impl->floor = MeanOf(halves);
+    const auto counts = [](const GroupSum& one) { return one.weight > 0.0; };
+    if (std::any_of(halves.begin(), halves.end(), counts)) impl->floor = MeanOf(halves);
   });
   return GuidedTexture(std::move(impl));
 }
@@ -308,6 +309,6 @@ Expected<GuidedTextureReport> GuidedTexture::Measure(const EnergyTarget& target,
   return report;
 }
 
-double GuidedTexture::floor() const { return impl_->floor; }
+std::optional<double> GuidedTexture::floor() const { return impl_->floor; }
 
 }  // namespace scumble

@@ -16,6 +16,7 @@
 #include <array>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "core/image/status.h"
@@ -48,8 +49,9 @@ class GuidedTexture {
                                         int threads = 0) const;
 
   // The distance between one half of the exemplars and the other, in blocks of 24 pixels: what paint of one kind
-  // differs by. The first half has half of the pixels, so a picture may score less.
-  double floor() const;
+  // differs by. The first half has half of the pixels, so a picture may score less. Empty: they are too small to be
+  // measured.
+  std::optional<double> floor() const;
 
  private:
   struct Impl;

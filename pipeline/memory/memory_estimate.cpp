@@ -6,6 +6,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/io/picture_file.h"
 #include "core/style/kit/sphere_template.h"
 #include "finish/finish.h"
 #include "guidegen/light/path_layers.h"
@@ -78,6 +79,11 @@ Bytes EncodedBytes(const PictureRequest& options) {
   return samples * (NeedsModule(options.output) ? 3 : 2);
 }
 
+// OpenImageIO stays once a file has been read by it.
+void TakeReader(MemoryNeed& need) {
+  if (!need.Holds("reader")) need.Take("reader", kFormatsModule);
+}
+
 // Whether the transfer keeps the sources of the whole picture.
 bool KeepsSources(const Style& style, int radius) {
   const TransferSettings& settings = style.transfer;
@@ -103,6 +109,7 @@ void AddStyle(const Style& style, int height, MemoryNeed& need) {
     const Bytes width = scaled(style.exemplars.front().picture.width);
     const Bytes texels = width * scaled(style.exemplars.front().picture.height);
     read += kPaint * file;
+    if (style.unpainted.empty() && NeedsOpenImageIo(exemplar.name)) TakeReader(need);
     if (exemplar.cut) {
       const Bytes pixels = Bytes(exemplar.cut->file_width) * Bytes(exemplar.cut->file_height);
       whole = std::max(whole, (kPaint + kFoundSphere) * pixels);
@@ -128,6 +135,10 @@ void AddStyle(const Style& style, int height, MemoryNeed& need) {
     read += kPaint * Bytes(paper.width) * Bytes(paper.height);
     const auto fit = [&](int side) { return Bytes(ScaledSize(side, 1.0, settings.reference_height, height)); };
     prepared += kPaint * fit(paper.width) * fit(paper.height);
+    // Turned, resized along x, and turned back.
+    const Bytes file = Bytes(paper.width) * Bytes(paper.height);
+    largest = std::max(largest, kPaint * (file + 2 * fit(paper.width) * Bytes(paper.height)));
+    AddPictureRead(style.paper.file, file, need);
   }
   need.TakeTransient("finding a sphere", whole);
   need.Take("styles", read);
@@ -161,6 +172,11 @@ void AddSources(const PictureWork& work, const Size& size, MemoryNeed& need) {
 
 }  // namespace
 
+void AddPictureRead(const std::filesystem::path& file, std::uint64_t pixels, MemoryNeed& need) {
+  if (NeedsOpenImageIo(file)) TakeReader(need);
+  need.TakeTransient("reading a picture", kDecoded * pixels);
+}
+
 void AddProgram(int threads, MemoryNeed& need) { need.Take("program", kProgram + kThread * ThreadsOf(threads)); }
 
 void AddScene(const Scene& scene, const TexturePixels& more, MemoryNeed& need) {
@@ -178,7 +194,7 @@ void AddScene(const Scene& scene, const TexturePixels& more, MemoryNeed& need) {
   }
   for (const Picture& texture : scene.textures) bytes += kPaint * Bytes(texture.width) * Bytes(texture.height);
   for (const auto& texture : scene.encoded_textures) bytes += texture ? Bytes(texture->bytes) : 0;
-  if (more.largest > 0) need.Take("reader", kFormatsModule);
+  if (more.largest > 0) TakeReader(need);
   need.Take("scene", bytes);
   need.TakeTransient("decoding a texture", kDecoded * more.largest);
 }
@@ -232,7 +248,7 @@ void AddGuidesRead(const GuideFileInfo& info, const GuideReadOptions& read, Memo
   Bytes channels = 1;
   for (const auto& [name, found] : info.layers) channels += ChannelsOf(found);
   channels = std::max<Bytes>(channels, 1 + Bytes(std::count(info.channels.begin(), info.channels.end(), ',')));
-  need.Take("reader", kFormatsModule);
+  TakeReader(need);
   need.TakeTransient("channels of the file", kFloat * channels * pixels);
 }
 
@@ -251,7 +267,7 @@ void AddPicture(const PictureWork& work, const PictureRequest& options, MemoryNe
   }
   if (!options.over.empty()) {
     need.Take("picture underneath", kPaint * pixels);
-    need.TakeTransient("reading it", 2 * kPaint * pixels + kFormatsModule);
+    AddPictureRead(options.over, pixels, need);
   }
   for (const Style& style : work.styles) AddStyle(style, size.height, need);
   need.Take("picture", kPaint * pixels);
@@ -270,7 +286,7 @@ void AddPicture(const PictureWork& work, const PictureRequest& options, MemoryNe
     need.TakeTransient("explaining", kExplained * pixels);
   else if (work.keeps_field)
     need.TakeTransient("figures", kCoherence * pixels);
-  if (NeedsModule(options.output)) need.Take("writer", kFormatsModule);
+  if (NeedsModule(options.output) && !need.Holds("reader")) need.Take("writer", kFormatsModule);
   // Scaled up along x, then along y.
   if (larger > 1) need.Take("scaled picture", kPaint * pixels * larger);
   if (larger > 1) need.TakeTransient("scaling it", kPaint * pixels * Bytes(options.PictureFactor()));

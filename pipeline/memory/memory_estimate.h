@@ -3,6 +3,7 @@
 // tests/pipeline/memory_estimate_test.cpp holds it against what the system counted.
 #pragma once
 
+#include <filesystem>
 #include <span>
 
 #include "core/image/layers.h"
@@ -18,6 +19,10 @@ namespace scumble {
 
 // The program itself, its libraries, and what each thread has for itself. `threads` 0: all.
 void AddProgram(int threads, MemoryNeed& need);
+
+// What reading a picture takes besides the picture: its file and its samples as they are stored, and OpenImageIO, which
+// stays.
+void AddPictureRead(const std::filesystem::path& file, std::uint64_t pixels, MemoryNeed& need);
 
 // A scene in memory and Embree's of it, with the pictures that are decoded, the files of those that are not, and
 // pictures that are to be decoded.

@@ -113,6 +113,10 @@ void MemoryNeed::TakeTransient(const std::string& name, std::uint64_t bytes) {
   LookForPeak(parts);
 }
 
+bool MemoryNeed::Holds(const std::string& name) const {
+  return std::any_of(held_.begin(), held_.end(), [&](const Part& part) { return part.name == name; });
+}
+
 void MemoryNeed::LookForPeak(const std::vector<Part>& parts) {
   std::uint64_t sum = 0;
   for (const Part& part : parts) sum = Sum(sum, part.bytes);
@@ -145,9 +149,13 @@ Status CheckMemory(const MemoryNeed& need, const MemoryLimit& limit, const std::
   for (const MemoryNeed::Part& part : need.parts()) {
     parts += fmt::format("{}{} {}", parts.empty() ? "" : ", ", part.name, BytesToText(part.bytes));
   }
+  const auto is_less = [](const auto& a, const auto& b) { return a.bytes < b.bytes; };
+  const std::string most = std::max_element(need.parts().begin(), need.parts().end(), is_less)->name;
+  const bool is_exemplar = most == "exemplars" || most == "preparing exemplars";
   const std::string message = fmt::format(
       "this takes up to {} of memory ({}), and {} {}: {}, or {}", BytesToText(need.peak()), parts, limit.who,
-      BytesToText(limit.bytes), fix,
+      BytesToText(limit.bytes),
+      is_exemplar ? "take a smaller picture, a smaller transfer.scale or a larger transfer.reference_height" : fix,
       limit.asked ? "allow more" : "say --max-memory " + BytesToOption(need.peak()) + " to try all the same");
   return limit.asked ? UsageError(message) : MemoryError(message);
 }

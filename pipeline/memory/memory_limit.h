@@ -26,6 +26,9 @@ class MemoryNeed {
   // Is given back before the next call.
   void TakeTransient(const std::string& name, std::uint64_t bytes);
 
+  // Whether a part of that name has been taken to stay.
+  bool Holds(const std::string& name) const;
+
   std::uint64_t peak() const { return peak_; }
   // What there is at the peak.
   const std::vector<Part>& parts() const { return at_peak_; }
@@ -49,8 +52,9 @@ struct MemoryLimit {
 // `ulimit -v` leaves. What this process holds already counts as available. `root` is "/", or a folder in its place.
 MemoryLimit LimitFor(const RunContext& context, const std::filesystem::path& root = "/");
 
-// Ok, or an error that says how much is needed, for what, how much there is, and what to do; `fix` is the last. kUsage
-// where max_memory is the limit, kMemory otherwise. Where the machine's memory is not known, nothing is refused.
+// Ok, or an error that says how much is needed, for what, how much there is, and what to do: `fix`,
+// or, where exemplars take the most, their size. kUsage where max_memory is the limit, kMemory otherwise. Where the
+// machine's memory is not known, nothing is refused.
 Status CheckMemory(const MemoryNeed& need, const MemoryLimit& limit, const std::string& fix);
 // CheckMemory for this machine. A need of kMuchMemory or more is noted before it is taken: once, and again where a
 // later check of the run comes to half as much more.

@@ -104,16 +104,16 @@ struct FrameFiles {
 LayersWanted WantedOf(const FinishRequest& request) { return {request.show_finish, !request.layers_out.empty()}; }
 
 // Before any of it is taken. Files that cannot be read take nothing; reading them is an error later.
-Status CheckFinishMemory(const FinishRequest& request, const FrameFiles& files, const FinishState& state,
-                         const RunContext& context) {
+Expected<MemoryNeed> CheckFinishMemory(const FinishRequest& request, const FrameFiles& files, const FinishState& state,
+                                       const RunContext& context) {
   MemoryNeed need;
   AddProgram(context.threads, need);
   const auto header = InspectPicture(files.picture);
-  if (!header) return Ok();
+  if (!header) return need;
   const Size size{header->width, header->height};
   const std::uint64_t pixels = std::uint64_t(size.width) * std::uint64_t(size.height);
   need.Take("picture", 8 * pixels);
-  need.TakeTransient("reading it", 16 * pixels);
+  AddPictureRead(files.picture, pixels, need);
   if (const auto info =
           files.guides.empty() ? Expected<GuideFileInfo>(InputError("none")) : InspectGuides(files.guides)) {
     AddGuidesRead(*info, ReadOptions(request, state.required, files.guides, files.camera), need);
@@ -123,12 +123,13 @@ Status CheckFinishMemory(const FinishRequest& request, const FrameFiles& files, 
     AddFinishLayers(state.chain.passes.size(), !files.layers.empty(), !request.sequence.frames.empty(), size, need);
   }
   need.TakeTransient("picture file", 16 * pixels);
-  return CheckMemory(need, context, "take smaller pictures");
+  SCUMBLE_RETURN_IF_ERROR(CheckMemory(need, context, "take smaller pictures"));
+  return need;
 }
 
 Expected<FrameWrite> Finish(const FinishRequest& request, const FrameFiles& files, const RunContext& context,
                             const Progress& progress, FinishState& state) {
-  SCUMBLE_RETURN_IF_ERROR(CheckFinishMemory(request, files, state, context));
+  SCUMBLE_ASSIGN(MemoryNeed memory, CheckFinishMemory(request, files, state, context));
   SCUMBLE_RETURN_IF_ERROR(SetFinishFrame(state.chain, files.frame.value_or(0)));
   StepTimes times;
   Stopwatch watch;
@@ -175,6 +176,7 @@ Expected<FrameWrite> Finish(const FinishRequest& request, const FrameFiles& file
   report.layers_output = files.layers;
   for (const FinishLayer& layer : layers->layers) report.layers.push_back(layer.name);
   return FrameWrite([picture, layers, write, output = files.output, layers_out = files.layers,
+                     memory = std::move(memory),
                      made = std::make_shared<PictureReport>(std::move(report))]() -> Expected<FrameReport> {
     Stopwatch clock;
     const std::uint64_t before = BytesWrittenByThisThread();
@@ -185,6 +187,7 @@ Expected<FrameWrite> Finish(const FinishRequest& request, const FrameFiles& file
     made->steps.push_back({"write", ms, ms, ms});
     FrameReport done;
     done.made = std::move(*made);
+    done.memory = memory;
     done.write_ms = ms, done.bytes_written = BytesWrittenByThisThread() - before;
     return done;
   });

@@ -1,6 +1,7 @@
 // The arguments of the command line, one a line: parsed as the program parses them; no command is run. Every value also
 // goes to each parser of option values, and all of them are the lines of an @FILE of --assign.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 #include "apps/cli/app/help_format.h"
 #include "apps/cli/app/options.h"
@@ -29,7 +30,9 @@ struct Program {
 // A style of one small exemplar, as the target of --set.
 const std::string& SmallStyle() {
   static const std::string folder = [] {
-    SCUMBLE_CHECK(WritePicture(Folder() / "lit.png", Picture(4, 4)).ok());
+    Picture white(4, 4);
+    std::fill(white.rgba.begin(), white.rgba.end(), std::uint16_t{65535});
+    SCUMBLE_CHECK(WritePicture(Folder() / "lit.png", white).ok());
     constexpr std::string_view kText = "[[exemplar]]\nimage = \"lit.png\"\n";
     InFile("style.toml", {reinterpret_cast<const std::uint8_t*>(kText.data()), kText.size()});
     return Folder().string();

@@ -1,5 +1,6 @@
 // A style.toml beside a picture lit.png, guides of a template and guides of a scene; behind its first NUL, one --set a
 // line.
+#include <algorithm>
 #include <glm/glm.hpp>
 
 #include "core/io/guide_file.h"
@@ -31,7 +32,9 @@ bool WriteFiles() {
   };
   GuideSet sphere = guides_of(2);
   sphere.attributes[kMarginAttribute] = "1";
-  return WritePicture(Folder() / "lit.png", Picture(4, 4)) && WriteGuides(Folder() / "scene.exr", guides_of(4)) &&
+  Picture white(4, 4);
+  std::fill(white.rgba.begin(), white.rgba.end(), std::uint16_t{65535});
+  return WritePicture(Folder() / "lit.png", white) && WriteGuides(Folder() / "scene.exr", guides_of(4)) &&
          WriteGuides(Folder() / "sphere.exr", sphere);
 }
 

@@ -69,13 +69,19 @@ TEST(GuidedTexture, AnExemplarHasItsOwnTexture) {
   EXPECT_GT(report.measured, 40000u);
 }
 
+TEST(GuidedTexture, HalvesThatAreTooSmallHaveNoDifference) {
+  EnergyScene exemplar = PaintedBall(1);
+  std::fill(exemplar.usable.begin(), exemplar.usable.end(), std::uint8_t{0});
+  EXPECT_FALSE(MustPrepare(exemplar).floor());
+}
+
 // Other strokes of one kind differ by what two halves of the exemplar differ by; everything that spoils them by more.
 TEST(GuidedTexture, WhatSpoilsPaintCosts) {
   const EnergyScene exemplar = PaintedBall(1);
   const GuidedTexture texture = MustPrepare(exemplar);
   const double other = MustMeasure(texture, PaintedBall(2)).distance;
   EXPECT_GT(other, 0.0);
-  EXPECT_LT(other, 1.5 * texture.floor());
+  EXPECT_LT(other, 1.5 * texture.floor().value());
   const auto tone_alone = [](int x, int) {
     const double tone = 0.375 + 0.4 * x / kSize;
     return std::array<int, 3>{int(65535 * tone), int(60000 * tone), int(40000 * tone)};

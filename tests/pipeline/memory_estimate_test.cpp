@@ -66,7 +66,22 @@ TEST_F(MemoryNeedTest, NothingTakesMoreThanItSays) {
   ExpectHonest(With(stylize, {"-o", "p.png", "--finish", "hatch", "--show", "finish:hatch"}));
   ExpectHonest({"guidegen", Scene("snail.glb"), "--size", "800", "--layers", "luminance,shadow", "-o", "s.exr"});
   ExpectHonest({"transfer", "s.exr", "--style", "style", "--finish", "charcoal-lines", "-o", "p.png"});
+  ExpectHonest({"finish", "p.png", "s.exr", "--finish", "charcoal-lines", "-o", "f.png"});
   ExpectHonest({"sphere", "--size", "500", "-o", "kit"});
+}
+
+// Large papers and pictures underneath, by our own readers and by OpenImageIO, which stays.
+TEST_F(MemoryNeedTest, PicturesThatAreReadTakeNoMoreThanTheySay) {
+  WriteStyle("style");
+  WriteGuideFile("g.exr", Ball(1000));
+  for (const char* const file : {"sheet.png", "sheet.jpg", "sheet.tif", "sheet.exr"}) {
+    ASSERT_TRUE(WritePicture(At(file), Painted(1000, 1000)).ok());
+  }
+  const Arguments stylize = {"stylize", Scene("ball.glb"), "--size", "160", "--style", "style", "-o", "p.png", "--set"};
+  ExpectHonest(With(stylize, {"transfer.paper=" + At("sheet.png").string()}));
+  ExpectHonest(With(stylize, {"transfer.paper=" + At("sheet.jpg").string()}));
+  ExpectHonest({"transfer", "g.exr", "--style", "style", "--over", "sheet.tif", "-o", "p.png"});
+  ExpectHonest({"finish", "sheet.exr", "--finish", "grade", "-o", "p.png"});
 }
 
 // A finish whose keys change takes what its greediest frame does, in every frame.

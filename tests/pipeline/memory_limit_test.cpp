@@ -134,6 +134,17 @@ TEST(MemoryAmounts, AreSaidWithTwoDigits) {
   EXPECT_EQ(BytesToText(4 * kGiga + kGiga / 2), "4.5 GiB");
 }
 
+TEST(CheckMemory, LargeExemplarsHaveTheirOwnRemedy) {
+  MemoryNeed need;
+  need.Take("guides", kMega), need.Take("exemplars", 2 * kMega);
+  const Status status = CheckMemory(need, MemoryLimit{kMega, "--max-memory allows", true}, "take a smaller --size");
+  ASSERT_FALSE(status.ok());
+  EXPECT_NE(
+      status.error().message.find("a smaller transfer.scale or a larger transfer.reference_height, or allow more"),
+      std::string::npos)
+      << status.error().message;
+}
+
 // A large need is reported before it is allocated; frames with equal needs are not reported again.
 TEST(MuchMemory, IsSaidOnceBeforeItIsTaken) {
   std::string notes;

@@ -30,7 +30,10 @@ CLI::Option* AddFastIoOption(CLI::App& verb, bool& fast_io) {
 }
 
 std::string RefuseNegative(const std::string& text) {
-  return text.rfind('-', 0) == 0 ? text + " is negative: expected a whole number, 0 or more" : "";
+  if (text.rfind('-', 0) == 0) return text + " is negative: expected a whole number, 0 or more";
+  std::uint64_t value = 0;
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
+  return read.ec == std::errc::result_out_of_range ? text + " is too large: expected less than 2^64" : "";
 }
 
 std::function<std::string(const std::string&)> RefuseNoAmount(const std::string& example) {
@@ -69,7 +72,10 @@ Expected<std::vector<double>> ParseNumbers(const std::string& text, std::size_t 
   while (position <= end) {
     double value = 0;
     const auto [next, failure] = std::from_chars(position, end, value);
-    if (failure != std::errc() || (next != end && *next != ',') || !(value >= -1e9 && value <= 1e9)) break;
+    const bool is_number = (failure == std::errc() && !std::isnan(value)) || failure == std::errc::result_out_of_range;
+    if (!is_number || (next != end && *next != ',')) break;
+    if (failure != std::errc() || std::abs(value) > 1e9)
+      return UsageError(what + " " + text + ": expected numbers from -1e9 to 1e9");
     numbers.push_back(value);
     if (next == end) {
       if (numbers.size() < least || numbers.size() > most) break;

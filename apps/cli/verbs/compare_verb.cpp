@@ -29,6 +29,15 @@ Status CheckHeatMap(const CompareVerb& verb) {
   return files.CheckOutput(verb.heat_map);
 }
 
+std::string MapLegend(const HeatMap& map) {
+  std::string legend = map.full_scale > 0.0 ? fmt::format("yellow is a difference of {:.3g}", map.full_scale) : "";
+  if (map.incomparable > 0) {
+    legend += fmt::format("{}magenta are pixels with NaN, or with infinity on one side: {}", legend.empty() ? "" : ", ",
+                          map.incomparable);
+  }
+  return legend.empty() ? "nothing differs" : legend;
+}
+
 Expected<ExitCode> RunCompareVerb(const CompareVerb& verb, const Globals& globals) {
   SCUMBLE_RETURN_IF_ERROR(CheckHeatMap(verb));
   if (verb.flip) return CompareByFlip(verb, globals);
@@ -38,9 +47,7 @@ Expected<ExitCode> RunCompareVerb(const CompareVerb& verb, const Globals& global
   if (!verb.heat_map.empty()) {
     SCUMBLE_ASSIGN(const HeatMap map, DifferenceHeatMap(files.a, files.b, {0.0, verb.options.layers}));
     SCUMBLE_RETURN_IF_ERROR(WritePicture(verb.heat_map, map.picture));
-    globals.Note(map.full_scale > 0.0
-                     ? fmt::format("{}: yellow is a difference of {:.3g}", verb.heat_map, map.full_scale)
-                     : verb.heat_map + ": nothing differs");
+    globals.Note(verb.heat_map + ": " + MapLegend(map));
   }
   Print(globals.json ? CompareToJson(report) : CompareToText(report));
   return report.verdict == Verdict::kFail ? ExitCode::kDiffers : ExitCode::kOk;
@@ -104,11 +111,11 @@ void AddCompareVerb(CLI::App& app, Globals& globals, Action& chosen) {
                   "guides of the second picture's frame: what is hidden there is left out")
       ->type_name("FILE")
       ->needs(motion);
-  CLI::Option* flip =
-      sub->add_flag("--flip", verb->flip,
-                    "how visible the difference of two pictures is to who flips between them, 0 to 1 "
-                    "(FLIP, Andersson et al. 2020), and nothing else; of one layer of light with --layer, "
-                    "values clamped to 0 … 1; exit code 1 where --fail is given and the mean is above it");
+  CLI::Option* flip = sub->add_flag(
+      "--flip", verb->flip,
+      "how visible the difference of two pictures is to who flips between them, 0 to 1 "
+      "(FLIP, Andersson et al. 2020), and nothing else; of one layer of light with --layer, "
+      "values clamped to 0 … 1; exit code 1 where --fail is given and the mean is above it or a value is NaN");
   sub->add_option("--flip-ppd", verb->flip_options.pixels_per_degree,
                   "pixels of the display in one degree of sight; 67 is 4K, 0.7 m wide and 0.7 m away")
       ->type_name("N")

@@ -28,7 +28,8 @@ struct CompareVerb {
 Expected<ExitCode> CompareByFlicker(const CompareVerb& verb, const Globals& globals);
 
 // Prints FLIP, and writes the requested heat map: of the two pictures, or of the one layer of light in
-// `options.layers`, in linear values that are clamped to 0 … 1. kDiffers where the mean is above `flip_fail`.
+// `options.layers`, in linear values that are clamped to 0 … 1. With `flip_fail`, kDiffers where the mean is above it
+// or a value of either file is no number.
 Expected<ExitCode> CompareByFlip(const CompareVerb& verb, const Globals& globals);
 
 }  // namespace scumble

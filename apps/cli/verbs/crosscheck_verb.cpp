@@ -80,11 +80,14 @@ Status CheckTargets(const CrosscheckVerb& verb) {
   for (const std::string& scene : verb.scenes) files.ReadsScene(scene);
   if (!verb.write_baseline.empty()) SCUMBLE_RETURN_IF_ERROR(files.CheckOutput(verb.write_baseline));
   files.Reads("the baseline", verb.baseline);  // which --write-baseline may bring up to date
+  const std::string ending = fs::path(verb.html).extension().string();
+  if (!ending.empty() && ending != ".html" && ending != ".htm")
+    return UsageError("-o " + verb.html + " ends in " + ending + ": the report is a page; expected a name in .html");
   if (!verb.html.empty()) SCUMBLE_RETURN_IF_ERROR(files.CheckOutput(verb.html));
   if (verb.request.keep.empty()) return Ok();
-  std::error_code failed;
+  std::error_code failed, unknown;
   fs::create_directories(verb.request.keep, failed);
-  if (!fs::is_directory(fs::status(verb.request.keep, failed)))
+  if (!fs::is_directory(verb.request.keep, unknown))
     return OutputError("--keep " + verb.request.keep + " is no folder and none can be made: " + failed.message());
   for (const std::string& scene : verb.scenes) {
     for (const char* side : {".cycles.exr", ".ours.exr"}) {

@@ -48,6 +48,7 @@ std::string KeyLightText() { return fmt::format("{:g},{:g}", kKeyLightAzimuth, k
 
 Expected<LayerSet> LayersOf(const SphereVerb& verb) {
   SCUMBLE_ASSIGN(const LayerSet more, ParseLayers(verb.layers));
+  if (more.Has(Layer::kMotion)) return UsageError("--layers motion: the sphere does not move; leave it out");
   return LayerSet{Layer::kPosition, Layer::kAlbedo, Layer::kLuminance, Layer::kShadow}.Add(more);
 }
 

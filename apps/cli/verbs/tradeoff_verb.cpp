@@ -54,7 +54,7 @@ class MadeFolders {
          !folder.empty() && !fs::exists(folder, failed); folder = folder.parent_path()) {
       made_.push_back(folder);
     }
-    fs::create_directories(deepest, failed);
+    fs::create_directories(deepest, error_);
   }
   ~MadeFolders() {
     std::error_code ignored;
@@ -64,17 +64,21 @@ class MadeFolders {
   MadeFolders(const MadeFolders&) = delete;
   MadeFolders& operator=(const MadeFolders&) = delete;
 
+  const std::error_code& error() const { return error_; }  // of the last one that could not be made
+
  private:
+  std::error_code error_;
   std::vector<fs::path> made_;
 };
 
 // Checked before minutes of work: whether the folder exists and is writable, and no input file is overwritten.
-Status CheckFolder(const TradeoffVerb& verb, const Globals& globals) {
+Status CheckFolder(const TradeoffVerb& verb, const std::error_code& making, const Globals& globals) {
   const fs::path pictures = fs::path(verb.folder) / kPictures;
   std::error_code failed;
   if (!fs::is_directory(fs::status(pictures, failed))) {
-    return OutputError(fmt::format("-o {}: it is no folder with a folder {} in it, and none can be made; name another",
-                                   verb.folder, kPictures));
+    return OutputError(
+        fmt::format("-o {}: it is no folder with a folder {} in it, and none can be made{}; name another", verb.folder,
+                    kPictures, making ? ": " + making.message() : ""));
   }
   RunInputs files;
   files.ReadsScene(verb.setup.scene.scene);
@@ -184,7 +188,7 @@ Expected<ExitCode> RunTradeoffVerb(TradeoffVerb verb, const Globals& globals) {
   if (!verb.folder.empty()) {
     const MadeFolders folders(fs::path(verb.folder) /
                               kPictures);  // removed again, because minutes of work may be interrupted
-    SCUMBLE_RETURN_IF_ERROR(CheckFolder(verb, globals));
+    SCUMBLE_RETURN_IF_ERROR(CheckFolder(verb, folders.error(), globals));
   }
   SCUMBLE_ASSIGN(const TradeReport report, MeasureTradeoff(verb.setup, globals));
   Status written = Ok();

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <string_view>
@@ -95,10 +96,20 @@ std::uint16_t RoundDivide(std::uint32_t value, std::uint32_t divisor) {
 // Clamps alpha to [0, 1]; NaN becomes 0.
 float ClampAlpha(float alpha) { return alpha > 0.0f ? std::min(alpha, 1.0f) : 0.0f; }
 
+void CountLosses(float light, float alpha, PictureLosses& losses) {
+  constexpr float kRounding = 0.002f;
+  if (std::isnan(light)) {
+    ++losses.nan;
+  } else if (light < -kRounding || light > alpha + kRounding) {
+    ++losses.clamped;
+  }
+}
+
 // Converts a file's pixel to a picture's.
 struct Decoder {
   ColorChannels channels;
   bool straight = true;
+  PictureLosses* losses = nullptr;  // null: not counted
 
   void Linear(const float* pixel, std::uint16_t* out) const {
     const float alpha = channels.a < 0 ? 1.0f : ClampAlpha(pixel[channels.a]);
@@ -107,6 +118,11 @@ struct Decoder {
     out[1] = Srgb16FromLinear(pixel[channels.g] * scale);
     out[2] = Srgb16FromLinear(pixel[channels.b] * scale);
     out[3] = static_cast<std::uint16_t>(alpha * 65535.0f + 0.5f);
+    if (!losses) return;
+    if (channels.a >= 0 && std::isnan(pixel[channels.a])) ++losses->nan;
+    for (const int c : {channels.r, channels.g, channels.b}) {
+      CountLosses(straight ? pixel[c] * alpha : pixel[c], alpha, *losses);
+    }
   }
   void Encoded(const std::uint16_t* pixel, std::uint16_t* out) const {
     const std::uint32_t alpha = channels.a < 0 ? 65535u : pixel[channels.a];
@@ -259,7 +275,7 @@ bool NeedsBytes(const OIIO::ImageInput& input) {
 // `bytes`: all of the file, if NeedsBytes. Pixels of the display window outside an EXR's data window are transparent;
 // those of the data window beyond the display window are cut off.
 Expected<Picture> ReadFrom(OIIO::ImageInput& input, std::span<const std::byte> bytes, const std::string& name,
-                           const std::string& view_layer, Profiles profiles) {
+                           const std::string& view_layer, Profiles profiles, PictureLosses* losses) {
   if (IsJpeg(input)) SCUMBLE_RETURN_IF_ERROR(CheckJpegIntegrity(bytes, name));
   SCUMBLE_RETURN_IF_ERROR(SeekPicture(input, name, view_layer));
   const OIIO::ImageSpec spec = input.spec();
@@ -274,7 +290,7 @@ Expected<Picture> ReadFrom(OIIO::ImageInput& input, std::span<const std::byte> b
     return InputError(name + " has its colours " + std::to_string(range.count()) +
                       " channels apart, too many for its size; write R, G, B and A side by side");
   }
-  const Decoder decoder{Within(channels, range), channels.a < 0 || IsStraight(spec, input.format_name())};
+  const Decoder decoder{Within(channels, range), channels.a < 0 || IsStraight(spec, input.format_name()), losses};
   if (IsLinear(spec)) {
     return ReadPixels<float>(input, name, OIIO::TypeDesc::FLOAT, range,
                              [&](const float* pixel, std::uint16_t* out) { decoder.Linear(pixel, out); });
@@ -301,13 +317,14 @@ PictureHeader HeaderOf(const OIIO::ImageSpec& spec) {
 
 }  // namespace
 
-Expected<Picture> ReadPicture(const std::filesystem::path& path, const std::string& view_layer, Profiles profiles) {
+Expected<Picture> ReadPicture(const std::filesystem::path& path, const std::string& view_layer, Profiles profiles,
+                              PictureLosses* losses) {
   SCUMBLE_ASSIGN(auto input, internal::OpenInput(path));
   std::vector<std::byte> bytes;
   if (NeedsBytes(*input)) {
     SCUMBLE_ASSIGN(bytes, ReadWholeFile(path));
   }
-  SCUMBLE_ASSIGN(Picture stored, ReadFrom(*input, bytes, path.string(), view_layer, profiles));
+  SCUMBLE_ASSIGN(Picture stored, ReadFrom(*input, bytes, path.string(), view_layer, profiles, losses));
   return Upright(std::move(stored), input->spec().get_int_attribute("Orientation", 1));
 }
 
@@ -326,7 +343,7 @@ Expected<PictureHeader> InspectEncoded(std::span<const std::byte> bytes, const s
 Expected<Picture> DecodePicture(std::span<const std::byte> bytes, const std::string& name, Profiles profiles) {
   OIIO::Filesystem::IOMemReader proxy(const_cast<std::byte*>(bytes.data()), bytes.size());
   SCUMBLE_ASSIGN(auto input, internal::OpenInput(proxy, name));
-  return ReadFrom(*input, bytes, name, {}, profiles);
+  return ReadFrom(*input, bytes, name, {}, profiles, nullptr);
 }
 
 Expected<StoredPicture> InspectStored(const std::filesystem::path& path) {

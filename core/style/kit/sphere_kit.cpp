@@ -1,7 +1,12 @@
 #include "core/style/kit/sphere_kit.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
 #include <cmath>
 #include <string_view>
 #include <system_error>
@@ -311,6 +316,23 @@ Expected<std::optional<std::string>> NewStyle(const fs::path& path, const std::v
   return std::optional(std::move(text));
 }
 
+// Another run that writes to the folder waits until this one has ended, and then sees its files. File systems without
+// locks have none.
+class FolderLock {
+ public:
+  explicit FolderLock(const fs::path& folder) : file_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    while (file_ >= 0 && ::flock(file_, LOCK_EX) != 0 && errno == EINTR) continue;
+  }
+  ~FolderLock() {
+    if (file_ >= 0) ::close(file_);
+  }
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  int file_;
+};
+
 struct KitFile {
   fs::path path;
   std::vector<std::byte> bytes;
@@ -358,6 +380,7 @@ Expected<std::vector<fs::path>> WriteSphereKit(const fs::path& folder, std::vect
   std::error_code made;
   fs::create_directories(folder, made);
   if (made) return OutputError("cannot make the folder " + folder.string() + ": " + made.message());
+  const FolderLock lock(folder);
   std::vector<std::vector<KitFile>> templates(lights.size());
   for (std::size_t i = 0; i < lights.size(); ++i) {
     SCUMBLE_RETURN_IF_ERROR(MakeTemplate(folder, lights[i], i, options, templates[i]));

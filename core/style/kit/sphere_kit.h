@@ -31,7 +31,7 @@ struct KitOptions {
 // Paintings (lit.png, shade.ora) are never written. A template that differs from the drawn one, in any of its files,
 // may be a painting. Guides of another size or light belong to an existing painting. Either is an error, as is a
 // painting that style.toml lists with other guides, a fifth light in style.toml, or a template that does not fit the
-// paper, and nothing is written. Returns the files written.
+// paper, and nothing is written. Runs that write to one folder wait for each other. Returns the files written.
 Expected<std::vector<std::filesystem::path>> WriteSphereKit(const std::filesystem::path& folder,
                                                             std::vector<KitLight> lights,
                                                             const KitOptions& options = {});

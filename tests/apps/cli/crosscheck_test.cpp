@@ -41,11 +41,13 @@ TEST_F(CrosscheckCli, MistakesAreSaidBeforeBlenderRuns) {
   expect({kSuzanne, kSuzanne, "--write-baseline", "b.json"}, 2, "two scenes");
   expect({kSuzanne, kSuzanne, "--keep", "."}, 2, "kept as suzanne.cycles.exr");
   expect({"x.obj"}, 3, "a cross-check needs a scene");
+  expect({kSuzanne, "-o", "r.txt"}, 2, "-o r.txt ends in .txt");
   expect({kSuzanne, "-o", "nowhere/report.html"}, 4, "there is no folder");
   expect({"--blender", "", kSuzanne}, 2, "--blender");
   expect({kSuzanne, "--write-baseline", "nowhere/b.json"}, 4, "there is no folder");
   Write("file", "");
   expect({kSuzanne, "--keep", "file"}, 4, "--keep file is no folder");
+  expect({kSuzanne, "--keep", "file/more"}, 4, "--keep file/more is no folder and none can be made: Not a directory");
   expect({kSuzanne, "--baseline", "none.json"}, 3, "none.json");
   Write("broken.json", "{\n]");
   expect({kSuzanne, "--baseline", "broken.json"}, 3, "broken.json is no baseline");

@@ -1,11 +1,15 @@
 // scumble compare --flip: of pictures, of layers of light, and as a verdict.
+#include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
 #include "tests/support/cli_harness.h"
+#include "tests/support/picture_files.h"
 
 namespace scumble {
 namespace {
@@ -94,6 +98,27 @@ TEST_F(CliFlip, OfOneLayerOfLight) {
   EXPECT_EQ(RunOk({"compare", "a.png", "a.png", "--flip", "--layer", "color", "--json"}).Json()["flip"], 0.0);
   ExpectError({"compare", "a.png", "a.exr", "--flip", "--layer", "luminance"}, 3,
               {"a.png has no layer of light", "it has none"});
+}
+
+TEST_F(CliFlip, ValuesOutsideOfPicturesAreToldAndNanFails) {
+  const auto write = [&](const char* name, float value) {
+    WriteWith<float>(At(name), OIIO::ImageSpec(4, 4, 3, OIIO::TypeDesc::FLOAT), std::vector<float>(48, value));
+  };
+  write("black.exr", 0.0f), write("white.exr", 1.0f), write("bright.exr", 7.0f), write("nan.exr", std::nanf(""));
+  write("inf.exr", std::numeric_limits<float>::infinity());
+  for (const std::string file : {"bright.exr", "inf.exr"}) {
+    const CommandResult clamped = RunOk({"compare", "white.exr", file, "--flip", "--fail", "0.01", "--json"});
+    EXPECT_TRUE(Contains(clamped.err, "48 values of color lie outside of 0 … 1")) << clamped.err;
+    EXPECT_EQ(clamped.Json()["clamped_values"], 48);
+  }
+  const CommandResult nan = Run({"compare", "black.exr", "nan.exr", "--flip", "--fail", "0.01", "--json"});
+  EXPECT_EQ(nan.code, 1) << nan.err;
+  EXPECT_EQ(nan.Json()["nan_values"], 48);
+  EXPECT_EQ(nan.Json()["verdict"], "fail");
+  EXPECT_TRUE(Contains(nan.Warning(), "48 values of color are no numbers")) << nan.err;
+  EXPECT_EQ(RunOk({"compare", "white.exr", "white.exr", "--flip", "--fail", "0"}).err, "");
+  WriteLight("c.exr", std::nanf(""), 0.0f);
+  EXPECT_EQ(Run({"compare", "c.exr", "c.exr", "--flip", "--layer", "luminance", "--fail", "1"}).code, 1);
 }
 
 TEST_F(CliFlip, FailIsALimitOfItsMean) {

@@ -302,6 +302,12 @@ TEST_F(CliCompare, HeatMapAndJson) {
   EXPECT_EQ(heat->height, 16);
   EXPECT_GT(heat->At(5, 3)[0], heat->At(4, 3)[0]);
   EXPECT_EQ(RunOk({"compare", "a.png", "a.png", "-o", "heat.png"}).err, "heat.png: nothing differs\n");
+  GuideSet holed = Ball(16);
+  holed.Plane(Layer::kDepth)[100] = std::numeric_limits<float>::quiet_NaN();
+  WriteGuideFile("whole.exr", Ball(16));
+  WriteGuideFile("holed.exr", holed);
+  EXPECT_EQ(Run({"compare", "whole.exr", "holed.exr", "-o", "heat.png"}).err,
+            "heat.png: magenta are pixels with NaN, or with infinity on one side: 1\n");
   ExpectError({"compare", "a.png", "b.png", "-o", "heat.gif"}, 2, {"heat.gif", ".png, .tif, .jpg, .exr"});
 }
 

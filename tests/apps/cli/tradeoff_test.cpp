@@ -402,6 +402,8 @@ TEST_F(Tradeoff, AFolderIsTakenAgainAndLeftAsItWasFound) {
   // Where something is wrong no folder stays that was not there, and every one that was.
   ExpectError(Small(scene, {"--only", "levles", "-o", "new/deep"}), 2, {"--only levles"});
   EXPECT_FALSE(Exists("new"));
+  WriteText("file", "");
+  ExpectError(Small(scene, {"-o", "file/deep"}), 4, {"-o file/deep: ", "none can be made: Not a directory"});
   fs::create_directories(At("empty"));
   ExpectError(Small(scene, {"--only", "levles", "-o", "empty"}), 2, {"--only levles"});
   ExpectError({"tradeoff", scene, "--style", "nobody", "-o", "empty"}, 3, {"nobody"});

@@ -98,6 +98,7 @@ TEST_F(CliUsage, NumbersOutOfRange) {
   ExpectError(With(transfer, {"--repeat", "0"}), 2, {"--repeat: Value 0 not in range", "1", "10000"});
   ExpectError(With(transfer, {"--png-level", "10"}), 2, {"--png-level: Value 10 not in range", "0", "9"});
   ExpectError(With(transfer, {"--seed", "-1"}), 2, {"--seed: -1 is negative"});
+  ExpectError(With(transfer, {"--seed", "99999999999999999999"}), 2, {"too large: expected less than 2^64"});
   ExpectError(With(transfer, {"--seed", "x"}), 2, {"expected a number: --seed = x"});
 }
 
@@ -113,6 +114,7 @@ TEST_F(CliUsage, SizesAndViews) {
     ExpectError({"guidegen", scene, "--view", view, "-o", "g.exr"}, 2,
                 {"--view " + std::string(view) + ": expected 2 to 6 numbers with commas between"});
   }
+  ExpectError({"guidegen", scene, "--view", "0,0,1e30", "-o", "g.exr"}, 2, {"expected numbers from -1e9 to 1e9"});
   ExpectError({"guidegen", scene, "--view", "30,100", "-o", "g.exr"}, 2, {"elevation must be -90 to 90"});
   ExpectError({"guidegen", scene, "--view", "1,2,3,4", "-o", "g.exr"}, 2, {"RIGHT needs UP"});
   ExpectError({"guidegen", scene, "--view", "1,2,3,4,5,180", "-o", "g.exr"}, 2, {"FOV must be 0 to below 180"});

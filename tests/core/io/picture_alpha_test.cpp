@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <iterator>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -38,6 +39,21 @@ TEST(PictureAlpha, AssociatedAlphaIsUndone) {
   EXPECT_EQ(Pixel(picture, 1, 0), (std::vector<std::uint16_t>{10 * 257, 20 * 257, 30 * 257, 65535}));
   EXPECT_EQ(Pixel(picture, 0, 1), (std::vector<std::uint16_t>{0, 0, 0, 0}));
   EXPECT_EQ(Pixel(picture, 1, 1), (std::vector<std::uint16_t>{65535, 65535, 65535, 257}));
+}
+
+TEST(PictureAlpha, LossesOfFloatsAreCounted) {
+  const TemporaryFolder folder;
+  const float nan = std::numeric_limits<float>::quiet_NaN(), much = std::numeric_limits<float>::infinity();
+  // Its second pixel is half-transparent white, rounded up as half floats may be.
+  WriteWith<float>(folder / "a.exr", OIIO::ImageSpec(2, 2, 4, OIIO::TypeDesc::FLOAT),
+                   {nan, 2.0f, -1.0f, 1.0f, 0.501f, 0.5f, 0.5f, 0.5f, much, 0.0f, 0.0f, nan, 0.0f, 1.0f, 0.5f, 1.0f});
+  PictureLosses losses;
+  ASSERT_TRUE(ReadPicture(folder / "a.exr", {}, Profiles::kApply, &losses));
+  EXPECT_EQ(losses.clamped, 3u);
+  EXPECT_EQ(losses.nan, 2u);
+  ASSERT_TRUE(WritePicture(folder / "a.png", Picture(2, 2)));
+  ASSERT_TRUE(ReadPicture(folder / "a.png", {}, Profiles::kApply, &losses));
+  EXPECT_EQ(losses.clamped + losses.nan, 0u);
 }
 
 TEST(PictureAlpha, ColoursUnderAlphaAreThoseOfTheFile) {

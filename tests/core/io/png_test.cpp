@@ -56,7 +56,7 @@ Picture Grey(Picture picture) {
 // By the picture library, whatever the file is.
 Expected<Picture> ReadByLibrary(const fs::path& path) {
   SCUMBLE_ASSIGN(const Formats* const formats, LoadFormats("a test"));
-  return formats->read_picture(path, "", Profiles::kApply);
+  return formats->read_picture(path, "", Profiles::kApply, nullptr);
 }
 
 // Channels and header without the library are those that it reads.

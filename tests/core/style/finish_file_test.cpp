@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -25,6 +26,12 @@ namespace scumble {
 namespace {
 
 using ::testing::HasSubstr;
+
+Picture White(int side) {
+  Picture picture(side, side);
+  std::fill(picture.rgba.begin(), picture.rgba.end(), std::uint16_t{65535});
+  return picture;
+}
 
 class FinishFile : public ::testing::Test {
  protected:
@@ -229,7 +236,7 @@ TEST_F(FinishFile, DialsTurnTheWholeChain) {
 }
 
 TEST_F(FinishFile, StyleHasItsOwn) {
-  ASSERT_TRUE(WritePicture(folder_ / "lit.png", Picture(32, 32)));
+  ASSERT_TRUE(WritePicture(folder_ / "lit.png", White(32)));
   std::ofstream(folder_ / "style.toml")
       << "[[exemplar]]\nimage = \"lit.png\"\nfills = true\n[[finish]]\neffect = \"outline\"\nmaterial = 1\nthin = 1\n";
   const auto style = LoadStyle(folder_ / "style.toml", {"finish.outline.width=3"});
@@ -244,7 +251,7 @@ TEST_F(FinishFile, StyleHasItsOwn) {
 }
 
 TEST_F(FinishFile, KeysChangeOverTime) {
-  ASSERT_TRUE(WritePicture(folder_ / "lit.png", Picture(32, 32)));
+  ASSERT_TRUE(WritePicture(folder_ / "lit.png", White(32)));
   const auto load = [&](const std::string& finish, const std::vector<std::string>& sets = {}) {
     std::ofstream(folder_ / "style.toml") << "[[exemplar]]\nimage = \"lit.png\"\nfills = true\n" + finish;
     return LoadStyle(folder_ / "style.toml", sets);

@@ -1,12 +1,17 @@
 // The artist's kit, from the template to the style that loads.
 #include "core/style/kit/sphere_kit.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <string>
+#include <thread>
 #include <tuple>
 #include <vector>
 
@@ -41,6 +46,29 @@ Picture InnerSquare(const Picture& picture, int margin) {
   Picture inner(size, size);
   for (int y = 0; y < size; ++y) std::copy_n(picture.At(margin, margin + y), 4 * size, inner.At(0, y));
   return inner;
+}
+
+// While another run writes to the folder, here one that has it locked, the kit waits, and then adds to what is there.
+TEST(SphereKit, RunsIntoOneFolderWaitForEachOther) {
+  const TemporaryFolder folder;
+  const auto write = [&](const std::string& name) {
+    KitLight light{-45, 35, SphereGuides(8)};
+    light.name = name;
+    return WriteSphereKit(folder.path(), {light});
+  };
+  const int other = ::open(folder.path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  ASSERT_EQ(::flock(other, LOCK_EX), 0);
+  std::thread run([&] { EXPECT_TRUE(write("late")); });
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_FALSE(fs::exists(folder / "late-template.png"));
+  ASSERT_TRUE(WriteFileAtomically(folder / "style.toml", "[[exemplar]]\nimage = \"early.png\"\n").ok());
+  ::close(other);
+  run.join();
+  const auto bytes = ReadWholeFile(folder / "style.toml");
+  ASSERT_TRUE(bytes);
+  const std::string style(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+  EXPECT_NE(style.find("early.png"), std::string::npos) << style;
+  EXPECT_NE(style.find("late.png"), std::string::npos) << style;
 }
 
 TEST(SphereKit, TheTemplateShowsTheLitSphereAndMarksOnlyTheMargin) {

@@ -16,6 +16,7 @@
 #include "core/io/picture_file.h"
 #include "core/style/style_file.h"
 #include "core/style/style_keys.h"
+#include "tests/support/picture_files.h"
 #include "tests/support/refusal.h"
 #include "tests/support/temporary_folder.h"
 
@@ -483,6 +484,18 @@ TEST_F(StyleFile, TheExemplarIsThePictureAsPainted) {
   ASSERT_EQ(style->exemplars.size(), 1u);
   EXPECT_EQ(style->exemplars[0].picture.rgba, NoisyPicture(8, 8).rgba);
   EXPECT_NE(style->exemplars[0].name.find("lit.png"), std::string::npos);
+}
+
+TEST_F(StyleFile, AnExemplarWithoutPaintIsRefused) {
+  ASSERT_TRUE(WritePicture(folder_ / "lit.png", Picture(8, 8)));
+  ExpectRefusal(Load(kExemplar), {"lit.png shows no paint", "all of its pixels are transparent"});
+  ExpectRefusal(LoadStyle(folder_ / "lit.png"), {"lit.png shows no paint"});
+  EXPECT_TRUE(Load(kExemplar, {"transfer.method=toon"})) << "its paint is not looked at";
+  std::vector<float> pixels(4 * 64, 0.5f);
+  for (std::size_t i = 3; i < pixels.size(); i += 4) pixels[i] = std::numeric_limits<float>::quiet_NaN();
+  WriteWith<float>(folder_ / "a.exr", OIIO::ImageSpec(8, 8, 4, OIIO::TypeDesc::FLOAT), pixels);
+  fs::remove(folder_ / "style.toml");
+  ExpectRefusal(LoadStyle(folder_ / "a.exr"), {"a.exr shows no paint: its alpha is NaN"});
 }
 
 // ---- paper -----------------------------------------------------------------------------------------------------
