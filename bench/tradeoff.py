@@ -68,10 +68,10 @@ def time(value):
     return "%s (%s–%s)" % tuple(figure(value[key]) for key in ("median", "lower_quartile", "upper_quartile"))
 
 
-def remarks(way):
+def remarks(variant):
     """The part of the note for a table: " (= the style)", " (once)"."""
     said = []
-    for part in way["note"].split("; "):
+    for part in variant["note"].split("; "):
         if part.startswith(SAME):
             said.append("= " + part[len(SAME):])
         if "ran once" in part:
@@ -79,33 +79,35 @@ def remarks(way):
     return " (%s)" % ", ".join(said) if said else ""
 
 
-def row(way):
-    name = way["way"] + remarks(way) + (", **the style as it is**" if way["chosen"] and way["way"] != "the style"
-                                        else "")
-    megabytes = None if way["memory_bytes"] is None else way["memory_bytes"] * 1e-6
-    coherence = None if way["coherence"] is None else 100.0 * way["coherence"]
-    cells = ["★" if way["front"] else "", name, time(way["total_ms"]), figure(megabytes), figure(way["texture"]),
-             estimate(way["both"])]
-    cells += [figure(value) for value in (way["guide_degrees"], coherence, way["seam_excess"], way["repetition"])]
+def row(variant):
+    name = variant["variant"] + remarks(variant)
+    if variant["chosen"] and variant["variant"] != "the style":
+        name += ", **the style as it is**"
+    megabytes = None if variant["memory_bytes"] is None else variant["memory_bytes"] * 1e-6
+    coherence = None if variant["coherence"] is None else 100.0 * variant["coherence"]
+    cells = ["★" if variant["front"] else "", name, time(variant["total_ms"]), figure(megabytes),
+             figure(variant["texture"]), estimate(variant["both"]), figure(variant["guide_degrees"]), figure(coherence),
+             figure(variant["seam_excess"]), figure(variant["repetition"])]
     return "| %s |" % " | ".join(cells)
 
 
-def table(ways):
-    head = ["", "way", "time, ms (quartiles)", "memory, MB", "texture", "both", "off by, °", "coherence, %",
+def table(variants):
+    head = ["", "variant", "time, ms (quartiles)", "memory, MB", "texture", "both", "off by, °", "coherence, %",
             "seam excess", "repetition"]
-    return ["| %s |" % " | ".join(head), "|---" * len(head) + "|"] + [row(way) for way in ways]
+    return ["| %s |" % " | ".join(head), "|---" * len(head) + "|"] + [row(variant) for variant in variants]
 
 
 def section(name, report):
     """The front, the style as it is, the qualities, and a few others; all of them are in the report."""
     scene, style, what = SAMPLES[name][:3]
-    front = [next(way for way in report["ways"] if way["way"] == each) for each in report["front"]]
-    others = [way for way in report["ways"] if not way["front"]
-              and (way["chosen"] or way["exact"] or way["axis"] in ("quality", "method", "resolution", "blend_radius"))]
+    front = [next(variant for variant in report["variants"] if variant["variant"] == each) for each in report["front"]]
+    others = [variant for variant in report["variants"] if not variant["front"]
+              and (variant["chosen"] or variant["exact"]
+                   or variant["axis"] in ("quality", "method", "resolution", "blend_radius"))]
     left_out = ["Left out: %s." % "; ".join(report["left_out"]), ""] if report["left_out"] else []
-    lines = ["### %s" % name, "", "*%s.* %d ways%s at %d×%d; %s; medians of %d runs. Halves of the exemplar differ by "
-             "%s, other seeds by %s." % (
-                 what.capitalize(), len(report["ways"]), " (`--quick`)" if "--quick" in report["command"] else "",
+    lines = ["### %s" % name, "", "*%s.* %d variants%s at %d×%d; %s; medians of %d runs. Halves of the exemplar "
+             "differ by %s, other seeds by %s." % (
+                 what.capitalize(), len(report["variants"]), " (`--quick`)" if "--quick" in report["command"] else "",
                  report["width"], report["height"], report["machine"], report["repeats"],
                  figure(report["texture_floor"]), figure(report["texture_chance"])), ""]
     lines += left_out

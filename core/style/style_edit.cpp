@@ -145,7 +145,7 @@ Expected<std::string> WithSettings(std::string text, const std::vector<std::stri
     if (!wanted_value || PlaceOf(line, node->source().end) != line.size())
       return UsageError(setting + ": expected a number, true, false or a text in quotes");
     const auto all = Parse(text);
-    if (!all) return InputError(file + " is no TOML: mend it first, `scumble styles check` says where");
+    if (!all) return InputError(file + " is no TOML: fix it first, `scumble styles check` says where");
     std::vector<std::string> ways;
     if (const toml::node* const there = Find(*all, name)) {
       const std::size_t begin = PlaceOf(text, there->source().begin), end = PlaceOf(text, there->source().end);

@@ -173,7 +173,7 @@ void AddGuideWeights(std::vector<StyleKey>& keys) {
     if (!GuideWeights::CanWeigh(info.layer)) continue;
     const bool normal = info.layer == Layer::kNormal;
     keys.push_back({GuideWeight(info.layer), kGuideWeights + std::string(info.name), normal ? "1.0" : "0.0",
-                    normal ? "how much normals count where paint is looked for and pieces end, 0 to 1000"
+                    normal ? "how much normals count where paint is looked for and chunks end, 0 to 1000"
                            : "the same of " + std::string(info.meaning),
                     "Guide weights", true});
   }
@@ -210,7 +210,7 @@ std::vector<StyleKey> MakeKeys() {
        "renewals of the jitter a second; 0 frozen, -1 every frame",
        "Movement",
        false},
-      {Flag(&T::coherent), "transfer.coherent", "false", "pieces stick to surfaces that move, instead of the screen",
+      {Flag(&T::coherent), "transfer.coherent", "false", "chunks stick to surfaces that move, instead of the screen",
        "Matching", false},
       {Whole(&T::blend_radius, 0, 64), "transfer.blend_radius", "1", "voting window, pixels, 0 to 64", "Blending",
        true},
@@ -235,7 +235,7 @@ std::vector<StyleKey> MakeKeys() {
       {Number(&T::variety, 0.0, 90.0, 1.0), "transfer.variety", "0.0",
        "freedom of choice on flat surfaces, degrees, 0 to 90", "Matching", false},
       {Number(&T::hybrid, 0.0, kInfinity, 0.5, 64.0), "transfer.hybrid", "0.0",
-       "tone by Lit Sphere, texture in pieces: width of the split, sigma in exemplar pixels, 0 or more; 0: no split",
+       "tone by Lit Sphere, texture in chunks: width of the split, sigma in exemplar pixels, 0 or more; 0: no split",
        "Blending", true},
       {Whole(&T::match_step, 1, kMaxMatchStep), "transfer.match_step", "1",
        "pixels from one that is matched to the next, 1 to 8; 1: all are, slowest and best", "Matching", false},

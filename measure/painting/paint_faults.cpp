@@ -227,7 +227,7 @@ void Faults::LookAtPattern() {
   AddAt("regular-pattern", report.x, report.y,
         fmt::format(
             "a regular pattern ({}) comes back every {:.1f} pixels at {:.0f}°, {:.0f}% the same; it will tear where "
-            "pieces of the painting meet; clearest",
+            "chunks of the painting meet; clearest",
             report.grid ? "dots, squares or weave" : "even lines", report.period, report.direction,
             100.0 * std::max(report.peak, report.local_echo)),
         report.grid ? "take halftone screens, canvas and pattern fills out; scan paper without its weave"

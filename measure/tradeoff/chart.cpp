@@ -195,7 +195,7 @@ std::string Words(const TradeMeasure& variant, bool front) {
 std::string PointMark(const Chart& chart, const Point& point, const TradeReport& report, bool page) {
   const TradeMeasure& variant = report.variants[point.variant];
   const std::string words = EscapeHtml(Words(variant, point.front));
-  std::string svg = page ? fmt::format("<a href=\"#way-{}\" class=\"point axis-{}\" aria-label=\"{}\">",
+  std::string svg = page ? fmt::format("<a href=\"#variant-{}\" class=\"point axis-{}\" aria-label=\"{}\">",
                                        point.variant + 1, point.axis + 1, words)
                          : "<g>";
   svg += "<title>" + words + "</title>" + Bars(chart, point) + ChartMark(point.axis, point.x, point.y);

@@ -8,7 +8,7 @@ namespace scumble {
 namespace {
 
 constexpr const char* kHead =
-    "way,axis,value,options,note,chosen,exact,front,"
+    "variant,axis,value,options,note,chosen,exact,front,"
     "guides_ms_median,guides_ms_lower_quartile,guides_ms_upper_quartile,"
     "transfer_ms_median,transfer_ms_lower_quartile,transfer_ms_upper_quartile,"
     "total_ms_median,total_ms_lower_quartile,total_ms_upper_quartile,prepare_ms,memory_bytes,"

@@ -21,7 +21,7 @@ constexpr const char* kTimes[] = {"guides and transfer", "transfer alone", "memo
 constexpr const char* kErrors[] = {"texture", "both", "energy", "missing"};
 
 std::string LinkTo(const TradeReport& report, std::size_t i) {
-  return fmt::format("<a href=\"#way-{}\">{}</a>", i + 1, EscapeHtml(report.variants[i].name));
+  return fmt::format("<a href=\"#variant-{}\">{}</a>", i + 1, EscapeHtml(report.variants[i].name));
 }
 
 std::string Costs(const TradeMeasure& variant) {
@@ -63,7 +63,7 @@ std::string Header(const TradeReport& report) {
   if (report.variants.empty()) return html + "<p>Nothing was measured.</p>\n";
   const std::optional<double> chance = ChanceOf(report);
   html += fmt::format(
-      "<p>{} of {} ways are on the front: nothing else is as fast and has paint that looks more like the "
+      "<p>{} of {} variants are on the front: nothing else is as fast and has paint that looks more like the "
       "exemplar's{}. ",
       front.size(), report.variants.size(),
       chance ? fmt::format(", by more than other seeds of the style differ by, {}", ShortFigure(chance)) : "");
@@ -117,10 +117,9 @@ std::string Charts(const TradeReport& report) {
     }
   }
   return html +
-         "<p id=\"told\" class=\"soft\">Dashed: the front, ringed its points; of memory none is drawn, as most ways "
-         "differ "
-         "by less than two runs of one. Bars are quartiles of the time and, of "
-         "energies, standard errors; the thin line is what halves of the exemplar differ by. Each point leads to its "
+         "<p id=\"told\" class=\"soft\">Dashed: the front, ringed its points; of memory none is drawn, as most "
+         "variants differ by less than two runs of one. Bars are quartiles of the time and, of energies, standard "
+         "errors; the thin line is what halves of the exemplar differ by. Each point leads to its "
          "picture.</p>\n</section>\n";
 }
 
@@ -131,7 +130,7 @@ struct Column {
 };
 
 constexpr Column kColumns[] = {
-    {"front", "", false},     {"way", "", false},        {"changes", "", false},    {"time", "ms", true},
+    {"front", "", false},     {"variant", "", false},    {"changes", "", false},    {"time", "ms", true},
     {"guides", "ms", true},   {"transfer", "ms", true},  {"prepare", "ms", true},   {"memory", "MB", true},
     {"texture", "", true},    {"both", "", true},        {"energy", "", true},      {"missing", "", true},
     {"off by", "°", true},    {"coherence", "%", true},  {"chunk", "px", true},     {"seam excess", "", true},
@@ -168,7 +167,7 @@ std::string VariantRow(const TradeReport& report, std::size_t i, bool front) {
 }
 
 std::string Table(const TradeReport& report) {
-  std::string html = "<section>\n<table id=\"ways\"><thead><tr>";
+  std::string html = "<section>\n<table id=\"variants\"><thead><tr>";
   for (const Column& column : kColumns) {
     html += fmt::format("<th scope=\"col\"{}>{}{}</th>", column.number ? " class=\"number\"" : "", column.head,
                         *column.unit ? fmt::format(", {}", column.unit) : "");
@@ -206,7 +205,7 @@ std::string Figures(const TradeReport& report) {
     const TradeMeasure& variant = report.variants[i];
     const auto [first, is_new] = shown.try_emplace(BytesOf(variant.picture_png), i);
     const bool has_picture = !variant.picture_png.empty();
-    html += fmt::format("<figure id=\"way-{}\" class=\"way{}\"{}>\n", i + 1, variant.chosen ? " chosen" : "",
+    html += fmt::format("<figure id=\"variant-{}\" class=\"variant{}\"{}>\n", i + 1, variant.chosen ? " chosen" : "",
                         has_picture && !is_new ? fmt::format(" data-same=\"{}\"", first->second + 1) : "");
     if (!has_picture) {
       html += "<p class=\"soft\">No picture was kept.</p>\n";
@@ -220,18 +219,18 @@ std::string Figures(const TradeReport& report) {
     }
     html += Caption(report, i, front[i]) + "\n</figure>\n";
   }
-  return html.empty() ? "" : "<h2>Pictures</h2>\n<div class=\"ways\">\n" + html + "</div>\n";
+  return html.empty() ? "" : "<h2>Pictures</h2>\n<div class=\"variants\">\n" + html + "</div>\n";
 }
 
 // Two pictures at full size, opened by the script.
 constexpr const char* kFlip = R"(<dialog id="flip" aria-labelledby="flip-name">
 <div class="bar"><span><b id="flip-name"></b> <span id="flip-words" class="soft"></span></span>
 <span><button type="button" id="flip-side" aria-pressed="true">side by side</button>
-<button type="button" id="flip-before" aria-label="the way before">↑</button>
-<button type="button" id="flip-next" aria-label="the next way">↓</button>
+<button type="button" id="flip-before" aria-label="the variant before">↑</button>
+<button type="button" id="flip-next" aria-label="the next variant">↓</button>
 <button type="button" id="flip-close">close</button></span></div>
 <div class="stage" id="flip-stage"></div>
-<p class="soft">← → or a click flip between this way and the style as it is; ↑ ↓ go to other ways;
+<p class="soft">← → or a click flip between this variant and the style as it is; ↑ ↓ go to other variants;
 s shows both side by side; Esc closes.</p>
 </dialog>
 )";

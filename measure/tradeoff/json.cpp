@@ -26,8 +26,9 @@ Json EstimateJson(const Estimate& estimate) {
 
 Json VariantJson(const TradeReport& report, std::size_t i, bool front) {
   const TradeMeasure& variant = report.variants[i];
-  Json json{{"way", variant.name},  {"axis", variant.axis},     {"value", variant.value}, {"options", variant.options},
-            {"note", variant.note}, {"chosen", variant.chosen}, {"exact", variant.exact}, {"front", front}};
+  Json json{{"variant", variant.name},    {"axis", variant.axis}, {"value", variant.value},
+            {"options", variant.options}, {"note", variant.note}, {"chosen", variant.chosen},
+            {"exact", variant.exact},     {"front", front}};
   json["guides_ms"] = TimeJson(variant.guides_ms);
   json["transfer_ms"] = TimeJson(variant.transfer_ms);
   json["total_ms"] = TimeJson(variant.total_ms);
@@ -67,9 +68,9 @@ std::string TradeJson(const TradeReport& report) {
   json["front"] = Json::array();
   for (const std::size_t i : FrontOf(report)) json["front"].push_back(report.variants[i].name);
   json["left_out"] = report.left_out;
-  json["ways"] = Json::array();
+  json["variants"] = Json::array();
   const std::vector<bool> front = internal::OnFront(report);
-  for (std::size_t i = 0; i < report.variants.size(); ++i) json["ways"].push_back(VariantJson(report, i, front[i]));
+  for (std::size_t i = 0; i < report.variants.size(); ++i) json["variants"].push_back(VariantJson(report, i, front[i]));
   // Names may hold any bytes; JSON may not.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

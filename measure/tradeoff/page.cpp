@@ -17,15 +17,16 @@ svg .ring { stroke: var(--text); fill: none; stroke-width: 1.6; }
 svg .bar { stroke: var(--soft); stroke-width: .8; } svg .name, svg > .bar { pointer-events: none; }
 svg a.point:hover path, svg a.point:focus path { stroke: var(--text); stroke-width: 2; }
 #told { white-space: pre-line; min-height: 7.5em; }
-#ways th, #ways td { padding-right: .9rem; } #ways tbody th { color: var(--text); white-space: nowrap; }
-#ways thead button { font: inherit; color: inherit; background: none; border: 0; padding: 0; cursor: pointer;
+#variants th, #variants td { padding-right: .9rem; } #variants tbody th { color: var(--text); white-space: nowrap; }
+#variants thead button { font: inherit; color: inherit; background: none; border: 0; padding: 0; cursor: pointer;
   text-align: inherit; }
-#ways th[aria-sort=ascending] button::after { content: " ▲"; }
-#ways th[aria-sort=descending] button::after { content: " ▼"; }
+#variants th[aria-sort=ascending] button::after { content: " ▲"; }
+#variants th[aria-sort=descending] button::after { content: " ▼"; }
 tr.chosen > * { background: color-mix(in srgb, var(--good) 14%, transparent); } .star { color: var(--good); }
-.ways { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(30rem, 100%), 1fr)); gap: 1.4rem; }
-figure { margin: 0; } img { height: auto; } figure.way:target { outline: 3px solid var(--good); outline-offset: 6px; }
-figure.way img { cursor: zoom-in; }
+.variants { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(30rem, 100%), 1fr)); gap: 1.4rem; }
+figure { margin: 0; } img { height: auto; }
+figure.variant:target { outline: 3px solid var(--good); outline-offset: 6px; }
+figure.variant img { cursor: zoom-in; }
 dialog { width: 100vw; max-width: none; height: 100vh; max-height: none; margin: 0; padding: .8rem 1.2rem; border: 0;
   box-sizing: border-box; color: var(--text); background: var(--ground); }
 dialog .bar { display: flex; justify-content: space-between; gap: 1rem; flex-wrap: wrap; }
@@ -39,10 +40,11 @@ dialog button[aria-pressed=true] { border-color: var(--text); }
     --good: #1f7a4a; }
   body { margin: 0; max-width: none; font-size: 9pt; } .choose, dialog { display: none; }
   section { border: 0; padding: 0; overflow: visible; }
-  @page { size: landscape; } #ways, #ways th { font-size: 6pt; } #ways th, #ways td { padding: 1pt .6em 1pt 0; }
-  #ways thead th { white-space: normal; }
+  @page { size: landscape; } #variants, #variants th { font-size: 6pt; }
+  #variants th, #variants td { padding: 1pt .6em 1pt 0; }
+  #variants thead th { white-space: normal; }
   #told { min-height: 0; } svg.chart { max-width: 20cm; }
-  .ways { grid-template-columns: 1fr 1fr; } figure.way, tr { break-inside: avoid; }
+  .variants { grid-template-columns: 1fr 1fr; } figure.variant, tr { break-inside: avoid; }
 }
 )";
 
@@ -50,7 +52,7 @@ const char* const kTradePageScript = R"(
 "use strict";
 (() => {
   const byId = id => document.getElementById(id);
-  const told = byId("told"), table = byId("ways"), flip = byId("flip");
+  const told = byId("told"), table = byId("variants"), flip = byId("flip");
   if (!told) return;
 
   // The text for the point under the pointer or the focus shows below the chart.
@@ -88,37 +90,38 @@ const char* const kTradePageScript = R"(
   });
 
   // Two pictures at full size, to flip between.
-  const ways = [...document.querySelectorAll("figure.way")], own = ways.find(way => way.classList.contains("chosen"));
-  const pictureOf = way => way.querySelector("img") ||
-    (way.dataset.same ? byId("way-" + way.dataset.same).querySelector("img") : null);
-  const nameOf = way => way.querySelector("figcaption b").textContent;
+  const variants = [...document.querySelectorAll("figure.variant")];
+  const own = variants.find(variant => variant.classList.contains("chosen"));
+  const pictureOf = variant => variant.querySelector("img") ||
+    (variant.dataset.same ? byId("variant-" + variant.dataset.same).querySelector("img") : null);
+  const nameOf = variant => variant.querySelector("figcaption b").textContent;
   const stage = byId("flip-stage");
   let at = 0;
   const sideBySide = on => {
     stage.classList.toggle("flip", !on);
     byId("flip-side").setAttribute("aria-pressed", on);
   };
-  const say = way => {
-    byId("flip-name").textContent = nameOf(way);
-    byId("flip-words").textContent = way.querySelector("figcaption").innerText.split("\n").slice(1).join(" · ");
+  const say = variant => {
+    byId("flip-name").textContent = nameOf(variant);
+    byId("flip-words").textContent = variant.querySelector("figcaption").innerText.split("\n").slice(1).join(" · ");
   };
   const turn = () => {
     if (stage.children.length < 2) return;
     if (!stage.classList.contains("flip")) return sideBySide(false);
     for (const shown of stage.children) shown.classList.toggle("on");
-    say(stage.querySelector(".on").way);
+    say(stage.querySelector(".on").variant);
   };
   const show = index => {
-    at = (index + ways.length) % ways.length;
-    const way = ways[at];
-    say(way);
-    stage.replaceChildren(...(own && own !== way ? [way, own] : [way]).filter(pictureOf).map((shown, i) => {
+    at = (index + variants.length) % variants.length;
+    const variant = variants[at];
+    say(variant);
+    stage.replaceChildren(...(own && own !== variant ? [variant, own] : [variant]).filter(pictureOf).map((shown, i) => {
       const figure = document.createElement("figure"), image = new Image();
       const caption = document.createElement("figcaption");
       image.src = pictureOf(shown).src;
       image.alt = nameOf(shown);
       caption.textContent = nameOf(shown);
-      figure.way = shown;
+      figure.variant = shown;
       figure.append(image, caption);
       figure.classList.toggle("on", i === 0);
       return figure;
@@ -127,11 +130,12 @@ const char* const kTradePageScript = R"(
   };
   document.addEventListener("click", event => {
     if (event.ctrlKey || event.metaKey || event.shiftKey) return;
-    const link = event.target.closest("a[href^='#way-']"), image = event.target.closest("figure.way img");
-    const way = link ? document.querySelector(link.getAttribute("href")) : image ? image.closest("figure.way") : null;
-    if (!way || !pictureOf(way)) return;
+    const link = event.target.closest("a[href^='#variant-']"), image = event.target.closest("figure.variant img");
+    const variant = link ? document.querySelector(link.getAttribute("href"))
+                         : image ? image.closest("figure.variant") : null;
+    if (!variant || !pictureOf(variant)) return;
     event.preventDefault();
-    show(ways.indexOf(way));
+    show(variants.indexOf(variant));
   });
   stage.addEventListener("click", turn);
   byId("flip-side").addEventListener("click", () => sideBySide(stage.classList.contains("flip")));

@@ -59,8 +59,8 @@ Row RowOf(const TradeMeasure& variant, bool front) {
 }
 
 const Row kHeadAbove = {"", "", "time, ms", "memory", "tex-", "", "", "", "off by", "coher.", "chunk", "seam", "repe-"};
-const Row kHeadBelow = {"",        "way", "(quartiles)", "MB", "ture",   "both",  "energy",
-                        "missing", "°",   "%",           "px", "excess", "tition"};
+const Row kHeadBelow = {"",        "variant", "(quartiles)", "MB", "ture",   "both",  "energy",
+                        "missing", "°",       "%",           "px", "excess", "tition"};
 
 std::string Line(const Row& row, const std::array<std::size_t, kTableCells>& widths) {
   std::string line;
@@ -137,7 +137,7 @@ std::string TradeTable(const TradeReport& report) {
   text +=
       "  both: what of the picture is not the exemplar's (energy) and what of the exemplar is not in the picture "
       "(missing).\n"
-      "  coher.: neighbours whose paint was side by side; seam: larger steps across pieces than inside;\n"
+      "  coher.: neighbours whose paint was side by side; seam: larger steps across chunks than inside;\n"
       "  repetition: how often a shown pixel of the exemplar shows.\n";
   return text + GuideTable(report) + Notes(report);
 }

@@ -66,13 +66,13 @@ class Grid {
 
   void AddExact() {
     Variant variant;
-    variant.name = "the exact way", variant.axis = kExactAxis, variant.value = "";
+    variant.name = "the exact variant", variant.axis = kExactAxis, variant.value = "";
     if (style_.method == Method::kStyleBlit) {
       if (BruteForceFits()) {
         variant.settings.push_back("transfer.method=bruteforce");
       } else {
-        grid_.left_out.push_back(fmt::format("brute force in the exact way, which is for pictures of at most {} pixels",
-                                             kMostBruteForcePixels));
+        grid_.left_out.push_back(fmt::format(
+            "brute force in the exact variant, which is for pictures of at most {} pixels", kMostBruteForcePixels));
       }
     }
     // The nearest by comparison: a ball's formula is exact to a pixel only.
@@ -222,7 +222,7 @@ TradeGrid MakeTradeGrid(const Style& style, const TradeGridOptions& options) {
   const std::vector<std::string> kept = AxesOf(grid.variants);
   std::vector<std::string> gone = AxesOf(whole.variants);
   std::erase_if(gone, [&](const std::string& axis) { return std::find(kept.begin(), kept.end(), axis) != kept.end(); });
-  grid.left_out.push_back(fmt::format("by --quick {} of {} ways: the axes {}, and values of the others",
+  grid.left_out.push_back(fmt::format("by --quick {} of {} variants: the axes {}, and values of the others",
                                       whole.variants.size() - grid.variants.size(), whole.variants.size(),
                                       fmt::join(gone, ", ")));
   return grid;
@@ -250,7 +250,7 @@ Expected<std::vector<Variant>> ChooseVariants(const std::vector<Variant>& varian
     }
     if (!any) {
       return UsageError(
-          fmt::format("--only {}: no axis and no way is called '{}'; the axes of this style and scene are {}", only,
+          fmt::format("--only {}: no axis and no variant is called '{}'; the axes of this style and scene are {}", only,
                       part, fmt::join(AxesOf(variants), ", ")));
     }
   }

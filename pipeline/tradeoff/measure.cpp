@@ -86,7 +86,7 @@ class Trade {
     SCUMBLE_RETURN_IF_ERROR(LeaveOutWhatIsTooLarge(variants));
     if (setup_.memory && !asks_for_memory_) {
       report_.left_out.push_back(
-          "memory, for which Blender would export the scene for each way; export it as .glb for that");
+          "memory, for which Blender would export the scene for each variant; export it as .glb for that");
     }
     for (const std::string& line : report_.left_out) context_.Note("left out: " + line);
     SCUMBLE_RETURN_IF_ERROR(OpenStyles(variants));
@@ -201,7 +201,7 @@ class Trade {
                          together);
       if (together.peak() > most.peak()) most = together;
     }
-    return CheckMemory(most, context_, "take a smaller --size, or fewer ways by --only");
+    return CheckMemory(most, context_, "take a smaller --size, or fewer variants by --only");
   }
 
   // What the others are measured against. Noise of its own: guides of as many samples would be compared with
@@ -384,7 +384,7 @@ class Trade {
     if (painter.field()) {
       SCUMBLE_RETURN_IF_ERROR(reference_->MeasureMosaic(picture, *painter.field(), measure));
     } else {
-      AddNote(measure, "its pieces are those of a picture of another size, and were not measured");
+      AddNote(measure, "its chunks are those of a picture of another size, and were not measured");
     }
     // At some sizes settings round to the same: the same picture has the same energy.
     const std::string_view bytes(reinterpret_cast<const char*>(picture.rgba.data()),
@@ -445,7 +445,7 @@ Expected<std::size_t> PeakOfVariant(const TradeSetup& setup, const std::string& 
   SCUMBLE_ASSIGN(TradeStage stage, OpenTradeStage(setup, context));
   const auto variant = std::find_if(stage.grid.variants.begin(), stage.grid.variants.end(),
                                     [&](const Variant& one) { return one.name == name; });
-  if (variant == stage.grid.variants.end()) return UsageError("--peak-of " + name + ": there is no such way");
+  if (variant == stage.grid.variants.end()) return UsageError("--peak-of " + name + ": there is no such variant");
   stage.style = Style();  // the variant has its own: a run of stylize has its pictures once
   SCUMBLE_ASSIGN(const Style style, StyleOfVariant(setup, *variant, context));
   SCUMBLE_ASSIGN(const LayerSet layers, LayersOverTime(style));

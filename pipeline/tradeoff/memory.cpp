@@ -33,7 +33,7 @@ void TradeMemory::AddReport(std::size_t variants, MemoryNeed& need) const {
   AddPicture({{&stage_.style, 1}, false, size, stage_.scene.layers, false, true, context_.threads}, {}, need);
   const std::uint64_t pictures = kPng * Pixels() * variants;
   need.Take("reference", kReference * Places());
-  need.Take("pictures of all ways", pictures);
+  need.Take("pictures of all variants", pictures);
   if (setup_.writes) need.TakeTransient("page", kPage * pictures);
 }
 

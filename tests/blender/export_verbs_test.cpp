@@ -96,13 +96,14 @@ TEST_F(BlenderVerbs, TradeoffAndBudgetTakeAFrame) {
   const CommandResult trade = RunHere(
       With(With({"tradeoff", Blend("objects")}, seen), {"--only", "method", "--repeat", "1", "--json", "-o", "out"}));
   ASSERT_EQ(trade.code, 0) << trade.err;
-  const nlohmann::json ways = trade.Json().at("ways");
-  ASSERT_EQ(ways.size(), 3u);
-  std::istringstream options(ways[0].at("options").get<std::string>());
+  const nlohmann::json variants = trade.Json().at("variants");
+  ASSERT_EQ(variants.size(), 3u);
+  std::istringstream options(variants[0].at("options").get<std::string>());
   const Arguments words{std::istream_iterator<std::string>(options), {}};
   ASSERT_EQ(RunHere(With(With({"stylize", Blend("objects")}, words), {"-o", "again.png"})).code, 0);
   EXPECT_TRUE(Pixels("out/pictures/01-the-style.png") == Pixels("again.png")) << options.str();
-  for (const auto& way : ways) EXPECT_TRUE(way.at("memory_bytes").is_null()) << "Blender would run for each";
+  for (const auto& variant : variants)
+    EXPECT_TRUE(variant.at("memory_bytes").is_null()) << "Blender would run for each";
 }
 
 // One Blender for the range; more frames than it may be ahead, backwards and with a stop in between.

@@ -148,7 +148,7 @@ TEST(TradePage, EveryWayHasAFigureALineAndPointsThatLeadToIt) {
   const std::vector<Tag> points = page.All("a", "svg");
   EXPECT_EQ(points.size(), 12 * report.variants.size()) << "charts of three times by four errors";
   for (std::size_t i = 1; i <= report.variants.size(); ++i) {
-    const std::string id = "way-" + std::to_string(i);
+    const std::string id = "variant-" + std::to_string(i);
     EXPECT_TRUE(ids.count(id)) << id;
     EXPECT_EQ(
         std::count_if(points.begin(), points.end(), [&](const Tag& a) { return a.attributes.at("href") == "#" + id; }),
@@ -185,8 +185,8 @@ TEST(TradePage, PicturesAreTheBytesGivenAndEqualOnesAreThereOnce) {
   std::vector<std::string> images;
   for (const Tag& image : page.All("img")) images.push_back(image.attributes.at("src").substr(22));
   EXPECT_EQ(images, (std::vector<std::string>{"Zg==", "Zm8=", "Zm9vYmFy", "Zm9v"})) << "by axis";
-  EXPECT_NE(html.find("<figure id=\"way-5\" class=\"way\" data-same=\"3\">"), std::string::npos);
-  EXPECT_NE(html.find("The same picture as <a href=\"#way-3\">radius 0</a>"), std::string::npos);
+  EXPECT_NE(html.find("<figure id=\"variant-5\" class=\"variant\" data-same=\"3\">"), std::string::npos);
+  EXPECT_NE(html.find("The same picture as <a href=\"#variant-3\">radius 0</a>"), std::string::npos);
   EXPECT_NE(html.find("No picture was kept"), std::string::npos);
 }
 
@@ -195,9 +195,9 @@ TEST(TradePage, SaysWhatIsFasterAndNoWorseThanTheStyle) {
   const std::string html = TradeHtml(MadeUpReport());
   EXPECT_NE(
       html.find(
-          "Faster, and farther from the exemplar by no more than chance: <a href=\"#way-3\">radius 0</a> (30.0 ms"),
+          "Faster, and farther from the exemplar by no more than chance: <a href=\"#variant-3\">radius 0</a> (30.0 ms"),
       std::string::npos);
-  EXPECT_NE(html.find("<p>5 of 6 ways are on the front"), std::string::npos);
+  EXPECT_NE(html.find("<p>5 of 6 variants are on the front"), std::string::npos);
   TradeReport report = MadeUpReport();
   report.variants[0].total_ms.median = 25.0;
   EXPECT_NE(TradeHtml(report).find(", and is on the front."), std::string::npos);

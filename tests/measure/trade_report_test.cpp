@@ -195,7 +195,7 @@ TEST(TradeReport, TheChartRingsTheFront) {
     const std::string svg = internal::DrawTradeChart(report, {time, internal::ChartError::kTexture, true});
     std::vector<bool> rings;
     for (std::size_t i = 0; i < report.variants.size(); ++i) {
-      const std::size_t begin = svg.find(fmt::format("<a href=\"#way-{}\"", i + 1)), end = svg.find("</a>", begin);
+      const std::size_t begin = svg.find(fmt::format("<a href=\"#variant-{}\"", i + 1)), end = svg.find("</a>", begin);
       rings.push_back(svg.substr(begin, end - begin).find("class=\"ring\"") != std::string::npos);
     }
     return rings;
@@ -253,7 +253,7 @@ TEST(TradeReport, CsvReadsBackToTheSameTextsAndValues) {
   for (std::size_t i = 0; i < report.variants.size(); ++i) {
     ASSERT_EQ(rows[i + 1].size(), rows[0].size());
     const TradeMeasure& variant = report.variants[i];
-    EXPECT_EQ(FieldOf(rows, i, "way"), variant.name);
+    EXPECT_EQ(FieldOf(rows, i, "variant"), variant.name);
     EXPECT_EQ(FieldOf(rows, i, "axis"), variant.axis);
     EXPECT_EQ(FieldOf(rows, i, "value"), variant.value);
     EXPECT_EQ(FieldOf(rows, i, "options"), variant.options);
@@ -298,7 +298,7 @@ TEST(TradeReport, WhatWasNotMeasuredIsEmptyInCsv) {
   const Rows rows = ParseCsv(TradeCsv(HalfMeasured()));
   for (std::size_t column = 0; column < rows[0].size(); ++column) {
     const std::string& name = rows[0][column];
-    const bool is_text = name == "way" || name == "axis",
+    const bool is_text = name == "variant" || name == "axis",
                is_flag = name == "chosen" || name == "exact" || name == "front";
     EXPECT_EQ(rows[2][column], is_text ? "untimed" : is_flag ? "0" : "") << name;
   }
@@ -335,13 +335,13 @@ TEST(TradeReport, JsonHasTheFiguresOfTheCsv) {
   EXPECT_EQ(json["texture_floor"], 0.25);
   EXPECT_TRUE(json["texture_chance"].is_null()) << "no other seed";
   EXPECT_EQ(json["command"], report.command);
-  ASSERT_EQ(json["ways"].size(), report.variants.size());
+  ASSERT_EQ(json["variants"].size(), report.variants.size());
   std::vector<std::string> front;
   for (const std::size_t i : FrontOf(report)) front.push_back(report.variants[i].name);
   EXPECT_EQ(json["front"], front);
   for (std::size_t i = 0; i < report.variants.size(); ++i) {
-    const auto& variant = json["ways"][i];
-    for (const char* text : {"way", "axis", "value", "options", "note", "picture"})
+    const auto& variant = json["variants"][i];
+    for (const char* text : {"variant", "axis", "value", "options", "note", "picture"})
       EXPECT_EQ(variant[text], FieldOf(rows, i, text));
     for (const char* flag : {"chosen", "exact", "front"}) EXPECT_EQ(variant[flag], FieldOf(rows, i, flag) == "1");
     for (const std::string time : {"guides_ms", "transfer_ms", "total_ms"}) {
@@ -358,17 +358,17 @@ TEST(TradeReport, JsonHasTheFiguresOfTheCsv) {
       EXPECT_EQ(variant[figure], NumberOf(rows, i, figure)) << figure;
     }
   }
-  EXPECT_EQ(json["ways"][3]["guide_rms"], 0.001);
-  EXPECT_TRUE(json["ways"][2]["guide_rms"].is_null());
+  EXPECT_EQ(json["variants"][3]["guide_rms"], 0.001);
+  EXPECT_TRUE(json["variants"][2]["guide_rms"].is_null());
 }
 
 TEST(TradeReport, JsonSaysNullForWhatWasNotMeasuredAndNamesWhatIsNoNumber) {
   const auto json = nlohmann::json::parse(TradeJson(HalfMeasured()));
-  for (const auto& [key, value] : json["ways"][1].items()) {
+  for (const auto& [key, value] : json["variants"][1].items()) {
     EXPECT_TRUE(value.is_null() || value.is_string() || value.is_boolean()) << key << ": " << value;
   }
-  EXPECT_EQ(json["ways"][2]["repetition"], "nan");
-  EXPECT_EQ(json["ways"][2]["chunk_area_pixels"], "-inf");
+  EXPECT_EQ(json["variants"][2]["repetition"], "nan");
+  EXPECT_EQ(json["variants"][2]["chunk_area_pixels"], "-inf");
 }
 
 TEST(TradeReport, JsonHasTheExposureWhereLightIsLookedAt) {
@@ -386,7 +386,7 @@ TEST(TradeReport, JsonTakesNamesThatAreNotUtf8) {
 
 TEST(TradeReport, TheTableHasALineForEachWayMarksTheFrontAndFitsATerminal) {
   TradeReport report = MadeUpReport();
-  report.variants[4].name = "a name that is longer than any way has ever had and so is cut – somewhere here";
+  report.variants[4].name = "a name that is longer than any variant has ever had and so is cut – somewhere here";
   report.variants[1].total_ms = {10.0, 9.99e3, 1.0e4};
   const std::vector<std::string> lines = LinesOf(TradeTable(report));
   for (const std::string& line : lines) EXPECT_LE(Characters(line), 120u) << line;
@@ -422,7 +422,7 @@ TEST(TradeReport, AnEmptyReportIsAnEmptyReport) {
   EXPECT_TRUE(FrontOf(empty).empty());
   EXPECT_TRUE(ByAxis(empty).empty());
   EXPECT_EQ(ParseCsv(TradeCsv(empty)).size(), 1u) << "the column names";
-  EXPECT_TRUE(nlohmann::json::parse(TradeJson(empty))["ways"].empty());
+  EXPECT_TRUE(nlohmann::json::parse(TradeJson(empty))["variants"].empty());
   EXPECT_NE(TradeTable(empty).find("nothing was measured"), std::string::npos);
 }
 

@@ -161,7 +161,7 @@ TEST(TradeGrid, LeavesOutWhatCannotBeAndSaysSo) {
   EXPECT_EQ(ValuesOf(large, "resolution"), Values{"2"});
   EXPECT_EQ(large.variants[1].settings, Values{"transfer.nearest=tree"});
   ASSERT_EQ(large.left_out.size(), 3u);
-  EXPECT_NE(large.left_out[0].find("brute force in the exact way"), std::string::npos);
+  EXPECT_NE(large.left_out[0].find("brute force in the exact variant"), std::string::npos);
   EXPECT_NE(large.left_out[1].find("bruteforce"), std::string::npos);
   EXPECT_NE(large.left_out[2].find("even"), std::string::npos);
   for (const Variant& variant : large.variants) EXPECT_NE(variant.guide_scale, 0.5) << variant.name;
@@ -206,7 +206,7 @@ TEST(ChooseVariants, TakesAxesAndNamesAndAlwaysTheStyle) {
   EXPECT_EQ(names("match_step,robust"), (Values{"the style", "match_step 2", "match_step 4", "robust no"}));
   EXPECT_EQ(names("levels *,robust").size(), 1u + 8u + 1u);
   EXPECT_EQ(names("nearest table 1*"), (Values{"the style", "nearest table 128", "nearest table 1024"}));
-  EXPECT_EQ(names("exact"), (Values{"the style", "the exact way"}));
+  EXPECT_EQ(names("exact"), (Values{"the style", "the exact variant"}));
   ExpectRefusal(ChooseVariants(grid.variants, "levles"), ErrorKind::kUsage,
                 {"--only levles", "'levles'", "levels", "nearest", "precision"});
   ExpectRefusal(ChooseVariants(grid.variants, "levels,"), ErrorKind::kUsage, {"''"});

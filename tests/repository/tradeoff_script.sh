@@ -30,7 +30,7 @@ grep -q '^| ★ | ' "$folder/tradeoff.md" || fails "no front"
 front=$(/usr/bin/python3 -c 'import json, sys; print(len(json.load(open(sys.argv[1]))["front"]))' \
     "$folder/made/toys-graphite/tradeoff.json")
 lines=$(sed -n '/^<!-- toys-graphite: begin/,/^<!-- toys-graphite: end/p' "$folder/tradeoff.md" | grep -c '^| ★ | ')
-[ "$lines" = "$front" ] || fails "$lines lines with a star for $front ways on the front"
+[ "$lines" = "$front" ] || fails "$lines lines with a star for $front variants on the front"
 grep -q '| the style |' "$folder/tradeoff.md" || fails "the style is missing"
 sed '/^<!-- toys-graphite: begin/,/^<!-- toys-graphite: end/{/^<!--/!d}' "$folder/tradeoff.md" |
   cmp - "$folder/before.md" ||

@@ -141,11 +141,9 @@ void AddBudgetOptions(CLI::App& verb, BudgetOptions& options, bool casts) {
           "--budget-ms", options.request.budget_ms,
           std::string("milliseconds that ") + (casts ? "the guides and the transfer" : "the transfer") +
               " of one picture may take, without start-up, reading, preparing the style and writing: of a dozen "
-              "ways, ordered by how far their paint looks from the exemplar's, the first that fits is taken, by times "
-              "that are measured "
-              "once on this "
-              "machine and kept in the user's cache folder; one way for all frames; the options that repeat it are "
-              "printed. " +
+              "variants, ordered by how far their paint looks from the exemplar's, the first that fits is taken, by "
+              "times that are measured once on this machine and kept in the user's cache folder; one variant for all "
+              "frames; the options that repeat it are printed. " +
               wins)
       ->type_name("N")
       ->check(RefuseNoAmount("milliseconds, as 40"));

@@ -87,7 +87,7 @@ nlohmann::ordered_json FaultToJson(const std::string& image, const PaintFault& f
                               {"weight", fault.weight == PaintFault::Weight::kMistake ? "mistake" : "remark"},
                               {"image", image},
                               {"what", fault.what},
-                              {"mend", fault.remedy}};
+                              {"fix", fault.remedy}};
   if (fault.place) json["x"] = fault.place->first, json["y"] = fault.place->second;
   return json;
 }

@@ -55,7 +55,7 @@ std::vector<const TunedStyle*> AllOf(const TuneReport& report) {
 }
 
 std::string TextOf(const TuneReport& report) {
-  std::string text = fmt::format("{} on {}; {} ways were painted\n\n{:<9} {:>8} {:>6}  keys\n", report.style,
+  std::string text = fmt::format("{} on {}; {} variants were painted\n\n{:<9} {:>8} {:>6}  keys\n", report.style,
                                  fmt::join(report.scenes, ", "), report.tried, "", "texture", "time");
   const std::vector<const TunedStyle*> all = AllOf(report);
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -75,7 +75,7 @@ Expected<std::string> PageOf(const TuneReport& report) {
       "}";
   std::string html = internal::PageHead(report.style + ", tuned", kStyle);
   html += fmt::format(
-      "<h1>{}, tuned</h1>\n<p>{} ways were painted; other random seeds differ by {:.3f}. Look at whole "
+      "<h1>{}, tuned</h1>\n<p>{} variants were painted; other random seeds differ by {:.3f}. Look at whole "
       "pictures before you choose: open one in a tab of its own.</p>\n",
       internal::EscapeHtml(report.style), report.tried, report.chance);
   html += fmt::format("<div class=\"sheet\" style=\"grid-template-columns: repeat({}, 1fr)\">\n", report.scenes.size());

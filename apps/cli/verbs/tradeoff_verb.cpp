@@ -103,10 +103,10 @@ std::vector<fs::path> OldPictures(const std::string& folder, const TradeReport& 
   if (!bytes) return old;
   const auto* const text = reinterpret_cast<const char*>(bytes->data());
   const auto json = nlohmann::json::parse(text, text + bytes->size(), nullptr, false);
-  if (!json.is_object() || !json.contains("ways") || !json["ways"].is_array()) return old;
+  if (!json.is_object() || !json.contains("variants") || !json["variants"].is_array()) return old;
   std::set<std::string> names;
   for (std::size_t i = 0; i < report.variants.size(); ++i) names.insert(TradePictureName(report, i));
-  for (const auto& variant : json["ways"]) {
+  for (const auto& variant : json["variants"]) {
     if (!variant.is_object() || !variant.contains("picture") || !variant["picture"].is_string()) continue;
     const fs::path name = variant["picture"].get<std::string>();
     if (name.extension() == ".png" && name == name.filename() && !names.contains(name.string())) {
@@ -211,21 +211,16 @@ void AddTradeoffVerb(CLI::App& app, Globals& globals, Action& chosen) {
   auto verb = std::make_shared<TradeoffVerb>();
   CLI::App* sub = app.add_subcommand(
       "tradeoff",
-      "what every way to stylise a scene costs on this machine, and how far off it is: a table, a chart, all pictures");
+      "what every variant of a style costs on this machine, and how far off it is: a table, a chart, all pictures");
   sub->footer(
-      "Each way changes one thing of the style, or a few. `texture` ranks, the less the better: how far the paint's "
-      "look\n"
-      "is from that of the exemplar where the surface is turned alike. Times are of the guides (with the acceleration\n"
-      "structure) and of the transfer, after a run to warm up of which nothing is kept that a sequence would keep: "
-      "they\n"
-      "are those of a single picture. Loading, preparing the style and writing are not in them, and a run of more "
-      "than\n"
-      "5 s is not repeated. Memory is the peak of a process that makes the one picture, and is not measured of a "
-      ".blend,\n"
-      "which would be exported for each way. Everything is measured without paper, and in the one style, whatever the\n"
-      "scene says; colorized styles are measured before the scene's colours are on them, and finished ones before "
-      "their\n"
-      "effects, which pictures and times are with.\n");
+      "Each variant changes one thing of the style, or a few. `texture` ranks, the less the better: how far the\n"
+      "paint's look is from that of the exemplar where the surface is turned alike. Times are of the guides (with\n"
+      "the acceleration structure) and of the transfer, after a run to warm up of which nothing is kept that a\n"
+      "sequence would keep: they are those of a single picture. Loading, preparing the style and writing are not in\n"
+      "them, and a run of more than 5 s is not repeated. Memory is the peak of a process that makes the one picture,\n"
+      "and is not measured of a .blend, which would be exported for each variant. Everything is measured without\n"
+      "paper, and in the one style, whatever the scene says; colorized styles are measured before the scene's\n"
+      "colours are on them, and finished ones before their effects, which pictures and times are with.\n");
   AddViewOptions(*sub, verb->scene);
   sub->add_option(
          "--frame", verb->setup.frame,
@@ -249,13 +244,14 @@ void AddTradeoffVerb(CLI::App& app, Globals& globals, Action& chosen) {
   AddFinishOptions(*sub, verb->setup.style.finishes, verb->setup.style.finish_measures);
   sub->add_option(
          "--only", verb->setup.only,
-         "these axes alone, as levels,nearest, or ways by name, * stands for any text: 'levels*'; the style itself is "
+         "these axes alone, as levels,nearest, or variants by name, * stands for any text: 'levels*'; the style itself "
+         "is "
          "measured in any case. A name that is no axis of this style and scene lists those that are, of precision, "
          "samples, "
          "resolution, robust, nearest, method, levels, threshold, blend_radius and more")
       ->type_name("AXIS,…")
       ->check(RefuseEmpty);
-  sub->add_flag("--quick", verb->setup.quick, "the small grid: a dozen ways or two");
+  sub->add_flag("--quick", verb->setup.quick, "the small grid: a dozen variants or two");
   sub->add_option("--repeat", verb->setup.repeats, "times to run each, for the median and its spread")
       ->type_name("N")
       ->check(CLI::Range(1, 1000))
@@ -265,7 +261,7 @@ void AddTradeoffVerb(CLI::App& app, Globals& globals, Action& chosen) {
       ->type_name("N")
       ->check(RefuseNegative)
       ->capture_default_str();
-  sub->add_flag("!--no-memory", verb->setup.memory, "do not measure memory, which takes a process for each way");
+  sub->add_flag("!--no-memory", verb->setup.memory, "do not measure memory, which takes a process for each variant");
   sub->add_option("-o,--output", verb->folder,
                   "folder to write to: report.html, chart.svg, tradeoff.csv, tradeoff.json, pictures/*.png; left out: "
                   "the table alone")

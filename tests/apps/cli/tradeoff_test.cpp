@@ -54,11 +54,11 @@ class Tradeoff : public CliTest {
   }
   // The variants' measures without times.
   nlohmann::json WithoutTimes(const CommandResult& result) const {
-    nlohmann::json ways = result.Json()["ways"];
-    for (auto& way : ways) {
-      for (const char* key : {"guides_ms", "transfer_ms", "total_ms", "prepare_ms", "front"}) way.erase(key);
+    nlohmann::json variants = result.Json()["variants"];
+    for (auto& variant : variants) {
+      for (const char* key : {"guides_ms", "transfer_ms", "total_ms", "prepare_ms", "front"}) variant.erase(key);
     }
-    return ways;
+    return variants;
   }
   // Splits options without blanks in them like a shell.
   static Arguments Words(std::string options) {
@@ -81,32 +81,33 @@ TEST_F(Tradeoff, WritesAPageFiguresAndPicturesThatAgree) {
   EXPECT_EQ(json["scene"], "suzanne");
   EXPECT_EQ(json["width"], 96);
   EXPECT_EQ(json["repeats"], 2);
-  ASSERT_EQ(rows.size(), json["ways"].size() + 1);
+  ASSERT_EQ(rows.size(), json["variants"].size() + 1);
   std::map<std::string, std::size_t> column;
   for (std::size_t c = 0; c < rows[0].size(); ++c) column[rows[0][c]] = c;
-  for (std::size_t i = 0; i < json["ways"].size(); ++i) {
-    const auto& way = json["ways"][i];
+  for (std::size_t i = 0; i < json["variants"].size(); ++i) {
+    const auto& variant = json["variants"][i];
     const auto& row = rows[i + 1];
     ASSERT_EQ(row.size(), rows[0].size());
-    EXPECT_EQ(nlohmann::json(row[column["way"]]), way["way"]);
-    EXPECT_EQ(nlohmann::json(row[column["options"]]), way["options"]);
-    EXPECT_EQ(std::stod(row[column["texture"]]), way["texture"].get<double>());
-    EXPECT_EQ(std::stod(row[column["both"]]), way["both"]["mean"].get<double>());
-    EXPECT_EQ(std::stod(row[column["total_ms_median"]]), way["total_ms"]["median"].get<double>());
-    EXPECT_EQ(std::stod(row[column["memory_bytes"]]), way["memory_bytes"].get<double>());
-    EXPECT_GT(way["memory_bytes"].get<double>(), 10e6) << "a process with its libraries";
-    EXPECT_LT(way["memory_bytes"].get<double>(), 4e9);
-    const double both = way["both"]["mean"], parts = double(way["energy"]["mean"]) + double(way["missing"]["mean"]);
+    EXPECT_EQ(nlohmann::json(row[column["variant"]]), variant["variant"]);
+    EXPECT_EQ(nlohmann::json(row[column["options"]]), variant["options"]);
+    EXPECT_EQ(std::stod(row[column["texture"]]), variant["texture"].get<double>());
+    EXPECT_EQ(std::stod(row[column["both"]]), variant["both"]["mean"].get<double>());
+    EXPECT_EQ(std::stod(row[column["total_ms_median"]]), variant["total_ms"]["median"].get<double>());
+    EXPECT_EQ(std::stod(row[column["memory_bytes"]]), variant["memory_bytes"].get<double>());
+    EXPECT_GT(variant["memory_bytes"].get<double>(), 10e6) << "a process with its libraries";
+    EXPECT_LT(variant["memory_bytes"].get<double>(), 4e9);
+    const double both = variant["both"]["mean"],
+                 parts = double(variant["energy"]["mean"]) + double(variant["missing"]["mean"]);
     EXPECT_NEAR(both, parts, 1e-9 * (1.0 + both));
-    const double lower = way["total_ms"]["lower_quartile"], median = way["total_ms"]["median"],
-                 upper = way["total_ms"]["upper_quartile"];
+    const double lower = variant["total_ms"]["lower_quartile"], median = variant["total_ms"]["median"],
+                 upper = variant["total_ms"]["upper_quartile"];
     EXPECT_LE(lower, median);
     EXPECT_LE(median, upper);
-    const auto picture = ReadPicture(At("out/deep/pictures") / way["picture"].get<std::string>());
-    ASSERT_TRUE(picture.ok()) << way["picture"];
+    const auto picture = ReadPicture(At("out/deep/pictures") / variant["picture"].get<std::string>());
+    ASSERT_TRUE(picture.ok()) << variant["picture"];
     EXPECT_EQ(picture->width, 96);
     EXPECT_EQ(picture->height, 54);
-    EXPECT_NE(page.find(way["way"].get<std::string>()), std::string::npos);
+    EXPECT_NE(page.find(variant["variant"].get<std::string>()), std::string::npos);
   }
   for (const auto& entry : fs::recursive_directory_iterator(At("out"))) {
     EXPECT_FALSE(entry.path().filename().string().starts_with(".")) << entry.path() << " is a temporary file";
@@ -121,21 +122,21 @@ TEST_F(Tradeoff, OptionsRepeatThePictureByteForByte) {
                                    "--seed", "3", "--aa", "2", "--normal-frame", "eye", "--raw-normals", "-o", "out"}));
   const nlohmann::json json = nlohmann::json::parse(Bytes("out/tradeoff.json"));
   int repeated = 0;
-  for (const auto& way : json["ways"]) {
-    const std::string options = way["options"], name = way["way"];
+  for (const auto& variant : json["variants"]) {
+    const std::string options = variant["options"], name = variant["variant"];
     if (options.empty()) {
-      EXPECT_NE(way["note"], "") << name << " should say why";
+      EXPECT_NE(variant["note"], "") << name << " should say why";
       continue;
     }
     RunOk(With(With({"stylize", Scene("suzanne.glb")}, Words(options)), {"-o", "again.png"}));
-    EXPECT_EQ(Pixels("again.png"), Pixels("out/pictures/" + way["picture"].get<std::string>()))
+    EXPECT_EQ(Pixels("again.png"), Pixels("out/pictures/" + variant["picture"].get<std::string>()))
         << name << ": " << options;
     ++repeated;
   }
   EXPECT_EQ(repeated, 15) << "all but the small table and twice the resolution";
-  const auto large = std::find_if(json["ways"].begin(), json["ways"].end(),
-                                  [](const auto& way) { return way["way"] == "resolution 2"; });
-  ASSERT_NE(large, json["ways"].end());
+  const auto large = std::find_if(json["variants"].begin(), json["variants"].end(),
+                                  [](const auto& variant) { return variant["variant"] == "resolution 2"; });
+  ASSERT_NE(large, json["variants"].end());
   EXPECT_GT((*large)["guide_rms"].get<double>(), 0.0) << "averaged, they are not those of the pixels' centres";
   EXPECT_GT((*large)["guide_flip"].get<double>(), 0.0);
 }
@@ -154,12 +155,13 @@ TEST_F(Tradeoff, OptionsRepeatLightPathsToo) {
                              "--size",     "64x36",
                              "--repeat",   "1",
                              "--no-memory"};
-    const nlohmann::json ways =
-        RunOk(With(With(trade, c.light), {"--only", c.only, "--json", "-o", "out"})).Json()["ways"];
-    EXPECT_EQ(ways.size(), c.only.starts_with("samples") ? 3u : 2u);
-    for (const auto& way : ways) {
-      RunOk(With(With({"stylize", Scene("snail.glb")}, Words(way["options"])), {"-o", "again.png"}));
-      EXPECT_EQ(Pixels("again.png"), Pixels("out/pictures/" + way["picture"].get<std::string>())) << way["options"];
+    const nlohmann::json variants =
+        RunOk(With(With(trade, c.light), {"--only", c.only, "--json", "-o", "out"})).Json()["variants"];
+    EXPECT_EQ(variants.size(), c.only.starts_with("samples") ? 3u : 2u);
+    for (const auto& variant : variants) {
+      RunOk(With(With({"stylize", Scene("snail.glb")}, Words(variant["options"])), {"-o", "again.png"}));
+      EXPECT_EQ(Pixels("again.png"), Pixels("out/pictures/" + variant["picture"].get<std::string>()))
+          << variant["options"];
     }
   }
 }
@@ -168,13 +170,13 @@ TEST_F(Tradeoff, OptionsRepeatLightPathsToo) {
 TEST_F(Tradeoff, AFrameIsThatOfStylize) {
   const Arguments arguments = Small(Scene("toys.glb"), {"--only", "blend_radius 4", "--set", "transfer.jitter_fps=12",
                                                         "--json", "--frame", "31", "--fps", "20", "-o", "out"});
-  const nlohmann::json ways = RunOk(arguments).Json()["ways"];
-  ASSERT_EQ(ways.size(), 2u);
-  for (const auto& way : ways) {
-    Arguments words = Words(way["options"]);
+  const nlohmann::json variants = RunOk(arguments).Json()["variants"];
+  ASSERT_EQ(variants.size(), 2u);
+  for (const auto& variant : variants) {
+    Arguments words = Words(variant["options"]);
     RunOk(With(With({"stylize", Scene("toys.glb")}, words), {"-o", "again.png"}));
-    const auto picture = Pixels("out/pictures/" + way["picture"].get<std::string>());
-    EXPECT_EQ(Pixels("again.png"), picture) << way["options"];
+    const auto picture = Pixels("out/pictures/" + variant["picture"].get<std::string>());
+    EXPECT_EQ(Pixels("again.png"), picture) << variant["options"];
     const auto frame = std::find(words.begin(), words.end(), "--frame");
     ASSERT_NE(frame, words.end());
     *(frame + 1) = "0";
@@ -189,10 +191,11 @@ TEST_F(Tradeoff, AFrameIsThatOfStylize) {
                                                               "2", "--json", "-o", "out"}))
                                   .Json();
   EXPECT_EQ(half["frame"], 2);
-  ASSERT_EQ(half["ways"].size(), 2u);
-  for (const auto& way : half["ways"]) {
-    RunOk(With(With({"stylize", Scene("toys.glb")}, Words(way["options"])), {"-o", "again.png"}));
-    EXPECT_EQ(Pixels("again.png"), Pixels("out/pictures/" + way["picture"].get<std::string>())) << way["options"];
+  ASSERT_EQ(half["variants"].size(), 2u);
+  for (const auto& variant : half["variants"]) {
+    RunOk(With(With({"stylize", Scene("toys.glb")}, Words(variant["options"])), {"-o", "again.png"}));
+    EXPECT_EQ(Pixels("again.png"), Pixels("out/pictures/" + variant["picture"].get<std::string>()))
+        << variant["options"];
   }
   ExpectError(Small(Scene("toys.glb"), {"--frame", "1", "--fps", "0"}), 2, {"--fps 0"});
   ExpectError(Small(Scene("toys.glb"), {"--animation", "walk"}), 2, {"--animation", "--frame"});
@@ -216,19 +219,19 @@ TEST_F(Tradeoff, AnIlluminatedStyleIsComparedByItsLight) {
       "[transfer]\nreference_height = 0\nlevels = 4\npaper = \"#ffeecc\"\n"
       "[[exemplar]]\nimage = \"lit.png\"\nluminance = 0.7\n[[exemplar]]\nimage = \"shade.png\"\nluminance = 0.1\n");
   const CommandResult result = RunOk(Small(Scene("suzanne.glb"), {"--json", "--only", "precision,exact"}));
-  const nlohmann::json ways = result.Json()["ways"];
-  ASSERT_EQ(ways.size(), 4u);
-  EXPECT_EQ(ways[0]["guide_rms"], 0.0) << "suns need no samples: the style's guides are the exact ones";
-  EXPECT_EQ(ways[1]["exact"], true);
-  EXPECT_GT(ways[2]["guide_rms"].get<double>(), 0.0) << "8 bits of luminance";
-  EXPECT_GT(ways[2]["guide_rms"].get<double>(), ways[3]["guide_rms"].get<double>()) << "half floats are finer";
-  EXPECT_NE(ways[0]["options"].get<std::string>().find("transfer.paper="), std::string::npos)
+  const nlohmann::json variants = result.Json()["variants"];
+  ASSERT_EQ(variants.size(), 4u);
+  EXPECT_EQ(variants[0]["guide_rms"], 0.0) << "suns need no samples: the style's guides are the exact ones";
+  EXPECT_EQ(variants[1]["exact"], true);
+  EXPECT_GT(variants[2]["guide_rms"].get<double>(), 0.0) << "8 bits of luminance";
+  EXPECT_GT(variants[2]["guide_rms"].get<double>(), variants[3]["guide_rms"].get<double>()) << "half floats are finer";
+  EXPECT_NE(variants[0]["options"].get<std::string>().find("transfer.paper="), std::string::npos)
       << "measured without paper";
   // ball.glb is lit by a square light, which is sampled.
   const nlohmann::json sampled =
-      RunOk(Small(Scene("ball.glb"), {"--json", "--only", "samples"}, "40x40")).Json()["ways"];
+      RunOk(Small(Scene("ball.glb"), {"--json", "--only", "samples"}, "40x40")).Json()["variants"];
   std::map<std::string, double> rms;
-  for (const auto& way : sampled) rms[way["value"]] = way["guide_rms"];
+  for (const auto& variant : sampled) rms[variant["value"]] = variant["guide_rms"];
   ASSERT_TRUE(rms.count("1") && rms.count("256") && rms.count("1024"));
   EXPECT_GT(rms["1024"], 0.0) << "what the others are compared with has noise of its own";
   EXPECT_LT(rms["1024"], rms["256"]);
@@ -250,10 +253,11 @@ TEST_F(Tradeoff, TheExposureIsGivenOrTold) {
   const auto pictures_of = [&](const Arguments& exposure) {
     const nlohmann::json json =
         RunOk(With(Small(Scene("suzanne.glb"), {"--only", "levels 1", "--json", "-o", "out"}), exposure)).Json();
-    EXPECT_EQ(json["ways"].size(), 2u);
-    for (const auto& way : json["ways"]) {
-      RunOk(With(With({"stylize", Scene("suzanne.glb")}, Words(way["options"])), {"-o", "again.png"}));
-      EXPECT_EQ(Pixels("again.png"), Pixels("out/pictures/" + way["picture"].get<std::string>())) << way["options"];
+    EXPECT_EQ(json["variants"].size(), 2u);
+    for (const auto& variant : json["variants"]) {
+      RunOk(With(With({"stylize", Scene("suzanne.glb")}, Words(variant["options"])), {"-o", "again.png"}));
+      EXPECT_EQ(Pixels("again.png"), Pixels("out/pictures/" + variant["picture"].get<std::string>()))
+          << variant["options"];
     }
     return json;
   };
@@ -286,8 +290,8 @@ TEST_F(Tradeoff, WhatDoesNotFitIsRefusedBeforeItIsTaken) {
   const Arguments huge = Small(Scene("suzanne.glb"), {"--max-memory", "1G", "--only", "levels", "-o", "out"}, "16384");
   const CommandResult result =
       ExpectError(huge, 2,
-                  {"this takes up to ", "guides 7.0 GiB", "reference ", "pictures of all ways ", "energy ",
-                   "--max-memory allows 1.0 GiB", "take a smaller --size, or fewer ways by --only, or allow more"});
+                  {"this takes up to ", "guides 7.0 GiB", "reference ", "pictures of all variants ", "energy ",
+                   "--max-memory allows 1.0 GiB", "take a smaller --size, or fewer variants by --only, or allow more"});
   EXPECT_EQ(result.Error().find("layers"), std::string::npos) << result.Error();
   EXPECT_FALSE(Exists("out"));
   ExpectError(Small(Scene("suzanne.glb"), {"--max-memory", "0"}), 2, {"--max-memory"});
@@ -297,9 +301,9 @@ TEST_F(Tradeoff, WhatDoesNotFitIsRefusedBeforeItIsTaken) {
 TEST_F(Tradeoff, AWayThatCannotBeMadeIsLeftOut) {
   const nlohmann::json json =
       RunOk(Small(Scene("suzanne.glb"), {"--only", "resolution,levels 1", "--json"}, "20000x4")).Json();
-  std::set<std::string> ways;
-  for (const auto& way : json["ways"]) ways.insert(way["way"]);
-  EXPECT_EQ(ways, (std::set<std::string>{"the style", "levels 1", "resolution 0.5", "resolution 0.5 scaled up"}));
+  std::set<std::string> variants;
+  for (const auto& variant : json["variants"]) variants.insert(variant["variant"]);
+  EXPECT_EQ(variants, (std::set<std::string>{"the style", "levels 1", "resolution 0.5", "resolution 0.5 scaled up"}));
   ASSERT_EQ(json["left_out"].size(), 1u) << json["left_out"];
   EXPECT_EQ(json["left_out"][0].get<std::string>().find("resolution 2, as "), 0u) << json["left_out"];
 }
@@ -310,9 +314,9 @@ TEST_F(Tradeoff, PreparingIsToldWithNothingKept) {
   std::map<std::string, double> ms;  // the least, whatever else the machine does
   for (int run = 0; run < 4; ++run) {
     const nlohmann::json report = RunOk(arguments).Json();
-    for (const auto& way : report["ways"]) {
-      const double least = ms.count(way["way"]) ? ms[way["way"]] : 1e9;
-      if (run > 0) ms[way["way"]] = std::min(least, way["prepare_ms"].get<double>());
+    for (const auto& variant : report["variants"]) {
+      const double least = ms.count(variant["variant"]) ? ms[variant["variant"]] : 1e9;
+      if (run > 0) ms[variant["variant"]] = std::min(least, variant["prepare_ms"].get<double>());
     }
   }
   // 256 times as many cells to fill.
@@ -396,7 +400,7 @@ TEST_F(Tradeoff, AFolderIsTakenAgainAndLeftAsItWasFound) {
   RunOk(Small(scene, {"--only", "levels 2", "-o", "out"}));
   EXPECT_EQ(pictures(), (std::set<std::string>{"01-the-style.png", "02-levels-2.png", "04-holiday.png"}));
   // A report that is none names nothing.
-  WriteText("out/tradeoff.json", R"({"ways": [{"picture": "../../mine/lit.png"}, {"picture": 3}, 4]})");
+  WriteText("out/tradeoff.json", R"({"variants": [{"picture": "../../mine/lit.png"}, {"picture": 3}, 4]})");
   RunOk(Small(scene, {"--only", "levels 2", "-o", "out"}));
   EXPECT_TRUE(Exists("mine/lit.png"));
   // Where something is wrong no folder stays that was not there, and every one that was.
@@ -454,7 +458,7 @@ TEST_F(Tradeoff, AReportWithoutRoomLeavesTheOlderOne) {
   EXPECT_EQ(files(), before);
   const CommandResult json = Run(With(arguments, {"--json"}), settings);
   EXPECT_EQ(json.code, 4) << json.err;
-  EXPECT_EQ(json.Json()["ways"].size(), 2u) << json.out;
+  EXPECT_EQ(json.Json()["variants"].size(), 2u) << json.out;
 }
 
 // If killed among its pictures, it leaves no page, table or figures of the older report with them. A pipe without a
@@ -516,7 +520,7 @@ TEST_F(Tradeoff, KnowsFinishingEffects) {
   const CommandResult plain = RunOk(With(Small(Scene("suzanne.glb"), more), {"-o", "plain"}));
   const CommandResult inked =
       RunOk(With(Small(Scene("suzanne.glb"), more), {"-o", "inked", "--finish", "fill", "--finish", "outline"}));
-  const nlohmann::json before = plain.Json()["ways"][0], after = inked.Json()["ways"][0];
+  const nlohmann::json before = plain.Json()["variants"][0], after = inked.Json()["variants"][0];
   for (const char* key : {"texture", "energy", "missing", "guide_degrees"}) EXPECT_EQ(before[key], after[key]) << key;
   EXPECT_TRUE(Contains(after["options"].get<std::string>(), "--finish fill --finish outline")) << after["options"];
   const auto first = ReadPicture(At("plain/pictures/" + before["picture"].get<std::string>()));

@@ -124,18 +124,18 @@ TEST_F(CliBudget, FewerSamplesWhereLightTakesThem) {
   const auto stylize = [&](const char* scene) {
     return Arguments{"stylize", Scene(scene), "--style", "chiaroscuro", "--size", "64x36"};
   };
-  const auto ways_of = [&](const Arguments& command) {
+  const auto variants_of = [&](const Arguments& command) {
     const std::string told = RunOk(With(command, {"--budget-ms", "3600000", "--recalibrate", "-o", "p.png"})).err;
     const std::string words = "measuring up to ";
     const std::size_t at = told.find(words);
     return at == std::string::npos ? 0 : std::stoi(told.substr(at + words.size()));
   };
-  const int ways = ways_of(stylize("suzanne.glb"));
-  EXPECT_GT(ways, 2);
-  EXPECT_EQ(ways_of(stylize("ball.glb")), ways + 1) << "4 samples: pixels choose fewer than 16 already";
-  EXPECT_EQ(ways_of(With(stylize("ball.glb"), {"--samples", "64"})), ways) << "the user has said how many";
+  const int variants = variants_of(stylize("suzanne.glb"));
+  EXPECT_GT(variants, 2);
+  EXPECT_EQ(variants_of(stylize("ball.glb")), variants + 1) << "4 samples: pixels choose fewer than 16 already";
+  EXPECT_EQ(variants_of(With(stylize("ball.glb"), {"--samples", "64"})), variants) << "the user has said how many";
   EXPECT_GT(Budget(stylize("ball.glb"), "3600000").at("measured_runs"), 0) << "--json has times of its own";
-  EXPECT_EQ(Budget(stylize("ball.glb"), "3600000").at("measured_runs"), 0) << "the same ways as before";
+  EXPECT_EQ(Budget(stylize("ball.glb"), "3600000").at("measured_runs"), 0) << "the same variants as before";
   for (const char* const ms : {"0.000001", "8", "3600000"}) {
     const nlohmann::json picked = Budget(stylize("ball.glb"), ms);
     RunOk(With(With(stylize("ball.glb"), Options(picked)), {"-o", "again.png"}));
