@@ -273,7 +273,8 @@ PictureJob JobOf(const StudioState& state, const Catalogue& catalogue, const Sce
   job.key = ToJson(state).dump(-1, ' ', false, json::error_handler_t::replace);  // a file's name may be no UTF-8
   job.scene = scene;
   if (const SceneEntry* entry = catalogue.FindScene(state.scene)) job.scene.scene = entry->file;
-  job.scene.camera = state.camera, job.scene.view = state.view, job.scene.light = state.light;
+  job.scene.camera = state.view ? "" : state.camera;  // the pipeline refuses both
+  job.scene.view = state.view, job.scene.light = state.light;
   job.scene.size = state.size;
   const StyleEntry* const style = catalogue.FindStyle(state.style);
   if (style) job.style.style = style->given;
