@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <thread>
 
+#include "apps/studio/session/busy.h"
 #include "apps/studio/session/session_state.h"
 #include "core/image/hash.h"
 #include "core/io/picture_file.h"
@@ -18,19 +19,6 @@ namespace scumble {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-// Tells the page what takes longer than half a second, five times a second at most.
-std::function<Progress(const std::string&)> BusyReports(EventHub& events) {
-  return [&events](const std::string& label) -> Progress {
-    return [&events, label, next = Clock::now() + std::chrono::milliseconds(500)](double share) mutable {
-      if (Clock::now() >= next) {
-        next = Clock::now() + std::chrono::milliseconds(200);
-        events.Publish("busy", nlohmann::json{{"label", label}, {"share", share}}.dump());
-      }
-      return true;
-    };
-  };
-}
 
 RunContext ContextOf(const RunContext& context, EventHub& events) {
   RunContext ours = context;
