@@ -60,7 +60,8 @@ void AddFilesAround(const StyleEntry& style, bool with_folders, std::vector<std:
 Expected<std::shared_ptr<const StyleFacts>> ReadFacts(const StyleEntry& style) {
   StyleFacts facts;
   SCUMBLE_ASSIGN(facts.values, StyleValues(style.path));
-  SCUMBLE_ASSIGN(const Style read, LoadStyle(style.path));
+  SCUMBLE_ASSIGN(Style read, LoadStyle(style.path));
+  if (!read.unpainted.empty()) read.exemplars.clear();  // a made-up one
   for (const Exemplar& one : read.exemplars) {
     const int width = one.cut ? one.cut->file_width : one.picture.width + 2 * one.margin;
     const int height = one.cut ? one.cut->file_height : one.picture.height + 2 * one.margin;

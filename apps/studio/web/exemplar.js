@@ -55,6 +55,9 @@ export class ExemplarPanel {
     fillSelect(this.select, options, this.chosen);
     byId('exemplar-choice', HTMLElement).hidden = options.length < 2;
     const now = this.current;
+    this.box.hidden = !now;
+    byId('exemplar-none', HTMLElement).hidden = !!now;
+    byId('paint', HTMLButtonElement).disabled = !now;
     const key = now ? `${now.style_id} ${now.file} ${this.chosen}` : '';
     if (key !== this.shown) {
       this.shown = key;
@@ -64,8 +67,12 @@ export class ExemplarPanel {
 
   /** Reads the picture and what the check says of it. The browser asks whether they changed. */
   async load() {
-    const exemplar = this.current;
-    if (!exemplar) return;
+    const exemplar = this.current, here = this.shown;
+    if (!exemplar) {
+      byId('warnings', HTMLElement).hidden = true;
+      this.onShown();
+      return;
+    }
     const query = {style: exemplar.style, exemplar: exemplar.index};
     try {
       const response = await call('GET', withQuery('/api/exemplar', query));
@@ -77,6 +84,7 @@ export class ExemplarPanel {
       this.box.style.aspectRatio = `${bitmap.width} / ${bitmap.height}`;
       this.onShown();
     } catch (error) {
+      if (here === this.shown) this.base.width = this.marks.width = this.base.height = this.marks.height = 1;
       if (!isAbort(error)) this.onError(error);
     }
     await this.check(exemplar.style);
