@@ -152,7 +152,7 @@ HttpResponse Session::State::PostFrame(const HttpRequest& request) {
   HttpResponse answer =
       Frame(moment, request, text("quality", "final"), text("format", "jpeg"), text("show", ""), others);
   if (answer.status != 200 || main.state.scene.empty() || main.state.style.empty()) return answer;
-  const std::vector<StyleEntry> styles = StylesOf(moment.state);
+  const std::vector<StyleEntry> styles = ChosenStyles(moment.state);
   {
     const std::lock_guard lock(mutex);
     constexpr std::size_t kMostCompared = 4;
@@ -178,7 +178,7 @@ HttpResponse Session::State::Pick(const HttpRequest& request) {
   const Expected<int> x = QueryNumber(request, "x", {}), y = QueryNumber(request, "y", {});
   if (!x) return ErrorAnswer(x.error());
   if (!y) return ErrorAnswer(y.error());
-  const StudioState of = Now().state;
+  const Moment of = Now();
   const Expected<Lane::Painted> painted = PaintedWithField();
   if (!painted) return ErrorAnswer(painted.error(), kCannotPaint);
   nlohmann::json pick = PickAt(**painted, *x, *y);
@@ -290,7 +290,7 @@ HttpResponse Session::State::Export(const HttpRequest& request) {
   }
   const Moment moment = Now();
   if (what == "command") {
-    const PictureJob job = JobAt(moment, std::nullopt);
+    const PictureJob job = JobAt(moment, std::nullopt, StylesOf(moment).size() < 2);
     // A budget's choice depends on this machine's moment: the command repeats what was chosen.
     std::vector<std::string> chosen;
     if (job.budget.budget_ms > 0) {

@@ -282,7 +282,7 @@ json ToJson(const StudioState& state) {
           {"budget_ms", state.budget_ms}};
 }
 
-PictureJob JobOf(const StudioState& state, const Catalogue& catalogue, const SceneRequest& scene) {
+PictureJob JobOf(const StudioState& state, const Catalogue& catalogue, const SceneRequest& scene, bool is_alone) {
   PictureJob job;
   job.key = ToJson(state).dump(-1, ' ', false, json::error_handler_t::replace);  // a file's name may be no UTF-8
   job.scene = scene;
@@ -292,8 +292,7 @@ PictureJob JobOf(const StudioState& state, const Catalogue& catalogue, const Sce
   job.scene.size = state.size;
   const StyleEntry* const style = catalogue.FindStyle(state.style);
   if (style) job.style.style = style->given;
-  // With several styles the keys are the first one's alone.
-  const std::string of = state.assignments.empty() ? "" : job.style.style + ":";
+  const std::string of = is_alone ? "" : job.style.style + ":";
   for (const auto& [key, value] : state.keys)
     job.style.sets.push_back(of + key + "=" + TomlText(ForCommand(key, value, style)));
   for (const StudioAssignment& one : state.assignments) {

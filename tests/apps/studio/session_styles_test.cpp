@@ -111,5 +111,31 @@ TEST_F(SessionTest, AStyleWithoutAPaintingIsWhole) {
   }
 }
 
+TEST_F(SessionTest, AScenesOwnStylesAreListedAndKeepTheirKeys) {
+  fs::copy(folder / "mine", folder / "theirs", fs::copy_options::recursive);
+  Write(folder / "theirs" / "style.toml",
+        "[transfer]\nmethod = \"litsphere\"\n[[exemplar]]\nimage = \"art/lit.png\"\n");
+  ASSERT_TRUE(WritePicture(folder / "theirs" / "art" / "lit.png", Ball(1000)).ok());
+  const fs::path scene = folder / "tile.glb";
+  WriteTile(scene, "theirs");
+  Open({(folder / "mine").string()}, scene);
+  const json exemplars = State()["exemplars"];
+  ASSERT_EQ(exemplars.size(), 2u) << exemplars;
+  EXPECT_EQ(exemplars[1]["style"], 1);
+  EXPECT_EQ(exemplars[1]["style_id"], "theirs");
+  const json pick = json::parse(
+      Call("GET", "/api/pick", nullptr, {{"x", std::to_string(kWidth / 2 - 5)}, {"y", std::to_string(kHeight / 2 + 5)}})
+          .body);
+  EXPECT_EQ(pick["style_id"], "theirs") << pick;
+  const std::string before = Frame().body;
+  ASSERT_EQ(Call("PATCH", "/api/state", {{"keys", {{"transfer.scale", 2.0}}}}).status, 200);
+  EXPECT_EQ(PictureOf(Frame().body).rgba, PictureOf(before).rgba) << "the key is of the other style";
+  EXPECT_THAT(Call("POST", "/api/export", {{"what", "command"}}).body, HasSubstr("mine:transfer.scale=2"));
+  // What is assigned wins over what the scene asks for.
+  ASSERT_EQ(Call("PATCH", "/api/state", {{"assignments", json::array({{{"name", "Tile"}, {"style", "mine"}}})}}).status,
+            200);
+  EXPECT_EQ(State()["exemplars"].size(), 1u);
+}
+
 }  // namespace
 }  // namespace scumble
