@@ -177,13 +177,27 @@ FrameFinish FinishOf(const StyleSet& styles, const GuideSet& given, const GuideS
   return finish;
 }
 
+// Guides that are kept may hold layers that earlier requests needed, and a run of its own would not have.
+LayerSet LayersRead(const StyleSet& styles) {
+  LayerSet read = LayersOverTime(styles.finish);
+  for (const Style& style : styles.styles) {
+    if (const Expected<LayerSet> of_style = LayersOverTime(style)) read.Add(*of_style);
+  }
+  return read;
+}
+
 }  // namespace
 
 void MeasureFinishOf(const StyleSet& styles, const GuideSet& guides, const RunContext& context, PictureState& state) {
   if (state.finish_measures || !EverLooksAtMeasures(styles)) return;
   state.finish_measures = styles.options.finish_measures;
   if (state.finish_measures) return;
-  state.finish_measures = MeasureFinish(guides);
+  FinishMeasures measures = MeasureFinish(guides);
+  const FinishMeasures unmeasured;
+  const LayerSet read = LayersRead(styles);
+  if (!read.Has(Layer::kLuminance)) measures.bright = unmeasured.bright;
+  if (!read.Has(Layer::kLpeFull)) measures.full = unmeasured.full;
+  state.finish_measures = measures;
   context.Note("finish: --finish-measures " + MeasuresText(*state.finish_measures) + " repeats what was measured");
 }
 
