@@ -475,6 +475,7 @@ Expected<SceneDescription> Workspace::State::Describe(const SceneRequest& scene,
   description.eye = OrbitOf(sphere, posed->view.camera, double(scene.size.width) / scene.size.height);
   description.files = SceneFiles(scene.scene);
   description.files.insert(description.files.end(), blender.files.begin(), blender.files.end());
+  description.style_requests = SceneStyleRequestsOf(animation ? animation->objects() : names.instances, names);
   for (const auto& [path, stamp] : style_stamps) description.style_files.push_back(path);
   return description;
 }

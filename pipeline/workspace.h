@@ -28,6 +28,7 @@
 #include "pipeline/quality/budget_choice.h"
 #include "pipeline/requests.h"
 #include "pipeline/run_context.h"
+#include "pipeline/style/style_set.h"
 #include "scumble/picture.h"
 
 namespace scumble {
@@ -70,6 +71,7 @@ struct SceneDescription {
   ViewAngles eye;                                        // OrbitOf the camera that the request is seen by
   std::vector<std::string> files;                        // that the scene is read from
   std::vector<std::string> style_files;                  // that the styles of the last Paint were read from
+  SceneStyleRequests style_requests;                     // of the file
 };
 
 class Workspace {

@@ -507,6 +507,7 @@ Expected<std::map<std::string, KeyValue>> StyleValues(const fs::path& path) {
   for (const StyleKey& key : StyleKeys()) values[key.name] = key.Default();
   std::error_code failed;
   const fs::file_status kind = fs::status(path, failed);
+  if (!fs::exists(kind) && IsUnpainted(path.string())) return values["transfer.method"] = path.string(), values;
   if (!fs::exists(kind)) return InputError("cannot read style " + path.string() + ": there is no such file or folder");
   const bool is_picture = !fs::is_directory(kind) && path.extension() != ".toml";
   const fs::path file = fs::is_directory(kind) ? path / "style.toml"

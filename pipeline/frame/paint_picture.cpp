@@ -175,13 +175,21 @@ FrameFinish FinishOf(const StyleSet& styles, const GuideSet& given, const GuideS
   return finish;
 }
 
+LayerSet LayersRead(const StyleSet& styles) {
+  LayerSet read = LayersOverTime(styles.finish);
+  for (const Style& style : styles.styles) {
+    if (const Expected<LayerSet> of_style = LayersOverTime(style)) read.Add(*of_style);
+  }
+  return read;
+}
+
 }  // namespace
 
 void MeasureFinishOf(const StyleSet& styles, const GuideSet& guides, std::optional<int> frame,
                      const RunContext& context, PictureState& state) {
   if (state.finish_measures || !EverLooksAtMeasures(styles)) return;
   state.finish_measures = styles.options.finish_measures;
-  if (!state.finish_measures) state.finish_measures = MeasureAndTell(guides, frame, context);
+  if (!state.finish_measures) state.finish_measures = MeasureAndTell(guides, LayersRead(styles), frame, context);
 }
 
 Expected<Picture> ReadUnderneath(const std::string& file, const std::string& view_layer) {

@@ -153,7 +153,7 @@ Expected<FrameWrite> Finish(const FinishRequest& request, const FrameFiles& file
       [&](const FinishRemark& remark) { state.remarks.Tell(remark, files.frame, files.guides, context); });
   state.remarks.EndFrame();
   if (!state.measures && guides && EverLooksAtMeasures(state.chain))
-    state.measures = MeasureAndTell(*guides, {}, context);
+    state.measures = MeasureAndTell(*guides, guides->layers(), {}, context);
   FinishFrame frame{guides ? &*guides : nullptr, state.measures.value_or(FinishMeasures()), 1.0, request.seed};
   const FrameRate fps = RateFor(request, files.guides);
   frame.frame = files.frame.value_or(0), frame.fps_numerator = fps.numerator, frame.fps_denominator = fps.denominator;
@@ -276,7 +276,7 @@ Expected<RunReport> RunFinish(FinishRequest request, const SequenceListener& lis
       SCUMBLE_ASSIGN(const GuideSet set,
                      ReadGuides(file, ReadOptions(request, state.required, file, camera.At(frame))));
       if (!ShowsSurface(set)) continue;
-      state.measures = MeasureAndTell(set, frame, context);
+      state.measures = MeasureAndTell(set, set.layers(), frame, context);
       return Ok();
     }
     state.measures.emplace();

@@ -266,8 +266,12 @@ std::vector<FinishStep> FinishStepsOf(const std::vector<FinishPass>& passes, con
   return steps;
 }
 
-FinishMeasures MeasureAndTell(const GuideSet& guides, std::optional<int> frame, const RunContext& context) {
-  const FinishMeasures measures = MeasureFinish(guides);
+FinishMeasures MeasureAndTell(const GuideSet& guides, const LayerSet& read, std::optional<int> frame,
+                              const RunContext& context) {
+  FinishMeasures measures = MeasureFinish(guides);
+  const FinishMeasures unmeasured;
+  if (!read.Has(Layer::kLuminance)) measures.bright = unmeasured.bright;
+  if (!read.Has(Layer::kLpeFull)) measures.full = unmeasured.full;
   if (!ShowsSurface(guides)) {
     context.Warn(
         "finish: the picture shows no surface, so neither depths nor light were measured: where it is one of a "

@@ -78,8 +78,11 @@ std::vector<FinishStep> FinishStepsOf(const StyleSet& styles, const GuideSet& gu
 std::vector<FinishStep> FinishStepsOf(const std::vector<FinishPass>& passes, const Size& size, const GuideSet* guides,
                                       const TellFinish& tell);
 
-// MeasureFinish, and a note of what repeats it; a warning where the guides show no surface. `frame`: of a sequence.
-FinishMeasures MeasureAndTell(const GuideSet& guides, std::optional<int> frame, const RunContext& context);
+// MeasureFinish of the layers in `read`, and a note of what repeats it; a warning where the guides show no surface.
+// Guides may hold other layers, which earlier requests needed: a run of its own would not have them. `frame`: of a
+// sequence.
+FinishMeasures MeasureAndTell(const GuideSet& guides, const LayerSet& read, std::optional<int> frame,
+                              const RunContext& context);
 
 // The warning of a sequence in which no frame shows a surface. `options`: those that give what was to be measured.
 std::string NothingToMeasure(const std::vector<int>& frames, const std::string& options);

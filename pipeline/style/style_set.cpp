@@ -147,6 +147,18 @@ SceneStyleRequests SceneStyleRequestsOf(const GuideSet& guides) {
   return requests;
 }
 
+std::vector<std::string> StylesAskedFor(const SceneStyleRequests& requests, std::span<const std::string> patterns) {
+  std::vector<std::string> styles;
+  for (const auto* const list : {&requests.objects, &requests.materials}) {
+    for (const auto& [name, style] : *list) {
+      const bool is_assigned = std::any_of(patterns.begin(), patterns.end(),
+                                           [&](const std::string& pattern) { return FitsPattern(name, pattern); });
+      if (!is_assigned && style != kRendered && style != kCatcher) styles.push_back(style);
+    }
+  }
+  return styles;
+}
+
 LayerSet StyleSet::LayersOfNames(const SceneStyleRequests& requests) const {
   const bool asked = options.scene_styles && (!requests.objects.empty() || !requests.materials.empty());
   return asked || !assigned.empty() ? LayerSet{Layer::kObject, Layer::kMaterial} : LayerSet();

@@ -61,6 +61,10 @@ struct SceneStyleRequests {
 SceneStyleRequests SceneStyleRequestsOf(std::span<const Instance> instances, const Scene& scene);
 SceneStyleRequests SceneStyleRequestsOf(const GuideSet& guides);
 
+// The names of the styles that StyleLayers opens for these requests, in its order, where `patterns` are those of
+// --assign.
+std::vector<std::string> StylesAskedFor(const SceneStyleRequests& requests, std::span<const std::string> patterns);
+
 // Opens the styles that are asked for, unless --assign decides or StyleRequest::scene_styles is off. Returns the layers
 // that the user's styles and these read, in any frame. Paths are relative to the folder of `file`, the scene or guide
 // file that asks. A kInput error names the object.

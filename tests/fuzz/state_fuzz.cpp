@@ -43,7 +43,7 @@ std::vector<std::string> WordsOf(const std::string& line) {
 }
 
 void CheckCommand(const StudioState& state) {
-  const std::string line = CommandOf(JobOf(state, SmallCatalogue(), SceneRequest()));
+  const std::string line = CommandOf(JobOf(state, SmallCatalogue(), SceneRequest(), false));
   SCUMBLE_CHECK(line.find('\0') == line.npos);
   const std::vector<std::string> words = WordsOf(line);
   SCUMBLE_CHECK(words.front() == "scumble");

@@ -229,6 +229,20 @@ TEST(Workspace, AGivenExposureIsThatOfItsRequestAlone) {
   EXPECT_EQ(Painted(workspace, SceneOf("suzanne"), StyleOf("chiaroscuro")).rgba, measured.rgba);
 }
 
+// Also the settings that a picture's file records, of guides that hold more layers by then.
+TEST(Workspace, MeasuresForAFinishAreThoseOfARunOfItsOwn) {
+  const auto settings = [](Workspace& workspace, const std::string& finish) {
+    StyleRequest style = StyleOf("oil");
+    style.finishes = {finish};
+    const auto painted = workspace.Paint(SceneOf("ball"), style, {});
+    EXPECT_TRUE(painted) << painted.error().message;
+    return painted ? painted->write.settings : "";
+  };
+  Workspace used(Context()), fresh(Context());
+  settings(used, "comic");
+  EXPECT_EQ(settings(used, "depth"), settings(fresh, "depth"));
+}
+
 // A triangle before the camera, that asks for a style.
 void WriteSceneWithStyle(const fs::path& file, const std::string& style) {
   GltfBuilder b;

@@ -66,7 +66,7 @@ std::string Catalogue::AddScene(const std::string& file, bool bundled) {
 std::string Catalogue::AddStyle(const std::string& given, const fs::path& path, bool bundled) {
   for (const StyleEntry& entry : styles) {
     std::error_code failed;
-    if (fs::equivalent(entry.path, path, failed)) return entry.id;
+    if (entry.path == path || fs::equivalent(entry.path, path, failed)) return entry.id;
   }
   fs::path named = path.filename() == "style.toml" ? fs::absolute(path).parent_path() : path;
   if (!named.has_filename()) named = named.parent_path();  // a folder with a slash at its end

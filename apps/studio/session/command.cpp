@@ -29,11 +29,8 @@ class CommandLine {
 void AddScene(const SceneRequest& scene, CommandLine& line) {
   const SceneRequest usual;
   line.Option("--size", SizeToText(scene.size));
-  if (scene.view) {
-    line.Option("--view", ViewToText(*scene.view));
-  } else {
-    line.Changed("--camera", scene.camera, usual.camera);
-  }
+  if (scene.view) line.Option("--view", ViewToText(*scene.view));
+  line.Changed("--camera", scene.camera, usual.camera);
   if (scene.light) line.Option("--light", LightToText(*scene.light));
   line.Changed("--aa", scene.aa, usual.aa);
   if (scene.normal_frame != usual.normal_frame) line.Option("--normal-frame", "eye");
@@ -55,6 +52,7 @@ std::string CommandOf(const PictureJob& job, const std::vector<std::string>& cho
   CommandLine line("scumble stylize");
   line.Word(job.scene.scene);
   line.Option("--style", job.style.style);
+  for (const std::string& word : chosen) line.Word(word);  // a later --set of the style's keys wins over it
   for (const std::string& set : job.style.sets) line.Option("--set", set);
   for (const std::string& assigned : job.style.assigned) line.Option("--assign", assigned);
   for (const std::string& finish : job.style.finishes) line.Option("--finish", finish);
@@ -63,7 +61,6 @@ std::string CommandOf(const PictureJob& job, const std::vector<std::string>& cho
   if (job.picture.fps) line.Option("--fps", FrameRateToText(*job.picture.fps));
   line.Changed("--seed", job.picture.seed, PictureRequest().seed);
   if (job.budget.quality) line.Option("--quality", QualityNames()[std::size_t(*job.budget.quality)]);
-  for (const std::string& word : chosen) line.Word(word);
   line.Option("-o", "picture.png");
   return line.text();
 }

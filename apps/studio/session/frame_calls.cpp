@@ -152,7 +152,7 @@ HttpResponse Session::State::PostFrame(const HttpRequest& request) {
   HttpResponse answer =
       Frame(moment, request, text("quality", "final"), text("format", "jpeg"), text("show", ""), others);
   if (answer.status != 200 || main.state.scene.empty() || main.state.style.empty()) return answer;
-  const std::vector<StyleEntry> styles = StylesOf(moment.state);
+  const std::vector<StyleEntry> styles = ChosenStyles(moment.state);
   {
     const std::lock_guard lock(mutex);
     constexpr std::size_t kMostCompared = 4;
@@ -178,7 +178,7 @@ HttpResponse Session::State::Pick(const HttpRequest& request) {
   const Expected<int> x = QueryNumber(request, "x", {}), y = QueryNumber(request, "y", {});
   if (!x) return ErrorAnswer(x.error());
   if (!y) return ErrorAnswer(y.error());
-  const StudioState of = Now().state;
+  const Moment of = Now();
   const Expected<Lane::Painted> painted = PaintedWithField();
   if (!painted) return ErrorAnswer(painted.error(), kCannotPaint);
   nlohmann::json pick = PickAt(**painted, *x, *y);
@@ -246,12 +246,14 @@ HttpResponse Session::State::Thumbnail(const HttpRequest& request) {
   const StyleEntry* const style = style_id == request.query.end() ? nullptr : known.FindStyle(style_id->second);
   if (!scene && !style) return ErrorAnswer(InputError("there is no scene or style of this name"), 404);
   std::string key = scene ? "scene " + scene->id : "style " + style->id;
-  // A style's own thumbnail, or its first painting, for which the style is read.
+  // A style's own thumbnail, or its first painting, for which the style is read, or a scene in a style that has none.
+  bool is_unpainted = false;
   std::error_code failed;
   fs::path file = style && !style->toml().empty() ? style->toml().parent_path() / "thumbnail.png" : fs::path();
   if (style && !fs::exists(file, failed)) {
     const Expected<std::shared_ptr<const StyleFacts>> read = FactsOf(*style);
-    file = read && !(*read)->exemplars.empty() ? fs::path((*read)->exemplars.front().file) : fs::path();
+    is_unpainted = read && (*read)->exemplars.empty();
+    file = read && !is_unpainted ? fs::path((*read)->exemplars.front().file) : style->toml();
   }
   if (style) key += StampOf(file.string());
   {
@@ -260,7 +262,11 @@ HttpResponse Session::State::Thumbnail(const HttpRequest& request) {
     if (found != thumbnails.end()) return {200, "image/png", found->second, {{"ETag", EtagOf(found->second)}}};
   }
   Expected<Picture> picture = InputError("there is no thumbnail");
-  if (style) {
+  if (is_unpainted) {
+    const SceneEntry* shown = known.FindScene("suzanne");
+    if (!shown && !known.scenes.empty()) shown = &known.scenes.front();
+    if (shown && !IsBlenderScene(shown->file)) picture = DrawThumbnail(*shown, *style, context);
+  } else if (style) {
     if (!file.empty()) picture = ReadPicture(file);
   } else if (!IsBlenderScene(scene->file)) {
     const StyleEntry* paint = known.FindStyle("oil");
@@ -284,7 +290,7 @@ HttpResponse Session::State::Export(const HttpRequest& request) {
   }
   const Moment moment = Now();
   if (what == "command") {
-    const PictureJob job = JobAt(moment, std::nullopt);
+    const PictureJob job = JobAt(moment, std::nullopt, StylesOf(moment).size() < 2);
     // A budget's choice depends on this machine's moment: the command repeats what was chosen.
     std::vector<std::string> chosen;
     if (job.budget.budget_ms > 0) {

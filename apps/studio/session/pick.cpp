@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/image/guides.h"
+#include "core/style/style_keys.h"
 #include "transfer/field/source_field.h"
 #include "transfer/frame/style_map.h"
 
@@ -27,10 +28,15 @@ struct FieldView {
     return IsPainted(a) && IsPainted(b) && field.x[b] - field.x[a] == dx && field.y[b] - field.y[a] == dy &&
            field.exemplar[a] == field.exemplar[b] && StyleAt(a) == StyleAt(b);
   }
+  const FieldStyle& FieldStyleAt(std::size_t i) const { return painted.field_styles[std::size_t(StyleAt(i))]; }
+  const FieldExemplar& ExemplarAt(std::size_t i) const {
+    const std::vector<FieldExemplar>& exemplars = FieldStyleAt(i).exemplars;
+    return exemplars[std::min<std::size_t>(field.exemplar[i], exemplars.size() - 1)];
+  }
   // In pixels of the exemplar's file.
   std::array<double, 2> SourceAt(std::size_t i) const {
-    const FieldStyle& style = painted.field_styles[std::size_t(StyleAt(i))];
-    const FieldExemplar& from = style.exemplars[std::min<std::size_t>(field.exemplar[i], style.exemplars.size() - 1)];
+    const FieldStyle& style = FieldStyleAt(i);
+    const FieldExemplar& from = ExemplarAt(i);
     return {from.left + (field.x[i] + 0.5) * from.width / style.width,
             from.top + (field.y[i] + 0.5) * from.height / style.height};
   }
@@ -112,6 +118,7 @@ nlohmann::json PickAt(const PaintedFrame& frame, int x, int y) {
   if (!view.IsPainted(i)) return pick;
   pick["covered"] = true;
   pick["style"] = view.StyleAt(i);
+  if (IsUnpainted(view.ExemplarAt(i).file)) return pick;  // it is made up
   pick["exemplar"] = int(view.field.exemplar[i]);
   pick["source"] = view.SourceAt(i);
   pick["level"] = int(view.field.level[i]);

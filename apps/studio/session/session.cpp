@@ -7,30 +7,19 @@
 #include <filesystem>
 #include <thread>
 
+#include "apps/studio/session/busy.h"
 #include "apps/studio/session/session_state.h"
 #include "core/image/hash.h"
 #include "core/io/picture_file.h"
 #include "core/style/style_file.h"
 #include "pipeline/file_stamp.h"
 #include "pipeline/scene/blender_scene.h"
+#include "pipeline/style/style_locations.h"
 
 namespace scumble {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-// Tells the page what takes longer than half a second, five times a second at most.
-std::function<Progress(const std::string&)> BusyReports(EventHub& events) {
-  return [&events](const std::string& label) -> Progress {
-    return [&events, label, next = Clock::now() + std::chrono::milliseconds(500)](double share) mutable {
-      if (Clock::now() >= next) {
-        next = Clock::now() + std::chrono::milliseconds(200);
-        events.Publish("busy", nlohmann::json{{"label", label}, {"share", share}}.dump());
-      }
-      return true;
-    };
-  };
-}
 
 RunContext ContextOf(const RunContext& context, EventHub& events) {
   RunContext ours = context;
@@ -72,7 +61,8 @@ void AddFilesAround(const StyleEntry& style, bool with_folders, std::vector<std:
 Expected<std::shared_ptr<const StyleFacts>> ReadFacts(const StyleEntry& style) {
   StyleFacts facts;
   SCUMBLE_ASSIGN(facts.values, StyleValues(style.path));
-  SCUMBLE_ASSIGN(const Style read, LoadStyle(style.path));
+  SCUMBLE_ASSIGN(Style read, LoadStyle(style.path));
+  if (!read.unpainted.empty()) read.exemplars.clear();  // a made-up one
   for (const Exemplar& one : read.exemplars) {
     const int width = one.cut ? one.cut->file_width : one.picture.width + 2 * one.margin;
     const int height = one.cut ? one.cut->file_height : one.picture.height + 2 * one.margin;
@@ -105,8 +95,8 @@ Catalogue Session::State::KnownCatalogue() {
   return catalogue;
 }
 
-PictureJob Session::State::JobAt(const Moment& moment, std::optional<Explanation> show) {
-  PictureJob job = JobOf(moment.state, KnownCatalogue(), options.scene);
+PictureJob Session::State::JobAt(const Moment& moment, std::optional<Explanation> show, bool is_alone) {
+  PictureJob job = JobOf(moment.state, KnownCatalogue(), options.scene, is_alone);
   job.key += fmt::format(" generation {}", moment.generation);
   if (show) job.key += fmt::format(" show {}", int(*show));
   job.picture.show = show;
@@ -163,7 +153,7 @@ Expected<std::shared_ptr<const StyleFacts>> Session::State::FactsOf(const StyleE
   return kept;
 }
 
-std::vector<StyleEntry> Session::State::StylesOf(const StudioState& of) {
+std::vector<StyleEntry> Session::State::ChosenStyles(const StudioState& of) {
   const Catalogue known = KnownCatalogue();
   std::vector<StyleEntry> styles;
   const auto add = [&](const std::string& id) {
@@ -176,12 +166,32 @@ std::vector<StyleEntry> Session::State::StylesOf(const StudioState& of) {
   return styles;
 }
 
+std::vector<StyleEntry> Session::State::StylesOf(const Moment& moment) {
+  std::vector<StyleEntry> styles = ChosenStyles(moment.state);
+  if (moment.state.scene.empty()) return styles;
+  const Expected<SceneDescription> described = Describe(moment);
+  if (!described) return styles;
+  std::vector<std::string> patterns;
+  for (const StudioAssignment& one : moment.state.assignments) patterns.push_back(one.name);
+  const std::lock_guard lock(mutex);
+  const SceneEntry* const scene = catalogue.FindScene(moment.state.scene);
+  for (const std::string& name : StylesAskedFor(described->style_requests, patterns)) {
+    const auto path = FindStyle(name, context, std::filesystem::path(scene->file).parent_path());
+    if (!path) continue;  // the picture's error says so
+    const std::string id = catalogue.AddStyle(path->string(), *path, IsBundledStyle(*path, context));
+    const bool is_there = std::any_of(styles.begin(), styles.end(), [&](auto& style) { return style.id == id; });
+    if (!is_there) styles.push_back(*catalogue.FindStyle(id));
+  }
+  return styles;
+}
+
 nlohmann::json Session::State::StateJson() {
   const Moment moment = Now();
   nlohmann::json json = ToJson(moment.state);
   json["revision"] = moment.revision;
   json["run"] = run_id, json["first"] = first,
   json["as_started"] = first["options"].get<std::string>() == HashOf(moment.state);
+  const std::vector<StyleEntry> styles = StylesOf(moment);  // first: the scene's come into the catalogue
   const Catalogue known = KnownCatalogue();
   json["scenes"] = json["styles"] = json["finishes"] = json["exemplars"] = nlohmann::json::array();
   for (const SceneEntry& scene : known.scenes) {
@@ -199,7 +209,7 @@ nlohmann::json Session::State::StateJson() {
   std::optional<Error> found;
   int index = 0;
   json["file_keys"] = nlohmann::json::object();
-  for (const StyleEntry& style : StylesOf(moment.state)) {
+  for (const StyleEntry& style : styles) {
     const auto of = FactsOf(style);
     if (!of) found = of.error();
     for (std::size_t i = 0; of && i < (*of)->exemplars.size(); ++i) {
@@ -277,7 +287,7 @@ void Session::State::WatchFilesOf(const Moment& moment, std::chrono::system_cloc
   const PictureJob job = JobAt(moment, std::nullopt);
   std::string belongs = fmt::format("{}\n{}\n{}\n{} {}", job.scene.scene, job.style.style,
                                     fmt::join(job.style.assigned, "\n"), moment.generation, is_painted);
-  std::vector<StyleEntry> styles = StylesOf(moment.state);
+  std::vector<StyleEntry> styles = ChosenStyles(moment.state);
   {
     const std::lock_guard lock(mutex);
     for (const StyleEntry& style : compared) belongs += "\n" + style.id, styles.push_back(style);

@@ -71,13 +71,15 @@ struct Session::State {
 
   Moment Now();
   Catalogue KnownCatalogue();
-  PictureJob JobAt(const Moment& moment, std::optional<Explanation> show);
+  PictureJob JobAt(const Moment& moment, std::optional<Explanation> show, bool is_alone = false);
   // A .blend is exported for each workspace: it has one.
   Lane& LaneOf(Lane& wanted, const PictureJob& job);
   Expected<SceneDescription> Describe(const Moment& moment);
   Expected<std::shared_ptr<const StyleFacts>> FactsOf(const StyleEntry& style);
-  // The styles of a picture in the order of their indices: the first one and those of assignments, each once.
-  std::vector<StyleEntry> StylesOf(const StudioState& of);
+  // The styles of a picture in the order of their indices, each once: the first one, those of assignments, and those
+  // that the scene asks for. ChosenStyles leaves these out and reads no scene.
+  std::vector<StyleEntry> ChosenStyles(const StudioState& of);
+  std::vector<StyleEntry> StylesOf(const Moment& moment);
   nlohmann::json StateJson();
 
   // Replaces the state; `why` is for the page.

@@ -54,8 +54,21 @@ Expected<KeyValue> KeyValueOf(const StyleKey& key, const json& value) {
   return WrongField("keys." + key.name, "a number, a text, true, false or null");
 }
 
+// A page names files below the style's folder alone.
+bool StaysInFolder(const std::filesystem::path& name) {
+  return name.is_relative() && std::find(name.begin(), name.end(), "..") == name.end();
+}
+
+// As --set takes it: files count from the folder of the style's own.
+KeyValue ForCommand(const std::string& key, const KeyValue& value, const StyleEntry* style) {
+  const auto* text = std::get_if<std::string>(&value);
+  const bool is_file = FindStyleKey(key)->kind == KeyKind::kFile && text && !text->empty() && text->front() != '#';
+  return is_file && style ? KeyValue((style->toml().parent_path() / *text).string()) : value;
+}
+
 Status PatchKeys(StudioState& state, const json& value, const Catalogue& catalogue) {
   if (!value.is_object()) return WrongField("keys", "an object of keys and values");
+  const StyleEntry* const entry = catalogue.FindStyle(state.style);
   for (const auto& [name, given] : value.items()) {
     const StyleKey* const key = FindStyleKey(name);
     if (!key) return WrongField("keys", "keys of style.toml; there is none called '" + name + "'");
@@ -65,13 +78,14 @@ Status PatchKeys(StudioState& state, const json& value, const Catalogue& catalog
     }
     SCUMBLE_ASSIGN(const KeyValue wanted, KeyValueOf(*key, given));
     if (key->kind == KeyKind::kFile) {
-      // A page names no files: what stands in the style's own file is kept, and a colour can be given.
       const auto* text = std::get_if<std::string>(&wanted);
-      if (!text || (!text->empty() && text->front() != '#'))
-        return WrongField("keys." + name, "a colour, as \"#f4efe6\"");
+      const bool names_file = text && !text->empty() && text->front() != '#';
+      const bool has_file = entry && !entry->toml().empty();
+      if (!text || (names_file && !(has_file && StaysInFolder(*text)))) {
+        return WrongField("keys." + name, "a colour, as \"#f4efe6\", or a picture in the folder of the style's file");
+      }
     }
     Style trial;
-    const StyleEntry* const entry = catalogue.FindStyle(state.style);
     const Status set = key->set(trial, wanted, entry ? entry->toml().parent_path() : std::filesystem::path());
     if (!set) return Error{set.error().kind, name + ": " + set.error().message};
     state.keys[name] = wanted;
@@ -268,18 +282,19 @@ json ToJson(const StudioState& state) {
           {"budget_ms", state.budget_ms}};
 }
 
-PictureJob JobOf(const StudioState& state, const Catalogue& catalogue, const SceneRequest& scene) {
+PictureJob JobOf(const StudioState& state, const Catalogue& catalogue, const SceneRequest& scene, bool is_alone) {
   PictureJob job;
   job.key = ToJson(state).dump(-1, ' ', false, json::error_handler_t::replace);  // a file's name may be no UTF-8
   job.scene = scene;
   if (const SceneEntry* entry = catalogue.FindScene(state.scene)) job.scene.scene = entry->file;
-  job.scene.camera = state.camera, job.scene.view = state.view, job.scene.light = state.light;
+  job.scene.camera = state.view ? "" : state.camera;  // the pipeline refuses both
+  job.scene.view = state.view, job.scene.light = state.light;
   job.scene.size = state.size;
   const StyleEntry* const style = catalogue.FindStyle(state.style);
   if (style) job.style.style = style->given;
-  // With several styles the keys are the first one's alone.
-  const std::string of = state.assignments.empty() ? "" : job.style.style + ":";
-  for (const auto& [key, value] : state.keys) job.style.sets.push_back(of + key + "=" + TomlText(value));
+  const std::string of = is_alone ? "" : job.style.style + ":";
+  for (const auto& [key, value] : state.keys)
+    job.style.sets.push_back(of + key + "=" + TomlText(ForCommand(key, value, style)));
   for (const StudioAssignment& one : state.assignments) {
     if (const StyleEntry* entry = catalogue.FindStyle(one.style)) {
       job.style.assigned.push_back(one.name + "=" + entry->given);

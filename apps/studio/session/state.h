@@ -51,7 +51,8 @@ nlohmann::json ToJson(const StudioState& state);
 nlohmann::json ToJson(const ViewAngles& view);
 
 // What the state asks the pipeline for. `scene` is the command line's, of which the state replaces what it names.
-PictureJob JobOf(const StudioState& state, const Catalogue& catalogue, const SceneRequest& scene);
+// `is_alone`: no other style paints, so that the keys need not say which style they are of.
+PictureJob JobOf(const StudioState& state, const Catalogue& catalogue, const SceneRequest& scene, bool is_alone);
 
 // "scumble stylize …" that makes the same bytes, as a shell takes it.
 // A budget stands there as the options that it `chose`.

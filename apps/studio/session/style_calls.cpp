@@ -33,7 +33,7 @@ Expected<ExemplarFile> Session::State::ExemplarOf(const HttpRequest& request, bo
   if (!of_first_style) {
     SCUMBLE_ASSIGN(style, QueryNumber(request, "style", 0));
   }
-  const std::vector<StyleEntry> styles = StylesOf(Now().state);
+  const std::vector<StyleEntry> styles = StylesOf(Now());
   if (style < 0 || std::size_t(style) >= styles.size()) return UsageError("style: there is none of this number");
   SCUMBLE_ASSIGN(const std::shared_ptr<const StyleFacts> of, FactsOf(styles[std::size_t(style)]));
   if (index < 0 || std::size_t(index) >= of->exemplars.size()) {
@@ -62,7 +62,7 @@ HttpResponse Session::State::ExemplarPicture(const HttpRequest& request) {
 
 HttpResponse Session::State::Check(const HttpRequest& request) {
   const Moment moment = Now();
-  const std::vector<StyleEntry> styles = StylesOf(moment.state);
+  const std::vector<StyleEntry> styles = StylesOf(moment);
   const Expected<int> index = QueryNumber(request, "style", 0);
   if (!index) return ErrorAnswer(index.error());
   if (*index < 0 || std::size_t(*index) >= styles.size()) {
@@ -71,9 +71,7 @@ HttpResponse Session::State::Check(const HttpRequest& request) {
   StyleRequest style;
   style.style = styles[std::size_t(*index)].given;
   if (*index == 0) {
-    StudioState alone = moment.state;
-    alone.assignments.clear();
-    style.sets = JobOf(alone, KnownCatalogue(), options.scene).style.sets;
+    style.sets = JobOf(moment.state, KnownCatalogue(), options.scene, true).style.sets;
   }
   const std::string key = fmt::format("{} {}\n{}", moment.generation, style.style, fmt::join(style.sets, "\n"));
   {
@@ -85,6 +83,7 @@ HttpResponse Session::State::Check(const HttpRequest& request) {
   if (!checked) return ErrorAnswer(checked.error(), kUnreadable);
   nlohmann::json warnings = nlohmann::json::array();
   for (const FoundFault& found : checked->faults) {
+    if (!checked->style.unpainted.empty()) break;  // its exemplar is made up
     warnings.push_back({{"image", fs::path(found.image).filename().string()},
                         {"code", found.fault.code},
                         {"is_mistake", found.fault.weight == PaintFault::Weight::kMistake},

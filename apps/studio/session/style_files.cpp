@@ -1,12 +1,11 @@
 #include "apps/studio/session/style_files.h"
 
-#include <fmt/format.h>
-
 #include <system_error>
 
 #include "core/io/file/atomic_file.h"
 #include "core/style/style_edit.h"
 #include "core/style/style_file.h"
+#include "pipeline/style/finish_files.h"
 
 namespace scumble {
 namespace {
@@ -32,25 +31,44 @@ Status CheckName(const std::string& name) {
       "digit or _: give another name");
 }
 
-// The pictures and guides that the style reads, at the same places below the new folder.
-Expected<std::vector<fs::path>> FilesOf(const StyleEntry& style) {
-  SCUMBLE_ASSIGN(const Style read, LoadStyle(style.path));
+// The files that values of transfer.paper name, below `folder`.
+void AddPaper(const KeyValue& value, const fs::path& folder, std::vector<fs::path>& files) {
+  const auto* text = std::get_if<std::string>(&value);
+  if (text && !text->empty() && text->front() != '#') files.push_back(folder / *text);
+}
+
+// The files that the style reads with these keys, at one frame or another.
+Expected<std::vector<fs::path>> FilesOf(const StyleEntry& style, const std::map<std::string, KeyValue>& keys) {
+  constexpr const char* kPaper = "transfer.paper";
+  SCUMBLE_ASSIGN(Style read, LoadStyle(style.path));
   SCUMBLE_ASSIGN(const auto values, StyleValues(style.path));
   std::vector<fs::path> files;
+  const fs::path folder = style.toml().parent_path();
+  AddPaper(values.at(kPaper), folder, files);
+  if (const auto given = keys.find(kPaper); given != keys.end()) AddPaper(given->second, folder, files);
+  for (const StyleTrack& track : read.tracks) {
+    if (track.name != kPaper) continue;
+    for (const StyleTrack::Key& key : track.keys) AddPaper(key.value, track.folder, files);
+  }
+  for (const auto& names : {scumble::FilesOf(read.finish), MaskFilesOf(read.finish)}) {
+    files.insert(files.end(), names.begin(), names.end());
+  }
+  if (!read.unpainted.empty()) {
+    // A method without a painting leaves out those that the file names.
+    auto painted = LoadStyle(style.path, {"transfer.method=litsphere"});
+    read.exemplars = painted ? std::move(painted->exemplars) : std::vector<Exemplar>();
+  }
   for (const Exemplar& one : read.exemplars) {
     files.push_back(one.name);
     if (!one.guides_file.empty()) files.push_back(one.guides_file);
   }
-  const auto paper = values.find("transfer.paper");
-  const auto* text = paper == values.end() ? nullptr : std::get_if<std::string>(&paper->second);
-  if (text && !text->empty() && text->front() != '#') files.push_back(style.toml().parent_path() / *text);
   return files;
 }
 
-Status CopyStyle(const StyleEntry& style, const fs::path& to) {
+Status CopyStyle(const StyleEntry& style, const std::map<std::string, KeyValue>& keys, const fs::path& to) {
   std::error_code failed;
   const fs::path toml = style.toml(), from = fs::absolute(toml.empty() ? style.path : toml).parent_path();
-  SCUMBLE_ASSIGN(const std::vector<fs::path> files, FilesOf(style));
+  SCUMBLE_ASSIGN(const std::vector<fs::path> files, FilesOf(style, keys));
   for (const fs::path& file : files) {
     const fs::path place = fs::absolute(file).lexically_normal().lexically_relative(from.lexically_normal());
     if (place.empty() || *place.begin() == "..") {
@@ -73,7 +91,10 @@ Expected<std::string> StyleText(const StyleEntry& style, const std::map<std::str
   const fs::path file = style.toml();
   std::string text;
   if (file.empty()) {
-    text = fmt::format("[[exemplar]]\nimage = {}\n", TomlText(KeyValue(style.path.filename().string())));
+    const std::string name = style.path.filename().string();
+    std::error_code failed;
+    const bool is_method = IsUnpainted(name) && !fs::exists(style.path, failed);
+    text = (is_method ? "[transfer]\nmethod = " : "[[exemplar]]\nimage = ") + TomlText(KeyValue(name)) + "\n";
   } else {
     SCUMBLE_ASSIGN(const std::vector<std::byte> bytes, ReadWholeFile(file, kMaxStyleBytes));
     text.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
@@ -106,7 +127,7 @@ Expected<fs::path> SaveStyleAs(const StyleEntry& style, const std::map<std::stri
   fs::remove_all(unfinished, failed);
   fs::create_directories(unfinished, failed);
   if (failed) return OutputError("cannot make the folder " + unfinished.string() + ": " + failed.message());
-  Status done = CopyStyle(style, unfinished);
+  Status done = CopyStyle(style, keys, unfinished);
   if (done) done = WriteFileAtomically(unfinished / "style.toml", text);
   if (done) {
     fs::rename(unfinished, wanted, failed);

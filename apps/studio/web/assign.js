@@ -17,7 +17,7 @@ export class Assigner {
     this.listed = '';
     byId('assign-form', HTMLFormElement).addEventListener('submit', (event) => {
       event.preventDefault();
-      this.assign(byId('assign-name', HTMLSelectElement).value, byId('assign-style', HTMLSelectElement).value);
+      void this.assign(byId('assign-name', HTMLSelectElement).value, byId('assign-style', HTMLSelectElement).value);
     });
     this.popover.addEventListener('keydown', (event) => {
       if (event.key !== 'Escape') return;
@@ -35,10 +35,13 @@ export class Assigner {
   }
 
   /** @param {string} name @param {string | null} style null: as everything else */
-  assign(name, style) {
+  async assign(name, style) {
     if (!name) return;
     const others = this.store.state.assignments.filter((assignment) => assignment.name !== name);
-    void this.store.patch({assignments: style === null ? others : [...others, {name, style}]});
+    await this.store.patch({assignments: style === null ? others : [...others, {name, style}]});
+    await this.store.rested();
+    const now = this.store.state.assignments.find((assignment) => assignment.name === name)?.style ?? null;
+    if (now !== style) return;  // it was refused, which the banner says
     this.announce(style === null ? `${name} is painted as everything else` : `${name} in ${style}`);
   }
 
@@ -56,7 +59,7 @@ export class Assigner {
       const remove = make('button', {type: 'button', className: 'icon', 'aria-label': `Remove ${assignment.name}`,
                                      title: 'Remove'}, icon('close'));
       remove.addEventListener('click', () => {
-        this.assign(assignment.name, null);
+        void this.assign(assignment.name, null);
         name.focus();
       });
       return make('li', {}, make('img', {alt: '', src: thumbnailOf('style', assignment.style)}),
@@ -117,7 +120,7 @@ export class Assigner {
   /** @param {string} name @param {string | null} style */
   choose(name, style) {
     this.close();
-    this.assign(name, style);
+    void this.assign(name, style);
   }
 
   /** @param {boolean} [giveBack] the focus goes to where it came from */

@@ -92,7 +92,8 @@ export class BrushPanel {
   async follow() {
     const {exemplar} = this, here = exemplar.shown;
     this.strokes.canvas.hidden = this.belongsTo !== here;
-    if (!this.isOn || !exemplar.current) return;
+    if (!exemplar.current && !this.hasUnsaved) this.close();
+    if (!this.isOn) return;
     try {
       if (!this.hasUnsaved) this.paintable = await this.ask();
       else if (this.belongsTo === here) this.paintable = this.own;

@@ -17,6 +17,7 @@ export class ExemplarPanel {
     this.chosen = '0/0';  // style index / exemplar index
     this.shown = '';
     this.checked = '';
+    this.pictured = Promise.resolve();  // once the picture of the chosen one is there
     this.locked = false;  // while it is painted on, hovering the picture shows no other
     /** @type {(place: {style: number, exemplar: number, x: number, y: number} | null) => void} */
     this.onPlace = () => {};
@@ -55,17 +56,24 @@ export class ExemplarPanel {
     fillSelect(this.select, options, this.chosen);
     byId('exemplar-choice', HTMLElement).hidden = options.length < 2;
     const now = this.current;
+    this.box.hidden = !now;
+    byId('exemplar-none', HTMLElement).hidden = !!now;
+    byId('paint', HTMLButtonElement).disabled = !now;
     const key = now ? `${now.style_id} ${now.file} ${this.chosen}` : '';
     if (key !== this.shown) {
       this.shown = key;
-      void this.load();
+      this.pictured = this.load();
     }
   }
 
   /** Reads the picture and what the check says of it. The browser asks whether they changed. */
   async load() {
-    const exemplar = this.current;
-    if (!exemplar) return;
+    const exemplar = this.current, here = this.shown;
+    if (!exemplar) {
+      byId('warnings', HTMLElement).hidden = true;
+      this.onShown();
+      return;
+    }
     const query = {style: exemplar.style, exemplar: exemplar.index};
     try {
       const response = await call('GET', withQuery('/api/exemplar', query));
@@ -77,9 +85,10 @@ export class ExemplarPanel {
       this.box.style.aspectRatio = `${bitmap.width} / ${bitmap.height}`;
       this.onShown();
     } catch (error) {
+      if (here === this.shown) this.base.width = this.marks.width = this.base.height = this.marks.height = 1;
       if (!isAbort(error)) this.onError(error);
     }
-    await this.check(exemplar.style);
+    void this.check(exemplar.style);
   }
 
   /** @param {number} style */
@@ -88,6 +97,7 @@ export class ExemplarPanel {
     try {
       /** @type {{warnings: {image: string, what: string, fix: string}[]}} */
       const {warnings} = await getJson('/api/check', {style});
+      if (this.current?.style !== style) return;
       const isOneOfMany = this.store.state.exemplars.filter((exemplar) => exemplar.style === style).length > 1;
       list.replaceChildren(...warnings.map(({image, what, fix}) => make(
           'li', {}, isOneOfMany ? `${image}: ${what}` : what, make('span', {textContent: fix}))));
@@ -105,12 +115,19 @@ export class ExemplarPanel {
    * @param {number} style
    * @param {number} exemplar
    * @param {[number, number]} source
+   * @param {AbortSignal} signal
    */
-  async mark(style, exemplar, source) {
+  async mark(style, exemplar, source, signal) {
     const chosen = `${style}/${exemplar}`;
     if (chosen !== this.chosen) {
       if (this.locked) return;
       this.choose(chosen);
+      await this.pictured;
+      if (signal.aborted) return;
+    }
+    if (chosen !== this.chosen) {  // it is not listed yet, or another one has come
+      this.clearRing();
+      return;
     }
     this.drawMark(source[0] + 0.5, source[1] + 0.5);
   }
@@ -137,8 +154,10 @@ export class ExemplarPanel {
     }
   }
 
+  clearRing() { context(this.marks).clearRect(0, 0, this.marks.width, this.marks.height); }
+
   clearMark() {
-    context(this.marks).clearRect(0, 0, this.marks.width, this.marks.height);
+    this.clearRing();
     this.onPlace(null);
   }
 
@@ -155,7 +174,7 @@ export class ExemplarPanel {
   /** @param {PointerEvent} event */
   hover(event) {
     if (this.locked || event.buttons) return;
-    context(this.marks).clearRect(0, 0, this.marks.width, this.marks.height);
+    this.clearRing();
     const {x, y} = this.placeAt(event);
     this.tell(x, y);
   }

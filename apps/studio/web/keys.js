@@ -163,6 +163,7 @@ export class KeysPanel {
   text(key, _id) {
     const input = make('input', {type: 'text', autocomplete: 'off', spellcheck: false});
     input.addEventListener('change', () => this.change(key, input.value, false));
+    input.addEventListener('blur', () => this.update(this.store.state));  // what was refused gives way to what is
     /** @param {KeyValue} value */
     const show = (value) => {
       if (document.activeElement !== input) input.value = String(value);

@@ -173,6 +173,7 @@ async function onEvent(name, data) {
     frames.renew();
     await frames.rested();
     const state = await store.refresh();
+    frames.wake();  // a final that was under way already is of the revision before
     if (!state.problem && frames.drawn) showProblem(null);  // the state that it stood in was read before
     see();
     library.renew();
@@ -180,6 +181,7 @@ async function onEvent(name, data) {
     return;
   }
   await store.hear(data.revision);
+  frames.wake();  // the page may know the revision already
   if (data.why === 'saved') await exemplar.check(0);
 }
 

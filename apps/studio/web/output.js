@@ -1,11 +1,12 @@
 // Size, quality, and the random seed of the picture.
-import {byId, clamp, fillSelect} from './dom.js';
+import {byId, fillSelect} from './dom.js';
 
 /** @typedef {import('./api.js').State} State */
 
 const kSizes =
     ['640×360', '960×540', '1280×720', '1920×1080', '2560×1440', '3840×2160', '720×720', '1080×1080', '1080×1920'];
 const kBudgetMs = 50;
+const kMostSide = 16384;
 
 export class OutputPanel {
   /** @param {import('./store.js').Store} store */
@@ -42,10 +43,9 @@ export class OutputPanel {
   }
 
   resize() {
-    if (!this.width.value || !this.height.value) return;
-    const width = clamp(Math.round(Number(this.width.value)), 1, 16384);
-    const height = clamp(Math.round(Number(this.height.value)), 1, 16384);
-    void this.store.patch({size: [width, height]});
+    const size = [this.width, this.height].map((input) => Math.round(Number(input.value)));
+    if (size.some((side) => !(side >= 1 && side <= kMostSide))) return;
+    void this.store.patch({size: [size[0], size[1]]});
   }
 
   /** @param {State} state */

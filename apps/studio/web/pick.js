@@ -65,8 +65,7 @@ export class Picker {
     this.last = '';
     this.view.showMask(null);
     this.caption.replaceChildren();
-    const marks = this.exemplar.marks;
-    marks.getContext('2d')?.clearRect(0, 0, marks.width, marks.height);
+    this.exemplar.clearRing();
   }
 
   /** @param {{x: number, y: number}} pixel */
@@ -77,9 +76,10 @@ export class Picker {
     this.tell(pixel, found);
     if (!found.covered || !found.source) {
       this.view.showMask(null);
+      this.exemplar.clearRing();
       return;
     }
-    await this.exemplar.mark(found.style ?? 0, found.exemplar ?? 0, found.source);
+    await this.exemplar.mark(found.style ?? 0, found.exemplar ?? 0, found.source, signal);
     this.showMask(await getPicture('/api/chunk', pixel, signal), signal);
   }
 

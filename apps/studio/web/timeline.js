@@ -92,6 +92,6 @@ export class Timeline {
     this.slider.value = now;
     fillTrack(this.slider);
     if (document.activeElement !== this.number) this.number.value = now;
-    byId('frame-last', HTMLElement).textContent = `of ${animation.last} · ${animation.fps} fps`;
+    byId('frame-last', HTMLElement).textContent = `of ${animation.last} · ${Number(animation.fps.toFixed(3))} fps`;
   }
 }

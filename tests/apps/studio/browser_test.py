@@ -5,14 +5,10 @@ Usage: browser_test.py SCUMBLE SOURCE_FOLDER WORK_FOLDER [unittest's arguments]
 
 WORK_FOLDER takes axe-core, which npm installs there.
 """
-import atexit
-import json
 import os
-import pathlib
 import shutil
 import subprocess
 import sys
-import tempfile
 import time
 import unittest
 
@@ -21,127 +17,7 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import Select
 
-from chromium import chromium
-
-SCUMBLE, SOURCE, WORK = (pathlib.Path(word).resolve() for word in sys.argv[1:4])
-AXE = "axe-core@4.10.2"
-SIZE = "320x180"
-PATIENCE = 60  # seconds that a loaded machine is waited for
-
-
-def axe_source():
-    """The text of axe-core, which npm fetches once."""
-    file = WORK / "node_modules" / "axe-core" / "axe.min.js"
-    if not file.is_file():
-        WORK.mkdir(parents=True, exist_ok=True)
-        subprocess.run(["npm", "install", "--no-save", "--no-audit", "--no-fund", "--prefix", str(WORK), AXE],
-                       check=True, stdout=subprocess.DEVNULL, timeout=300)
-    return file.read_text()
-
-
-class Studio:
-    """The program, on a copy of a bundled style in a folder of its own."""
-
-    def __init__(self, folder, scene="suzanne", port=None):
-        self.folder = folder
-        words = [str(SCUMBLE), "studio", str(SOURCE / "scenes" / f"{scene}.glb"), "--style", str(folder / "my"), "--size",
-                 SIZE, "--no-browser", "--save-to", str(folder)]
-        self.process = subprocess.Popen(words + (["--port", str(port)] if port else []), stdout=subprocess.PIPE,
-                                        text=True)
-        self.address = self.process.stdout.readline().strip()
-        self.port = int(self.address.split(":")[2].split("/")[0])
-
-    def stop(self):
-        self.process.terminate()
-        self.process.stdout.close()
-        return self.process.wait(PATIENCE)
-
-
-def shared_browser():
-    browser = chromium("1500,950")
-    atexit.register(browser.quit)
-    browser.set_page_load_timeout(PATIENCE)
-    browser.set_script_timeout(PATIENCE)
-    return browser
-
-
-class Page(unittest.TestCase):
-    """Each test has a studio and a tab of its own, in one browser."""
-    scene = "suzanne"
-    shared = None
-
-    def setUp(self):
-        self.temporary = tempfile.TemporaryDirectory()
-        self.folder = pathlib.Path(self.temporary.name)
-        shutil.copytree(SOURCE / "exemplars" / "oil", self.folder / "my")
-        self.studio = Studio(self.folder, self.scene)
-        self.browser = Page.shared = Page.shared or shared_browser()
-        before = self.browser.window_handles
-        self.browser.switch_to.new_window("tab")
-        fresh = self.browser.current_window_handle
-        for handle in before:
-            self.browser.switch_to.window(handle)
-            self.browser.close()
-        self.browser.switch_to.window(fresh)
-        self.browser.get(self.studio.address)
-        self.settled()
-
-    def tearDown(self):
-        self.studio.stop()
-        self.temporary.cleanup()
-
-    def js(self, script, *arguments):
-        return self.browser.execute_script(script, *arguments)
-
-    def until(self, condition, what):
-        end = time.monotonic() + PATIENCE
-        while not condition():
-            if time.monotonic() > end:
-                self.browser.save_screenshot(str(WORK / "failed.png"))
-                self.fail(f"{what} did not happen; the page says {self.find('#status').text!r}, "
-                          f"{self.find('#problem-text').text!r}")
-            time.sleep(0.03)
-
-    def call(self, method, path, body=None):
-        """A call from the page's own origin: (status, JSON or text)."""
-        status, text = self.browser.execute_async_script(
-            "const [method, path, body, done] = arguments;"
-            "fetch(path, {method, body, headers: {'X-Scumble': '1', 'Content-Type': 'application/json'}})"
-            ".then(async (r) => done([r.status, await r.text()]))", method, path, body and json.dumps(body))
-        return status, json.loads(text) if text[:1] in "{[" else text
-
-    def state(self):
-        return self.call("GET", "/api/state")[1]
-
-    def settled(self):
-        """Waits for the final of the server's newest state on the screen."""
-        def is_there():
-            # In one look: between two, a draft of the newest state may take the place of the final of the one before.
-            drawn, revision = self.js("const {drawn, revision} = document.documentElement.dataset;"
-                                      "return [drawn, Number(revision)]")
-            return drawn == "final" and revision >= self.state()["revision"]
-
-        self.until(is_there, "the final")
-
-    def find(self, selector):
-        return self.browser.find_element(By.CSS_SELECTOR, selector)
-
-    def pixels(self):
-        """A number that changes with the picture on the screen."""
-        return self.js("const c = document.getElementById('picture');"
-                       "const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;"
-                       "let h = 0; for (let i = 0; i < d.length; i += 1) h = (h * 31 + d[i]) | 0; return h")
-
-    def choose(self, kind, name):
-        self.js("document.querySelector(`[data-${arguments[0]}='${arguments[1]}'] input`).click()", kind, name)
-        self.until(lambda: self.state()[kind] == name, f"the choice of {name}")
-        self.settled()
-
-    def drag(self, element, dx, dy):
-        chain = ActionChains(self.browser, duration=20).move_to_element(element).click_and_hold()
-        for _ in range(4):
-            chain.move_by_offset(dx // 4, dy // 4)
-        chain.release().perform()
+from browser_page import Page, SCUMBLE, SOURCE, Studio, WORK, axe_source
 
 
 class Pictures(Page):
@@ -255,6 +131,7 @@ class Pictures(Page):
         changed = [line for line in now.splitlines() if line not in text.splitlines()]
         self.assertEqual(len(changed), 1, changed)
         self.assertTrue(changed[0].startswith("threshold"), changed)
+        self.settled()
 
 
 class Changing(Page):
@@ -296,12 +173,18 @@ class Changing(Page):
 
     def test_undo_goes_on_after_a_save(self):
         file = self.folder / "my" / "style.toml"
-        own = self.state()["file_keys"]["transfer.threshold"]
+        own, before = self.state()["file_keys"]["transfer.threshold"], self.pixels()
         self.set_threshold(0.5)
+        self.type_into("#key-transfer\\.paper", "#ff8888")
+        self.until(lambda: "transfer.paper" in self.state()["keys"], "a paper of one colour")
         self.find("#save").click()
-        self.until(lambda: "0.5" in file.read_text() and self.threshold() is None, "the save")
+        self.until(lambda: "0.5" in file.read_text() and not self.state()["keys"], "the save")
+        self.find("#undo").click()
+        self.until(lambda: self.state()["keys"] == {"transfer.paper": "paper.png"}, "the picture of paper")
         self.find("#undo").click()
         self.until(lambda: self.threshold() == own, "the value from before the save")
+        self.settled()
+        self.assertEqual(self.pixels(), before)
         self.find("#redo").click()
         self.until(lambda: self.threshold() is None, "the saved value")
 
@@ -352,11 +235,11 @@ class Changing(Page):
 
     def test_numbers_that_are_no_use_give_way(self):
         def typed(field, text):
-            self.find(field).send_keys(Keys.CONTROL + "a")
-            self.find(field).send_keys(text, Keys.TAB)
+            self.type_into(field, text)
             return self.find(field).get_attribute("value")
 
         self.assertEqual(typed("#size-width", Keys.DELETE), "320")
+        self.assertEqual(typed("#size-width", "0"), "320")
         self.assertEqual(typed("#seed", "-5"), "0")
         self.assertEqual(self.state()["size"], [320, 180])
         Select(self.find("#quality")).select_by_value("budget")
@@ -421,6 +304,14 @@ class Understanding(Page):
         self.until(lambda: not self.find("#problem").is_displayed() and "gouache" in self.js(
             "return document.getElementById('beside').value"), "another style beside it")
 
+    def test_a_style_without_a_painting(self):
+        self.choose("style", "toon")
+        self.until(lambda: self.find("#exemplar-none").is_displayed(), "no painting")
+        self.assertFalse(self.find("#exemplar").is_displayed() or self.find("#problem").is_displayed())
+        self.assertFalse(self.find("#paint").is_enabled())
+        self.choose("style", "my")
+        self.until(lambda: self.find("#exemplar").is_displayed() and self.find("#paint").is_enabled(), "a painting")
+
     def test_letters_never_act_in_fields(self):
         self.find("#keys-find").send_keys("wsd2")
         self.assertEqual(self.js("return document.documentElement.dataset.compare"), "off")
@@ -438,12 +329,15 @@ class Understanding(Page):
 
     def test_by_keyboard_alone(self):
         self.js("document.activeElement.blur()")
+        ActionChains(self.browser).send_keys(Keys.TAB, Keys.ENTER).perform()
+        self.until(lambda: self.js("return document.activeElement.id") == "stage", "the way past the panels")
         reached = set()
         for _ in range(160):
             ActionChains(self.browser).send_keys(Keys.TAB).perform()
             reached.add(self.js("return document.activeElement.id"))
         for wanted in ("stage", "save-as", "copy-command", "download", "camera", "seed", "paint"):
             self.assertIn(wanted, reached)
+        self.assertEqual(self.js("return document.scrollingElement.scrollTop"), 0, "the header is on the screen")
         self.find("#stage").send_keys(Keys.ARROW_LEFT)
         self.until(lambda: self.state()["view"], "an orbit by keys")
 

@@ -69,9 +69,9 @@ class SessionTest : public testing::Test {
     return ball;
   }
 
-  void Open(const std::vector<std::string>& styles) {
+  void Open(const std::vector<std::string>& styles, const fs::path& scene = kSource + "/scenes/ball.glb") {
     session.reset();
-    options.scene.scene = kSource + "/scenes/ball.glb", options.scene.size = {kWidth, kHeight};
+    options.scene.scene = scene.string(), options.scene.size = {kWidth, kHeight};
     options.styles = styles, options.save_to = folder.path();
     context.data_roots = {kSource};
     auto opened = Session::Open(options, context, events);

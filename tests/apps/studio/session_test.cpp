@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "apps/studio/session/state.h"
 #include "pipeline/workspace.h"
 #include "tests/apps/studio/session_fixture.h"
 #include "transfer/field/source_field.h"
@@ -47,6 +48,30 @@ TEST_F(SessionTest, FinalsAreWhatTheCommandMakes) {
   ASSERT_EQ(std::system((command + " --quiet > /dev/null").c_str()), 0) << command;
   EXPECT_EQ(exported.body, TextOf(file));
   EXPECT_EQ(PictureOf(Frame().body).rgba, ReadPicture(file)->rgba);
+}
+
+TEST_F(SessionTest, AViewWinsOverTheCamera) {
+  const std::string camera = State()["cameras"][0];
+  ASSERT_EQ(Call("PATCH", "/api/state", {{"camera", camera}}).status, 200);
+  const std::string before = Frame().body;
+  ASSERT_EQ(Call("PATCH", "/api/state", {{"view", {{"azimuth", 70}, {"elevation", 10}}}}).status, 200);
+  const HttpResponse orbited = Frame();
+  ASSERT_EQ(orbited.status, 200) << orbited.body;
+  EXPECT_NE(orbited.body, before);
+  EXPECT_EQ(Frame("jpeg", "draft").status, 200);
+  const std::string command = json::parse(Call("POST", "/api/export", {{"what", "command"}}).body)["command"];
+  EXPECT_EQ(command.find("--camera"), command.npos) << command;
+  ASSERT_EQ(Call("PATCH", "/api/state", {{"view", nullptr}}).status, 200);
+  EXPECT_EQ(State()["camera"], camera);
+  EXPECT_EQ(PictureOf(Frame().body).rgba, PictureOf(before).rgba);
+}
+
+// A later --set without a style's name would win over the style's own.
+TEST_F(SessionTest, WhatABudgetChoseStandsBeforeTheKeys) {
+  PictureJob job;
+  job.style.style = "oil", job.style.sets = {"oil:transfer.blend_radius=64"};
+  const std::string command = CommandOf(job, {"--set", "transfer.blend_radius=0"});
+  EXPECT_LT(command.find(" transfer.blend_radius=0"), command.find("oil:transfer.blend_radius=64")) << command;
 }
 
 TEST_F(SessionTest, FinishIsChosenAndItsDialsAreTurned) {

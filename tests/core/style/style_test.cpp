@@ -135,6 +135,7 @@ TEST_F(StyleFile, ValuesAreTheFilesOrTheDefaults) {
   ASSERT_TRUE(WritePicture(folder_ / "other.png", NoisyPicture(8, 8)));
   EXPECT_EQ(StyleValues(folder_ / "other.png")->at("transfer.crease"), KeyValue(60.0));
   EXPECT_FALSE(StyleValues(folder_ / "nothing"));
+  EXPECT_EQ(StyleValues("toon")->at("transfer.method"), KeyValue(std::string("toon"))) << "which has no file";
 }
 
 struct Valid {
