@@ -32,6 +32,12 @@ RunContext ContextOf(const StylizerOptions& options) {
   return context;
 }
 
+// The error of a member of settings, by its whole name.
+Status Within(const char* settings, const Status& checked) {
+  if (checked.ok()) return checked;
+  return Error{checked.error().kind, std::string(settings) + "." + checked.error().message};
+}
+
 Expected<SceneRequest> RequestOf(const SceneSettings& settings) {
   SceneRequest request;
   request.scene = settings.file;
@@ -39,17 +45,12 @@ Expected<SceneRequest> RequestOf(const SceneSettings& settings) {
   SCUMBLE_RETURN_IF_ERROR(CheckSize(request.size, SizeToText(request.size)));
   request.camera = settings.camera;
   if (const auto& view = settings.view) {
-    if (!(view->elevation >= -90.0 && view->elevation <= 90.0)) return UsageError("elevation must be -90 to 90");
-    if (!(view->distance >= 0.0)) return UsageError("distance must be 0 or more");
-    if (!(view->fov >= 0.0 && view->fov < 180.0)) return UsageError("fov must be 0 to below 180");
-    if (!std::isfinite(view->right) || !std::isfinite(view->up)) return UsageError("right and up must be finite");
     request.view = ViewAngles{view->azimuth, view->elevation, view->distance, view->right, view->up, view->fov};
+    SCUMBLE_RETURN_IF_ERROR(Within("view", CheckView(*request.view)));
   }
   if (const auto& light = settings.light) {
-    if (!std::isfinite(light->azimuth)) return UsageError("light.azimuth must be finite");
-    if (!(light->elevation >= -90.0 && light->elevation <= 90.0))
-      return UsageError("light.elevation must be -90 to 90");
     request.light = LightAngles{light->azimuth, light->elevation};
+    SCUMBLE_RETURN_IF_ERROR(Within("light", CheckLight(*request.light)));
   }
   request.animation = settings.animation;
   if (const std::optional<double>& degrees = settings.auto_smooth; degrees && !(*degrees >= 0.0 && *degrees <= 180.0)) {

@@ -193,20 +193,37 @@ Status TurnFinishDial(std::span<FinishPass> passes, const std::string& key, cons
   return Ok();
 }
 
+namespace {
+
+// Numbers with all digits: as a float if they are one, else as a double.
+std::string ExactText(const KeyValue& value) {
+  const auto* number = std::get_if<double>(&value);
+  if (!number || !std::isfinite(*number)) return ToText(value);
+  char text[40];
+  const auto single = static_cast<float>(*number);
+  const bool is_float = static_cast<double>(single) == *number;
+  const char* end = is_float ? std::to_chars(text, text + sizeof text, single).ptr
+                             : std::to_chars(text, text + sizeof text, *number).ptr;
+  return std::string(static_cast<const char*>(text), end);
+}
+
+}  // namespace
+
 std::string FinishText(const FinishPass& pass) {
   std::string text = EffectOf(pass).name;
+  const FinishPass defaults{"", EffectOf(pass).defaults, FinishPass::Stage::kPaint, 1.0, {}, {}};
   for (const auto keys : {CommonFinishKeys(), std::span<const FinishKey>(EffectOf(pass).keys)}) {
     for (const FinishKey& key : keys) {
-      const std::string value = ToText(key.get(pass));
-      if (value != key.default_value) text += " " + key.name + "=" + value;
+      const std::string value = ExactText(key.get(pass));
+      if (value != ExactText(key.get(defaults))) text += " " + key.name + "=" + value;
     }
   }
   // A file may change under its name.
   if (const auto* palette = std::get_if<PalettePass>(&pass.effect)) {
     for (const auto& colors : {palette->target, palette->source}) {
       if (!colors) continue;
-      for (const double number : colors->mean) text += " " + ToText(KeyValue(number));
-      for (const double number : colors->covariance) text += " " + ToText(KeyValue(number));
+      for (const double number : colors->mean) text += " " + ExactText(KeyValue(number));
+      for (const double number : colors->covariance) text += " " + ExactText(KeyValue(number));
     }
   }
   if (const auto* hatch = std::get_if<HatchPass>(&pass.effect); hatch && hatch->texture) {

@@ -77,6 +77,21 @@ double HalfHeightOf(const Camera& camera, double aspect) {
 
 }  // namespace
 
+Status CheckView(const ViewAngles& view) {
+  if (!std::isfinite(view.azimuth)) return UsageError("azimuth must be finite");
+  if (!(view.elevation >= -90.0 && view.elevation <= 90.0)) return UsageError("elevation must be -90 to 90");
+  if (!(view.distance >= 0.0 && std::isfinite(view.distance))) return UsageError("distance must be 0 or more, finite");
+  if (!std::isfinite(view.right) || !std::isfinite(view.up)) return UsageError("right and up must be finite");
+  if (!(view.fov >= 0.0 && view.fov < 180.0)) return UsageError("fov must be 0 to below 180");
+  return Ok();
+}
+
+Status CheckLight(const LightAngles& light) {
+  if (!std::isfinite(light.azimuth)) return UsageError("azimuth must be finite");
+  if (!(light.elevation >= -90.0 && light.elevation <= 90.0)) return UsageError("elevation must be -90 to 90");
+  return Ok();
+}
+
 SceneSphere SphereAround(const Scene& scene) {
   glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
   ForEachPoint(scene, [&](const glm::dvec3& p) {

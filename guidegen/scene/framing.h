@@ -14,7 +14,7 @@ namespace scumble {
 // The view of a scene without a camera. Azimuth from +Z towards +X, elevation up from the horizon, degrees.
 struct ViewAngles {
   double azimuth = 35.0;
-  double elevation = 20.0;
+  double elevation = 20.0;  // -90 … 90
   double distance = 0.0;  // m from the centre of the scene's bounding sphere; 0 frames it with a margin
   double right = 0.0;     // m in the picture plane from that centre to what is looked at
   double up = 0.0;        // likewise
@@ -26,6 +26,10 @@ struct LightAngles {
   double azimuth = kKeyLightAzimuth;
   double elevation = kKeyLightElevation;
 };
+
+// kUsage where an angle or length is outside its range or not finite; the message begins with the member's name.
+Status CheckView(const ViewAngles& view);
+Status CheckLight(const LightAngles& light);  // elevation -90 … 90
 
 // Around the middle of a scene's bounding box: at most √3 times too large, and independent of the order of vertices.
 struct SceneSphere {

@@ -47,6 +47,29 @@ TEST(Library, APictureWhoseMembersDoNotFitIsAnError) {
 }
 
 // Measured as guidegen does, with and without what the Stylizer has kept.
+TEST(Library, ViewsAndLightsOutsideTheirRangeAreRefused) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN(), kInfinity = std::numeric_limits<double>::infinity();
+  Stylizer stylizer;
+  const auto refuses = [&](const std::string& words, const auto& change) {
+    SceneSettings scene;
+    scene.file = std::string(SCUMBLE_SOURCE_DIR) + "/scenes/ball.glb";
+    scene.width = 16, scene.height = 16;
+    scene.view.emplace(), scene.light.emplace();
+    change(scene);
+    const auto guides = stylizer.Guides(scene, {});
+    ASSERT_FALSE(guides) << words;
+    EXPECT_EQ(guides.error().kind, ErrorKind::kUsage) << guides.error().message;
+    EXPECT_EQ(guides.error().message.substr(0, words.size()), words);
+  };
+  refuses("view.azimuth", [&](SceneSettings& scene) { scene.view->azimuth = kNaN; });
+  refuses("view.elevation", [&](SceneSettings& scene) { scene.view->elevation = 90.5; });
+  refuses("view.distance", [&](SceneSettings& scene) { scene.view->distance = kInfinity; });
+  refuses("view.right", [&](SceneSettings& scene) { scene.view->up = kNaN; });
+  refuses("view.fov", [&](SceneSettings& scene) { scene.view->fov = 180.0; });
+  refuses("light.azimuth", [&](SceneSettings& scene) { scene.light->azimuth = kInfinity; });
+  refuses("light.elevation", [&](SceneSettings& scene) { scene.light->elevation = kNaN; });
+}
+
 TEST(Library, MotionIsThatOfGuidegen) {
   SceneSettings scene;
   scene.file = std::string(SCUMBLE_SOURCE_DIR) + "/scenes/toys.glb";

@@ -228,19 +228,21 @@ namespace {
 Expected<std::optional<ViewAngles>> ParseView(const std::string& text) {
   if (text.empty()) return std::optional<ViewAngles>();
   SCUMBLE_ASSIGN(auto numbers, ParseNumbers(text, 2, 6, "--view"));
-  if (numbers[1] < -90.0 || numbers[1] > 90.0) return UsageError("--view " + text + ": elevation must be -90 to 90");
   if (numbers.size() == 4) return UsageError("--view " + text + ": RIGHT needs UP: AZ,EL,DIST,RIGHT,UP");
   numbers.resize(6, 0.0);
-  if (numbers[2] < 0.0) return UsageError("--view " + text + ": distance must be 0 or more");
-  if (numbers[5] < 0.0 || numbers[5] >= 180.0) return UsageError("--view " + text + ": FOV must be 0 to below 180");
-  return std::optional(ViewAngles{numbers[0], numbers[1], numbers[2], numbers[3], numbers[4], numbers[5]});
+  const ViewAngles view{numbers[0], numbers[1], numbers[2], numbers[3], numbers[4], numbers[5]};
+  if (const Status good = CheckView(view); !good.ok()) return UsageError("--view " + text + ": " + good.error().message);
+  return std::optional(view);
 }
 
 Expected<std::optional<LightAngles>> ParseLight(const std::string& text) {
   if (text.empty()) return std::optional<LightAngles>();
   SCUMBLE_ASSIGN(const auto numbers, ParseNumbers(text, 2, 2, "--light"));
-  if (numbers[1] < -90.0 || numbers[1] > 90.0) return UsageError("--light " + text + ": elevation must be -90 to 90");
-  return std::optional(LightAngles{numbers[0], numbers[1]});
+  const LightAngles light{numbers[0], numbers[1]};
+  if (const Status good = CheckLight(light); !good.ok()) {
+    return UsageError("--light " + text + ": " + good.error().message);
+  }
+  return std::optional(light);
 }
 
 }  // namespace

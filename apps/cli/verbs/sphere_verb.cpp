@@ -54,7 +54,9 @@ Expected<LayerSet> LayersOf(const SphereVerb& verb) {
 
 Expected<KitLight> RenderLight(const SphereVerb& verb, const std::string& text, const Globals& globals) {
   SCUMBLE_ASSIGN(const auto angles, ParseNumbers(text, 2, 2, "--light"));
-  if (angles[1] < -90.0 || angles[1] > 90.0) return UsageError("--light " + text + ": elevation must be -90 to 90");
+  if (const Status good = CheckLight({angles[0], angles[1]}); !good.ok()) {
+    return UsageError("--light " + text + ": " + good.error().message);
+  }
   SphereOptions options;
   options.size = verb.size;
   SCUMBLE_ASSIGN(options.layers, LayersOf(verb));

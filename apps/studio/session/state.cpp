@@ -138,7 +138,8 @@ Status PatchView(StudioState& state, const json& value, const Catalogue&) {
   SCUMBLE_ASSIGN(view.distance, MemberOf(value, "view", "distance", 0, kFar, 0.0));
   SCUMBLE_ASSIGN(view.right, MemberOf(value, "view", "right", -kFar, kFar, 0.0));
   SCUMBLE_ASSIGN(view.up, MemberOf(value, "view", "up", -kFar, kFar, 0.0));
-  SCUMBLE_ASSIGN(view.fov, MemberOf(value, "view", "fov", 0, 179, 0.0));
+  SCUMBLE_ASSIGN(view.fov, MemberOf(value, "view", "fov", 0, 180, 0.0));
+  SCUMBLE_RETURN_IF_ERROR(CheckView(view));
   state.view = view;
   return Ok();
 }

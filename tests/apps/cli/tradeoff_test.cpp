@@ -488,7 +488,7 @@ TEST_F(Tradeoff, KilledAmongItsPicturesItLeavesNoPage) {
 TEST_F(Tradeoff, HelpSaysWhatIsTimed) {
   const std::string help = RunOk({"help", "tradeoff"}).out;
   for (const char* word : {"--only", "--quick", "--repeat", "--samples", "--exposure", "--max-memory", "--no-memory",
-                           "texture", "not in them", "FOLDER"}) {
+                           "texture", "not in", "FOLDER"}) {
     EXPECT_NE(help.find(word), std::string::npos) << word;
   }
   EXPECT_EQ(help.find("--peak-of"), std::string::npos) << "for the program itself";

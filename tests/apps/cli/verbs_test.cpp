@@ -117,7 +117,7 @@ TEST_F(CliUsage, SizesAndViews) {
   ExpectError({"guidegen", scene, "--view", "0,0,1e30", "-o", "g.exr"}, 2, {"expected numbers from -1e9 to 1e9"});
   ExpectError({"guidegen", scene, "--view", "30,100", "-o", "g.exr"}, 2, {"elevation must be -90 to 90"});
   ExpectError({"guidegen", scene, "--view", "1,2,3,4", "-o", "g.exr"}, 2, {"RIGHT needs UP"});
-  ExpectError({"guidegen", scene, "--view", "1,2,3,4,5,180", "-o", "g.exr"}, 2, {"FOV must be 0 to below 180"});
+  ExpectError({"guidegen", scene, "--view", "1,2,3,4,5,180", "-o", "g.exr"}, 2, {"fov must be 0 to below 180"});
   ExpectError({"guidegen", scene, "--light", "1,91", "-o", "g.exr"}, 2, {"--light 1,91: elevation must be -90 to 90"});
   ExpectError({"guidegen", scene, "--view", "30,10,-4", "-o", "g.exr"}, 2, {"distance must be 0 or more"});
   EXPECT_FALSE(Exists("g.exr"));
