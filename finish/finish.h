@@ -34,8 +34,10 @@ struct FinishMeasures {
 // Whether any of the passes looks at them.
 bool LooksAtMeasures(std::span<const FinishPass> passes);
 
-// Whether a pixel is covered: without one there is nothing to measure.
-bool ShowsSurface(const GuideSet& guides);
+// The share of pixels with any coverage. Without one there is nothing to measure; a sequence is measured on the first
+// frame that has kEnoughToMeasure, as an object that slides into view begins with a few pixels.
+double CoveredShare(const GuideSet& guides);
+inline constexpr double kEnoughToMeasure = 0.005;
 
 // Of layers that the guides lack, and of nothing covered, the values stay as they are above.
 FinishMeasures MeasureFinish(const GuideSet& guides);

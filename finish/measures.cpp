@@ -60,9 +60,10 @@ bool LooksAtMeasures(std::span<const FinishPass> passes) {
   });
 }
 
-bool ShowsSurface(const GuideSet& guides) {
+double CoveredShare(const GuideSet& guides) {
   const auto coverage = guides.Plane(Layer::kCoverage);
-  return std::any_of(coverage.begin(), coverage.end(), [](float value) { return value > 0.0f; });
+  const auto covered = std::count_if(coverage.begin(), coverage.end(), [](float value) { return value > 0.0f; });
+  return static_cast<double>(covered) / static_cast<double>(std::max<std::size_t>(1, coverage.size()));
 }
 
 FinishMeasures MeasureFinish(const GuideSet& guides) {

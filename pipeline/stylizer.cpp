@@ -33,7 +33,7 @@ RunContext ContextOf(const StylizerOptions& options) {
 }
 
 // The error of a member of settings, by its whole name.
-Status Within(const char* settings, const Status& checked) {
+Status CheckedMember(const char* settings, const Status& checked) {
   if (checked.ok()) return checked;
   return Error{checked.error().kind, std::string(settings) + "." + checked.error().message};
 }
@@ -46,11 +46,11 @@ Expected<SceneRequest> RequestOf(const SceneSettings& settings) {
   request.camera = settings.camera;
   if (const auto& view = settings.view) {
     request.view = ViewAngles{view->azimuth, view->elevation, view->distance, view->right, view->up, view->fov};
-    SCUMBLE_RETURN_IF_ERROR(Within("view", CheckView(*request.view)));
+    SCUMBLE_RETURN_IF_ERROR(CheckedMember("view", CheckView(*request.view)));
   }
   if (const auto& light = settings.light) {
     request.light = LightAngles{light->azimuth, light->elevation};
-    SCUMBLE_RETURN_IF_ERROR(Within("light", CheckLight(*request.light)));
+    SCUMBLE_RETURN_IF_ERROR(CheckedMember("light", CheckLight(*request.light)));
   }
   request.animation = settings.animation;
   if (const std::optional<double>& degrees = settings.auto_smooth; degrees && !(*degrees >= 0.0 && *degrees <= 180.0)) {

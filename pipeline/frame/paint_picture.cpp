@@ -269,7 +269,7 @@ Status PrepareFrame(StyleSet& styles, const GuideSet& guides, const PictureReque
   if (state.exposure) return Ok();
   state.exposure = ExposureOf(request.exposure, state.prepared, guides, context.threads);
   if (!MeasuresExposure(styles, request)) return Ok();
-  if (!ShowsSurface(guides)) {
+  if (CoveredShare(guides) == 0.0) {
     context.Warn(
         "the picture shows no surface, so no exposure was measured, and it is 0 stops: where it is one of a sequence, "
         "give --exposure of a frame that shows something");

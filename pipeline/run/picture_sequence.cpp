@@ -34,24 +34,29 @@ Status PictureSequence::Begin(const Sequence& sequence, int width, int height, c
   SCUMBLE_RETURN_IF_ERROR(ReadOverOfAll(width, height));
   if (!MustLookAhead(sequence)) return Ok();
   const auto is_exposed = [&] { return MeasuresExposure(styles_, request_); };  // a scene's styles come with its guides
-  for (const int frame : sequence.frames) {
-    const Expected<FrameGuides> found = guides_at(frame, progress);
-    if (!found) {
-      const std::string fix = is_exposed() ? " is the one that --exposure auto is measured on: give --exposure STOPS"
-                                           : " is the one that finishing effects are measured on: begin with another";
-      return Error{found.error().kind, found.error().message + "; frame " + std::to_string(frame) + fix};
-    }
-    if (!ShowsSurface(*found->guides)) continue;
+  const auto measure = [&](int frame, const GuideSet& guides) -> Status {
     SCUMBLE_ASSIGN(const PictureRequest one, RequestAt(request_, frame, request_.output));
-    SCUMBLE_RETURN_IF_ERROR(PrepareFrame(styles_, *found->guides, one, context_, state_));
-    MeasureFinishOf(styles_, *found->guides, frame, context_, state_);
+    SCUMBLE_RETURN_IF_ERROR(PrepareFrame(styles_, guides, one, context_, state_));
+    MeasureFinishOf(styles_, guides, frame, context_, state_);
     if (!is_exposed()) return Ok();
     context_.Warn(
         fmt::format("the exposure of all frames was measured on frame {}: where a sequence is cut into several runs, "
                     "give each --exposure {:.2f}",
                     frame, *state_.exposure));
     return Ok();
+  };
+  FrameToMeasure choice;
+  for (const int frame : sequence.frames) {
+    const Expected<FrameGuides> found = guides_at(frame, progress);
+    if (!found && found.error().kind == ErrorKind::kCancelled) return found.error();
+    if (!found) continue;  // told when it is made
+    if (choice.IsEnough(frame, *found->guides)) return measure(frame, *found->guides);
   }
+  if (choice.best) {
+    SCUMBLE_ASSIGN(const FrameGuides found, guides_at(*choice.best, progress));
+    return measure(*choice.best, *found.guides);
+  }
+  if (!choice.any_read) return Ok();
   if (is_exposed()) state_.exposure = 0.0;
   if (MeasuresFinish(styles_)) state_.finish_measures.emplace();
   const char* const options = !is_exposed()             ? "--finish-measures"

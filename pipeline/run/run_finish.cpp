@@ -271,14 +271,24 @@ Expected<RunReport> RunFinish(FinishRequest request, const SequenceListener& lis
   // Where a sequence is resumed, a frame that is kept may be the one to measure.
   work.begin = [&](std::span<const int>, const Progress&) -> Status {
     if (state.measures || !EverLooksAtMeasures(state.chain)) return Ok();
-    for (const int frame : sequence->frames) {
+    const auto guides_at = [&](int frame) {
       const std::string file = guides.At(frame);
-      SCUMBLE_ASSIGN(const GuideSet set,
-                     ReadGuides(file, ReadOptions(request, state.required, file, camera.At(frame))));
-      if (!ShowsSurface(set)) continue;
+      return ReadGuides(file, ReadOptions(request, state.required, file, camera.At(frame)));
+    };
+    const auto measure = [&](int frame, const GuideSet& set) {
       state.measures = MeasureAndTell(set, set.layers(), frame, context);
       return Ok();
+    };
+    FrameToMeasure choice;
+    for (const int frame : sequence->frames) {
+      const Expected<GuideSet> set = guides_at(frame);
+      if (set && choice.IsEnough(frame, *set)) return measure(frame, *set);  // else told when it is made
     }
+    if (choice.best) {
+      SCUMBLE_ASSIGN(const GuideSet set, guides_at(*choice.best));
+      return measure(*choice.best, set);
+    }
+    if (!choice.any_read) return Ok();
     state.measures.emplace();
     context.Warn(NothingToMeasure(sequence->frames, "--finish-measures"));
     return Ok();

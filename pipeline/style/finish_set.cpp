@@ -272,7 +272,7 @@ FinishMeasures MeasureAndTell(const GuideSet& guides, const LayerSet& read, std:
   const FinishMeasures unmeasured;
   if (!read.Has(Layer::kLuminance)) measures.bright = unmeasured.bright;
   if (!read.Has(Layer::kLpeFull)) measures.full = unmeasured.full;
-  if (!ShowsSurface(guides)) {
+  if (CoveredShare(guides) == 0.0) {
     context.Warn(
         "finish: the picture shows no surface, so neither depths nor light were measured: where it is one of a "
         "sequence, give --finish-measures of a frame that shows something");
@@ -282,6 +282,13 @@ FinishMeasures MeasureAndTell(const GuideSet& guides, const LayerSet& read, std:
       frame ? fmt::format(" on frame {}: give it to each run where a sequence is cut into several", *frame) : "";
   context.Note("finish: --finish-measures " + MeasuresText(measures) + " repeats what was measured" + where);
   return measures;
+}
+
+bool FrameToMeasure::IsEnough(int frame, const GuideSet& guides) {
+  any_read = true;
+  const double shown = CoveredShare(guides);
+  if (shown > share) best = frame, share = shown;
+  return shown >= kEnoughToMeasure;
 }
 
 std::string NothingToMeasure(const std::vector<int>& frames, const std::string& options) {

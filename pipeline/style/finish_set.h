@@ -84,6 +84,17 @@ std::vector<FinishStep> FinishStepsOf(const std::vector<FinishPass>& passes, con
 FinishMeasures MeasureAndTell(const GuideSet& guides, const LayerSet& read, std::optional<int> frame,
                               const RunContext& context);
 
+// Chooses the frame of a sequence that depths and light are measured on: the first that shows enough, else the one that
+// shows most.
+struct FrameToMeasure {
+  std::optional<int> best;  // so far
+  double share = 0.0;       // that it shows
+  bool any_read = false;
+
+  // Whether it need not look on. To be called once for each frame that can be read, in order.
+  bool IsEnough(int frame, const GuideSet& guides);
+};
+
 // The warning of a sequence in which no frame shows a surface. `options`: those that give what was to be measured.
 std::string NothingToMeasure(const std::vector<int>& frames, const std::string& options);
 
