@@ -209,6 +209,8 @@ Expected<PreparedStyle> PrepareInArena(const Style& style, int output_height, co
   prepared.output_height = output_height;
   prepared.levels = ScaledLevels(settings.levels, settings.reference_height, output_height);
   prepared.blend_radius = ScaledRadius(settings.blend_radius, settings.reference_height, output_height);
+  // Here each pixel is a chunk of its own, and votes reach over one (vote.h).
+  if (settings.method == Method::kLitSphere) prepared.blend_radius = std::min(prepared.blend_radius, 1);
   prepared.flat_reach = ScaledSize(kFlatReach, 1.0, settings.reference_height, output_height);
   SCUMBLE_ASSIGN(prepared.exemplar, PrepareExemplar(style, output_height, options));
   SCUMBLE_RETURN_IF_ERROR(CheckNotCancelled(options));

@@ -27,8 +27,10 @@ constexpr float kSlopeGive = 1.0f, kSlopeGiveAtEnd = 1.5f;
 // A crease goes on where the angle is no smaller than this share of `crease_angle`: a fold whose angle is about that
 // would be dashed otherwise. Two thresholds, as Canny's edges have them (1986, section VIII).
 constexpr double kCreaseGoesOn = 2.0 / 3.0;
-// Where a crease begins, its sides turn by no more than this share of its angle.
-constexpr double kMostBeside = 0.25;
+constexpr int kLeastBeside = 1;  // pixels of the surface beside the two of a border where a crease begins
+// Where a crease begins, the flatter of its sides turns by no more than the first share of its angle, the rounder one
+// by no more than the second.
+constexpr double kMostBeside = 0.25, kMostRound = 0.6;
 // In a map that is not finished: an angle that is enough for a crease to go on, not for one to begin.
 constexpr std::uint8_t kWeakCrease = 0xff;
 // The same, where one may go on from a step in depth.
@@ -147,43 +149,51 @@ class Classifier {
   }
 
   // By how much the normal turns from `pixel` to the one `reach` pixels on, or to the last one there that is of its
-  // object. Infinite, if the object ends before `least` pixels; the picture's edge is no such end.
+  // surface: of its object, without a step in depth. Infinite if the surface ends before `least` pixels; the picture's
+  // edge is no such end.
   double TurnFrom(std::size_t pixel, std::ptrdiff_t step, int least, int reach) const {
     const auto count = static_cast<std::ptrdiff_t>(depth_.size()), width = std::ptrdiff_t(guides_.width());
+    const auto after = [&](std::size_t here) -> std::optional<std::size_t> {
+      const std::ptrdiff_t next = static_cast<std::ptrdiff_t>(here) + step;
+      if (next < 0 || next >= count) return std::nullopt;
+      if ((step == 1 && next % width == 0) || (step == -1 && (next + 1) % width == 0)) return std::nullopt;
+      return static_cast<std::size_t>(next);
+    };
+    std::optional<std::size_t> before;
     std::size_t last = pixel;
-    std::ptrdiff_t next = static_cast<std::ptrdiff_t>(pixel) + step;
-    for (int k = 0; k < std::max(least, reach); ++k, next += step) {
-      if (next < 0 || next >= count) break;
-      if ((step == 1 && next % width == 0) || (step == -1 && (next + 1) % width == 0)) break;
-      const auto beyond = static_cast<std::size_t>(next);
-      if (!(coverage_[beyond] > 0.0f) || object_[beyond] != object_[pixel]) {
+    for (int k = 0; k < reach; ++k) {
+      const std::optional<std::size_t> next = after(last);
+      if (!next) break;
+      if (!(coverage_[*next] > 0.0f) || object_[*next] != object_[pixel] ||
+          !DepthGoesOn(before, last, *next, after(*next))) {
         if (k < least) return std::numeric_limits<double>::infinity();
         break;
       }
-      if (k < reach) last = beyond;
+      before = last, last = *next;
     }
     return AngleBetween(pixel, last);
   }
 
-  // Whether a crease begins between p and q: their normals are that much farther apart than either side turns within
-  // three pixels, and these are flat compared with the step. A round fold is no crease, however few pixels it has, nor
-  // is the border of a bevel one or two pixels wide beside an outline.
+  // Whether a crease begins between p and q: both sides are wider than a pixel, their normals are that much farther
+  // apart than the flatter one turns, and within three pixels the sides are flat compared with the step. A round fold
+  // is no crease, however few pixels it has, nor is the border of a bevel of one pixel beside an outline.
   bool CreaseBegins(std::size_t p, std::size_t q) const {
     const double angle = AngleBetween(p, q);
     if (!(angle >= crease_)) return false;
     const auto step = static_cast<std::ptrdiff_t>(q - p);
-    const double turn = std::max(TurnFrom(p, -step, 2, 3), TurnFrom(q, step, 2, 3));
-    return angle - turn >= crease_ && turn <= kMostBeside * angle;
+    const double from_p = TurnFrom(p, -step, kLeastBeside, 3), from_q = TurnFrom(q, step, kLeastBeside, 3);
+    if (!(std::max(from_p, from_q) <= std::numbers::pi)) return false;
+    const double flatter = std::min(from_p, from_q), rounder = std::max(from_p, from_q);
+    return angle - flatter >= crease_ && flatter <= kMostBeside * angle && rounder <= kMostRound * angle;
   }
 
-  // Whether one that began beside goes on there, and whether from a step in depth. One of its sides may be round.
+  // Whether one that began beside goes on there, and whether from a step in depth: into corners, where its sides are
+  // narrow, and along round ones.
   std::uint8_t GoingOn(std::size_t p, std::size_t q) const {
     const double angle = AngleBetween(p, q);
     if (!(angle >= weak_crease_)) return 0;
     const auto step = static_cast<std::ptrdiff_t>(q - p);
-    const double from_p = TurnFrom(p, -step, 2, 1), from_q = TurnFrom(q, step, 2, 1);
-    if (!(std::max(from_p, from_q) <= std::numbers::pi)) return 0;
-    const double rest = angle - std::min(from_p, from_q);
+    const double rest = angle - std::min(TurnFrom(p, -step, 0, 1), TurnFrom(q, step, 0, 1));
     return rest >= crease_ ? kFullCrease : rest >= weak_crease_ ? kWeakCrease : 0;
   }
 

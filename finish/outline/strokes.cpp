@@ -82,6 +82,16 @@ struct Middle {
 // two objects meet neither is nearer, and the rest of the line decides, if it has any. A line on a surface, as a
 // crease, keeps to its middle. So does each towards a junction, where the others meet it; but a contour that passes
 // goes on, and the others end at that.
+// A line shorter than `share` of its width. Below 1 it has no direction to speak of.
+bool IsStub(const LineChain& chain, const std::vector<float>& widths, float share = 1.0f) {
+  if (chain.closed) return false;
+  float length = 0.0f;
+  for (std::size_t i = 1; i < chain.points.size(); ++i) {
+    length += glm::length(chain.points[i].at - chain.points[i - 1].at);
+  }
+  return length < share * widths.front();
+}
+
 std::vector<float> SidesOf(const LineChain& chain, const std::vector<float>& widths) {
   const auto& points = chain.points;
   const auto count = static_cast<std::ptrdiff_t>(points.size());
@@ -118,9 +128,11 @@ std::vector<float> SidesOf(const LineChain& chain, const std::vector<float>& wid
       sides[nth(k)] *= along / widths[nth(k)];
     }
   };
-  if (chain.begin == LineEnd::kJunction && !chain.begin_contour) run_back([](std::size_t k) { return k; });
-  if (chain.end == LineEnd::kJunction && !chain.end_contour)
+  const bool is_stub = IsStub(chain, widths);
+  if (chain.begin == LineEnd::kJunction && (is_stub || !chain.begin_contour)) run_back([](std::size_t k) { return k; });
+  if (chain.end == LineEnd::kJunction && (is_stub || !chain.end_contour)) {
     run_back([&](std::size_t k) { return points.size() - 1 - k; });
+  }
   return sides;
 }
 
@@ -161,7 +173,8 @@ Middle MiddleOf(const OutlinePass& pass, const FinishFrame& frame, const LineNoi
   const bool has_side = pass.side != OutlinePass::Side::kCentre;
   const std::vector<float> to_side = has_side ? SidesOf(chain, widths) : std::vector<float>();
   std::size_t from = 0, to = count;
-  if (has_side && !chain.closed) EndInContours(pass, LineWidth(pass, frame, noise.gaps), chain, from, to);
+  if (has_side && !chain.closed && !IsStub(chain, widths))
+    EndInContours(pass, LineWidth(pass, frame, noise.gaps), chain, from, to);
   const auto wobble = static_cast<float>(pass.wobble * frame.scale);
   const auto per_wave = static_cast<float>(1.0 / (pass.wobble_length * frame.scale));
   const auto moved = [&](glm::vec2 at, std::size_t i) {
@@ -273,6 +286,9 @@ std::vector<StrokePiece> StrokeOf(const OutlinePass& pass, const FinishFrame& fr
                                   LineChain chain) {
   std::vector<float> widths = WidthsOf(pass, frame, noise.gaps, chain);
   Taper(pass.taper * frame.scale, chain, widths);
+  // Between two junctions the other lines' ends cover it; in the middle of lines that run beside theirs it would show.
+  const bool joins = chain.begin == LineEnd::kJunction && chain.end == LineEnd::kJunction;
+  if (pass.side != OutlinePass::Side::kCentre && joins && IsStub(chain, widths, 0.5f)) return {};
   const Middle middle = MiddleOf(pass, frame, noise, chain, widths);
   std::vector<StrokePiece> pieces;
   const std::size_t last = middle.at.size() - 1;

@@ -24,13 +24,14 @@ void GrowChunk(const MatchInput& input, int anchor_x, int anchor_y, const Candid
       input.ReadGuide(i, guide);
       if (off) input.OffsetGuide(of_anchor, anchor, candidate.exemplar, guide);
       if (!input.Alike(guide, glm::vec3(0.0f), source, candidate.exemplar)) continue;
-      field.Set(i, source.x, source.y, candidate.exemplar, 0);
+      field.Set(i, source.x, source.y, candidate.exemplar, input.levels - 1);
     }
   }
 }
 
 }  // namespace
 
+// Chunks grow as far as they fit: they count as those of the coarsest grid.
 bool MatchBruteForce(const MatchInput& input, SourceField& field, RowProgress& progress) {
   for (int y = input.region.y0; y < input.region.y1; ++y) {
     for (int x = input.region.x0; x < input.region.x1; ++x) {
@@ -43,7 +44,7 @@ bool MatchBruteForce(const MatchInput& input, SourceField& field, RowProgress& p
       const std::size_t i = field.Index(x, y);
       if (field.level[i] != SourceField::kNoSource || !input.Wants(i)) continue;
       const Candidate own = OwnCandidate(input, i);
-      field.Set(i, own.source.x, own.source.y, own.exemplar, 0);
+      field.Set(i, own.source.x, own.source.y, own.exemplar, input.levels - 1);
       GrowChunk(input, x, y, own, field);
     }
     progress.Finished(1);

@@ -88,16 +88,19 @@ export class ExemplarPanel {
       if (here === this.shown) this.base.width = this.marks.width = this.base.height = this.marks.height = 1;
       if (!isAbort(error)) this.onError(error);
     }
-    void this.check(exemplar.style);
+    void this.check(exemplar.style, here);
   }
 
-  /** @param {number} style */
-  async check(style) {
+  /**
+   * @param {number} style
+   * @param {string} here what is shown when it is asked for
+   */
+  async check(style, here) {
     const list = byId('warnings', HTMLElement);
     try {
       /** @type {{warnings: {image: string, what: string, fix: string}[]}} */
       const {warnings} = await getJson('/api/check', {style});
-      if (this.current?.style !== style) return;
+      if (here !== this.shown) return;
       const isOneOfMany = this.store.state.exemplars.filter((exemplar) => exemplar.style === style).length > 1;
       list.replaceChildren(...warnings.map(({image, what, fix}) => make(
           'li', {}, isOneOfMany ? `${image}: ${what}` : what, make('span', {textContent: fix}))));

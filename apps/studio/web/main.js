@@ -182,7 +182,7 @@ async function onEvent(name, data) {
   }
   await store.hear(data.revision);
   frames.wake();  // the page may know the revision already
-  if (data.why === 'saved') await exemplar.check(0);
+  if (data.why === 'saved') await exemplar.check(0, exemplar.shown);
 }
 
 /** The server is there: at the beginning, again, or the page is looked at again. */

@@ -234,7 +234,8 @@ Group GroupOf(const WideTile& tile, int reach, const ChunkRun* first, const Chun
 // The cost of a group's sums in pixels, with a constant for each row.
 std::int64_t Price(const Group& group) {
   constexpr int kRow = 16;
-  return group.x0 < group.x1 ? std::int64_t(group.x1 - group.x0 + kRow) * (group.y1 - group.y0) : 0;
+  return group.x0 < group.x1 && group.y0 < group.y1 ? std::int64_t(group.x1 - group.x0 + kRow) * (group.y1 - group.y0)
+                                                    : 0;
 }
 
 template <bool kOpaque>
