@@ -12,8 +12,8 @@
 #include <unordered_map>
 
 #include "core/image/color.h"
-#include "core/image/hash.h"
 #include "core/io/picture_file.h"
+#include "guidegen/load/corner_value.h"
 #include "guidegen/load/loader_util.h"
 #include "guidegen/load/mesh_normals.h"
 #include "guidegen/load/ply_parse.h"
@@ -59,18 +59,6 @@ Role RoleOf(const std::string& name) {
   }
   return kSkip;
 }
-
-// One corner's own values, which its vertex lacks.
-struct CornerValue {
-  glm::vec2 uv{0.0f};
-  glm::vec4 color{1.0f};
-  bool operator==(const CornerValue&) const = default;
-};
-struct CornerValueHash {
-  std::size_t operator()(const CornerValue& v) const {
-    return Hash(Hash(v.uv.x, v.uv.y), Hash(v.color.r, v.color.g, v.color.b, v.color.a));
-  }
-};
 
 class PlyLoader {
  public:
