@@ -15,8 +15,8 @@ TEST(CornerValue, HashesOfValuesBetween0And1Differ) {
     for (int x = 0; x < kSide; ++x) {
       const float u = float(x) / kSide, v = float(y) / kSide - 0.5f;
       CornerValue uv, color;
-      uv.uv = {u, v};
-      color.color = {u, 0.25f, v + 0.5f, 1.0f};
+      uv.uv = glm::vec2(u, v);
+      color.color = glm::vec4(u, 0.25f, v + 0.5f, 1.0f);
       uvs.insert(CornerValueHash()(uv));
       colors.insert(CornerValueHash()(color));
     }
@@ -27,7 +27,8 @@ TEST(CornerValue, HashesOfValuesBetween0And1Differ) {
 
 TEST(CornerValue, EqualValuesHaveOneHash) {
   CornerValue zero, negative;
-  negative.uv = {-0.0f, 0.0f};
+  zero.uv = glm::vec2(0.0f);
+  negative.uv = glm::vec2(-0.0f, 0.0f);
   ASSERT_EQ(zero, negative);
   EXPECT_EQ(CornerValueHash()(zero), CornerValueHash()(negative));
 }

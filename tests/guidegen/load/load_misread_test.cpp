@@ -15,6 +15,7 @@ namespace {
 
 using nlohmann::json;
 using ::testing::AllOf;
+using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -252,7 +253,7 @@ TEST_F(Misread, PlyWithValuesOfCornersAndFaces) {
                               "3 4 2 1 2 0 0 0 0 0 0\n");
   };
   const Scene plain = Load(ply(""));
-  EXPECT_THAT(plain.warnings, ElementsAre(HasSubstr("not two for each corner")));
+  EXPECT_THAT(plain.warnings, ElementsAre(HasSubstr("not two for each corner"), HasSubstr("those of the faces")));
   ASSERT_EQ(plain.meshes.size(), 1u);
   const Mesh& mesh = plain.meshes[0];
   ASSERT_EQ(mesh.triangles.size(), 4u);
@@ -282,9 +283,41 @@ TEST_F(Misread, PlyWithValuesOfCornersAndFaces) {
   EXPECT_TRUE(textured.meshes[0].colors.empty());
   const Scene missing = Load(ply("comment TextureFile gone.png\ncomment TextureFile b.png\n"));
   EXPECT_THAT(missing.warnings, ElementsAre(HasSubstr("only the first is read"), HasSubstr("not two for each corner"),
-                                            HasSubstr("gone.png")));
+                                            HasSubstr("those of the faces"), HasSubstr("gone.png")));
   EXPECT_EQ(missing.materials[0].base_color_texture.texture, -1);
   EXPECT_EQ(missing.materials[0].base_color, glm::vec4(1.0f)) << "colours are the surface's then";
+}
+
+// Red vertices; faces of two lists, of which the second has colours.
+TEST_F(Misread, PlyWithColorsOfVerticesAndFaces) {
+  const std::string rgb = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+  const auto load = [&](const std::string& color) {
+    return Load(Write("a.ply",
+                      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                      "property float z\nproperty float s\nproperty float t\n" +
+                          rgb +
+                          "element face 1\nproperty list uchar int vertex_indices\n"
+                          "element face 1\nproperty list uchar int vertex_indices\n"
+                          "property list uchar float texcoord\n" +
+                          rgb +
+                          "end_header\n0 0 0 0.5 1 255 0 0\n1 0 0 0.5 1 255 0 0\n1 1 0 0.5 1 255 0 0\n"
+                          "3 0 1 2\n3 0 1 2 6 0 1 0 1 0 1 " +
+                          color + "\n"));
+  };
+  const glm::vec4 red(1, 0, 0, 1), blue(0, 0, 1, 1);
+  const Scene white = load("255 255 255");
+  EXPECT_THAT(white.warnings, IsEmpty());
+  EXPECT_THAT(white.meshes.at(0).colors, Each(red));
+  const Scene colored = load("0 0 255");
+  EXPECT_THAT(colored.warnings, ElementsAre(HasSubstr("those of the faces")));
+  const Mesh& mesh = colored.meshes.at(0);
+  ASSERT_EQ(mesh.triangles.size(), 2u);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(mesh.colors.at(mesh.triangles[0][i]), red) << "its list has none";
+    EXPECT_EQ(mesh.uvs[0].at(mesh.triangles[0][i]), glm::vec2(0.5f, 0.0f));
+    EXPECT_EQ(mesh.colors.at(mesh.triangles[1][i]), blue);
+    EXPECT_EQ(mesh.uvs[0].at(mesh.triangles[1][i]), glm::vec2(0.0f, 0.0f));
+  }
 }
 
 TEST_F(Misread, FacesOfAPlyBeforeItsVertices) {
