@@ -8,8 +8,8 @@
 #include <optional>
 #include <sstream>
 #include <string_view>
-#include <system_error>
 #include <unordered_map>
+#include <utility>
 
 #include "core/image/color.h"
 #include "core/io/picture_file.h"
@@ -405,19 +405,21 @@ class PlyLoader {
     return Ok();
   }
 
-  // The texture stands in place of colours, which scans have beside it for programs that show no textures.
+  // The texture stands in place of colours, which scans have beside it for programs that show no textures. They are back
+  // if it cannot be decoded. Call it when the vertices are final.
   void KeepTexture(Scene& scene) {
     if (texture_.empty() || mesh_.uvs[0].empty()) return;
-    std::error_code ignored;
-    if (std::filesystem::exists(texture_, ignored)) mesh_.colors.clear();
     Material& material = scene.materials[0];
-    const glm::vec4 plain = mesh_.colors.empty() ? kPlainColor : glm::vec4(1.0f);
+    const glm::vec4 plain = material.base_color;
+    const auto colors = std::make_shared<std::vector<glm::vec4>>(std::exchange(mesh_.colors, {}));
     material.base_color = glm::vec4(1.0f);
     material.base_color_texture.texture = 0;
     auto texture = std::make_shared<EncodedTexture>();
     texture->decode = [file = texture_] { return ReadPicture(file, {}, Profiles::kIgnore); };
     texture->count_pixels = [file = texture_] { return CountPixels(file); };
-    texture->leave_out = [plain](Scene& without) {
+    texture->bytes = colors->size() * sizeof(glm::vec4);
+    texture->leave_out = [plain, colors](Scene& without) {
+      without.meshes[0].colors = *colors;
       without.materials[0].base_color = plain;
       without.materials[0].base_color_texture.texture = -1;
     };
@@ -456,11 +458,11 @@ class PlyLoader {
     material.bsdf = Bsdf::kDiffuse;
     if (mesh_.colors.empty()) material.base_color = kPlainColor;
     scene.materials.push_back(std::move(material));
-    KeepTexture(scene);
-    if (colors_collide_ && !mesh_.colors.empty())
-      warnings_.Add("where vertices and faces both have colours, those of the faces are taken", "");
     if (!mesh_.triangles.empty()) {
       SCUMBLE_RETURN_IF_ERROR(MakeNormals());
+      KeepTexture(scene);
+      if (colors_collide_ && !mesh_.colors.empty())
+        warnings_.Add("where vertices and faces both have colours, those of the faces are taken", "");
       scene.meshes.push_back(std::move(mesh_));
       scene.instances.push_back({path_.stem().string(), 0, glm::translate(glm::dmat4(1.0), origin_)});
     }

@@ -276,16 +276,24 @@ TEST_F(Misread, PlyWithValuesOfCornersAndFaces) {
                                       "0 0 0\n1 0 0\n1 1 0\n3 0 1 2\n3 0 1 2 0 0 1\n")));
   EXPECT_EQ(lists.meshes.at(0).colors.at(lists.meshes[0].triangles.at(0).x), glm::vec4(1, 1, 1, 1));
   EXPECT_EQ(lists.meshes.at(0).colors.at(lists.meshes[0].triangles.at(1).x), glm::vec4(0, 0, 1, 1));
-  const Scene textured = Load(ply("comment TextureFile my paint.png\n"));
+  const Scene textured = Load(ply("comment TextureFile my paint.png \t\n"));
   ASSERT_EQ(textured.textures.size(), 1u);
   EXPECT_EQ(textured.textures[0].width, 2);
   EXPECT_EQ(textured.materials[0].base_color_texture.texture, 0);
   EXPECT_TRUE(textured.meshes[0].colors.empty());
   const Scene missing = Load(ply("comment TextureFile gone.png\ncomment TextureFile b.png\n"));
   EXPECT_THAT(missing.warnings, ElementsAre(HasSubstr("only the first is read"), HasSubstr("not two for each corner"),
-                                            HasSubstr("those of the faces"), HasSubstr("gone.png")));
+                                            HasSubstr("gone.png")));
   EXPECT_EQ(missing.materials[0].base_color_texture.texture, -1);
   EXPECT_EQ(missing.materials[0].base_color, glm::vec4(1.0f)) << "colours are the surface's then";
+  EXPECT_EQ(missing.meshes[0].colors, plain.meshes[0].colors);
+  // One that is there, but damaged.
+  Write("damaged.ora", std::string("PK\x03\x04 and nothing else"));
+  const Scene damaged = Load(ply("comment TextureFile damaged.ora\n"));
+  EXPECT_THAT(damaged.warnings, ElementsAre(HasSubstr("not two for each corner"), HasSubstr("damaged.ora")));
+  EXPECT_EQ(damaged.materials[0].base_color_texture.texture, -1);
+  EXPECT_EQ(damaged.materials[0].base_color, glm::vec4(1.0f));
+  EXPECT_EQ(damaged.meshes[0].colors, plain.meshes[0].colors);
 }
 
 // Red vertices; faces of two lists, of which the second has colours.
