@@ -194,13 +194,14 @@ TEST_F(Misread, ALineOfAnObjGoesOnBehindABackslash) {
   EXPECT_THAT(wrong.error().message, HasSubstr("line 5 is 'f a b c'"));
 }
 
-// A leaf's picture cuts it out by its alpha; other pictures of what is opaque are told.
+// A leaf's picture cuts it out by its alpha; other pictures of what is opaque are told, except of a material
+// without faces.
 TEST_F(Misread, WhatAnMtlCutsOut) {
   Write("leaf.mtl", std::string("newmtl leaf\nmap_Kd leaf.png\nmap_d leaf.png\nnewmtl wing\nmap_d other.png\n"
-                                "newmtl bark\nmap_Bump bark.png\n"));
+                                "newmtl bark\nmap_Bump bark.png\nnewmtl spare\nd 0.3\nmap_d other.png\n"));
   ASSERT_TRUE(WritePicture(Path("leaf.png").string(), Picture(2, 2), {}).ok());
-  const Scene scene =
-      Load(Write("a.obj", std::string("mtllib leaf.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl leaf\nf 1 2 3\n")));
+  const Scene scene = Load(Write("a.obj", "mtllib leaf.mtl\n" + kObjTriangle +
+                                              "usemtl leaf\nf 1 2 3\nusemtl wing\nf 1 2 3\nusemtl bark\nf 1 2 3\n"));
   EXPECT_EQ(scene.materials[0].alpha_mode, AlphaMode::kBlend);
   EXPECT_EQ(scene.materials[1].alpha_mode, AlphaMode::kOpaque);
   EXPECT_THAT(scene.warnings, ::testing::UnorderedElementsAre(AllOf(HasSubstr("map_d"), HasSubstr("'wing'")),
@@ -396,6 +397,13 @@ TEST_F(Misread, GltfMaterialsThatAreSeenThrough) {
   add("opaque", "OPAQUE", 0.4, {{"KHR_materials_transmission", {{"transmissionFactor", 0}}}});
   add("glass", "OPAQUE", 1.0, glass);
   add("flat", "OPAQUE", 1.0, {{"KHR_materials_unlit", json::object()}});
+  json& primitives = b.json["meshes"][0]["primitives"];
+  const json primitive = primitives[0];
+  for (std::size_t i = 0; i < b.json["materials"].size(); ++i) {
+    primitives[i] = primitive;
+    primitives[i]["material"] = i;
+  }
+  add("thin and without faces", "BLEND", 0.4, {{"KHR_materials_unlit", json::object()}});
   EXPECT_THAT(Load(Write("scene.glb", b.Glb())).warnings,
               ElementsAre(AllOf(HasSubstr("below one half are left out"), HasSubstr("(material 0 'thin')")),
                           AllOf(HasSubstr("are solid"), HasSubstr("(material 1 'thick')")),
