@@ -208,6 +208,12 @@ void WarningCounter::MoveTo(std::vector<std::string>& lines) {
   entries_.clear();
 }
 
+std::vector<bool> UsedMaterials(const Scene& scene) {
+  std::vector<bool> used(scene.materials.size(), false);
+  for (const Mesh& mesh : scene.meshes) used[std::size_t(mesh.material)] = true;
+  return used;
+}
+
 void WarnOfCutAlpha(const Material& material, const std::string& where, WarningCounter& warnings) {
   const float alpha = material.base_color.a;
   if (material.alpha_mode != AlphaMode::kBlend || alpha <= 0.0f || alpha >= 1.0f) return;

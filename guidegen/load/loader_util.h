@@ -118,6 +118,9 @@ bool IsFinite(const glm::vec4& v);
 // At most `max_bytes` of a file's text, on one line, for use inside a message.
 std::string Excerpt(const std::string& text, std::size_t max_bytes = 200);
 
+// Of each material, whether one of the scene's meshes has it.
+std::vector<bool> UsedMaterials(const Scene& scene);
+
 // Warns if the base colour's alpha makes the surface partly transparent, which is cut at kBlendCutoff. Alpha 0 hides it
 // on purpose. `where`: the material, for the message.
 void WarnOfCutAlpha(const Material& material, const std::string& where, WarningCounter& warnings);

@@ -106,6 +106,7 @@ class ObjLoader {
     if (without_normals_ > 0) ComputeNormals();
     LoadMaterials();
     BuildMeshes();
+    WarnOfUsedMaterials();
     warnings_.MoveTo(scene_.warnings);
     missing_.Tell(scene_.notes);
     return std::move(scene_);
@@ -423,8 +424,15 @@ class ObjLoader {
     for (std::size_t i = 0; i < mtl_->materials.size(); ++i) {
       const std::string& name = mtl_->materials[i].name;
       scene_.materials.push_back(MakeMaterial(*mtl_, i, scene_));
-      WarnOfLeftOut(mtl_->materials[i], scene_.materials.back(), warnings_);
       scene_.materials.back().name = material_names_.Take(name.empty() ? "material_" + std::to_string(i) : name);
+    }
+  }
+
+  // Libraries have materials for several scenes: only those of faces are told of.
+  void WarnOfUsedMaterials() {
+    const std::vector<bool> used = UsedMaterials(scene_);
+    for (std::size_t i = 0; i < mtl_->materials.size(); ++i) {
+      if (used[i]) WarnOfLeftOut(mtl_->materials[i], scene_.materials[i], warnings_);
     }
   }
 

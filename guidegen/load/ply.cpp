@@ -8,12 +8,12 @@
 #include <optional>
 #include <sstream>
 #include <string_view>
-#include <system_error>
 #include <unordered_map>
+#include <utility>
 
 #include "core/image/color.h"
-#include "core/image/hash.h"
 #include "core/io/picture_file.h"
+#include "guidegen/load/corner_value.h"
 #include "guidegen/load/loader_util.h"
 #include "guidegen/load/mesh_normals.h"
 #include "guidegen/load/ply_parse.h"
@@ -59,18 +59,6 @@ Role RoleOf(const std::string& name) {
   }
   return kSkip;
 }
-
-// One corner's own values, which its vertex lacks.
-struct CornerValue {
-  glm::vec2 uv{0.0f};
-  glm::vec4 color{1.0f};
-  bool operator==(const CornerValue&) const = default;
-};
-struct CornerValueHash {
-  std::size_t operator()(const CornerValue& v) const {
-    return Hash(Hash(v.uv.x, v.uv.y), Hash(v.color.r, v.color.g, v.color.b, v.color.a));
-  }
-};
 
 class PlyLoader {
  public:
@@ -271,7 +259,7 @@ class PlyLoader {
   struct Face {
     std::vector<std::uint32_t> corners;
     std::vector<float> uvs;  // u and v of each corner; empty: none
-    glm::vec4 color{1.0f};
+    std::optional<glm::vec4> color;
   };
 
   Status ReadCornerUvs(const PlyProperty& property, const PlyElement& element, std::uint64_t face, PlyValues& values,
@@ -305,8 +293,7 @@ class PlyLoader {
 
   // The number of a corner's values among all that differ.
   std::uint32_t ValueNumber(const Face& face, std::size_t corner) {
-    CornerValue value;
-    value.color = face.color;
+    CornerValue value{{}, face.color};
     if (!face.uvs.empty()) value.uv = Uv(face.uvs[2 * corner], face.uvs[2 * corner + 1]);
     const auto [known, is_new] = value_numbers_.try_emplace(value, static_cast<std::uint32_t>(corner_values_.size()));
     if (is_new) corner_values_.push_back(value);
@@ -386,36 +373,53 @@ class PlyLoader {
     return corners;
   }
 
+  // Programs that write colours of faces give white to those without one. So if all are white, those of vertices count.
+  void ChooseColors() {
+    const glm::vec4 white(1.0f);
+    const auto is_white = [&](const glm::vec4& color) { return color == white; };
+    const auto is_plain = [&](const CornerValue& value) { return !value.color || *value.color == white; };
+    if (!has_face_colors_ || std::all_of(mesh_.colors.begin(), mesh_.colors.end(), is_white)) return;
+    if (std::all_of(corner_values_.begin(), corner_values_.end(), is_plain)) {
+      for (CornerValue& value : corner_values_) value.color.reset();
+      return;
+    }
+    colors_collide_ = true;
+  }
+
   // Values of corners replace those of vertices.
   Status GiveCornersTheirValues() {
     if (of_corners_.empty()) return Ok();
+    ChooseColors();
     const std::size_t before = mesh_.positions.size();
     const CornerSplit split = SplitByCorners(of_corners_, mesh_);
     SCUMBLE_RETURN_IF_ERROR(budget_.Take(file_, split.sources.size() - before, 0));
     const std::size_t count = split.values.size();
-    if (has_corner_uvs_) mesh_.uvs[0].assign(count, glm::vec2(0.0f));
-    if (has_face_colors_) mesh_.colors.assign(count, glm::vec4(1.0f));
+    if (has_corner_uvs_) mesh_.uvs[0].resize(count, glm::vec2(0.0f));
+    if (has_face_colors_) mesh_.colors.resize(count, glm::vec4(1.0f));
     for (std::size_t v = 0; v < count; ++v) {
       if (split.values[v] == kNoValue) continue;
-      if (has_corner_uvs_) mesh_.uvs[0][v] = corner_values_[split.values[v]].uv;
-      if (has_face_colors_) mesh_.colors[v] = corner_values_[split.values[v]].color;
+      const CornerValue& value = corner_values_[split.values[v]];
+      if (value.uv) mesh_.uvs[0][v] = *value.uv;
+      if (value.color) mesh_.colors[v] = *value.color;
     }
     return Ok();
   }
 
-  // The texture stands in place of colours, which scans have beside it for programs that show no textures.
+  // The texture stands in place of colours, which scans have beside it for programs that show no textures. They are back
+  // if it cannot be decoded. Call it when the vertices are final.
   void KeepTexture(Scene& scene) {
     if (texture_.empty() || mesh_.uvs[0].empty()) return;
-    std::error_code ignored;
-    if (std::filesystem::exists(texture_, ignored)) mesh_.colors.clear();
     Material& material = scene.materials[0];
-    const glm::vec4 plain = mesh_.colors.empty() ? kPlainColor : glm::vec4(1.0f);
+    const glm::vec4 plain = material.base_color;
+    const auto colors = std::make_shared<std::vector<glm::vec4>>(std::exchange(mesh_.colors, {}));
     material.base_color = glm::vec4(1.0f);
     material.base_color_texture.texture = 0;
     auto texture = std::make_shared<EncodedTexture>();
     texture->decode = [file = texture_] { return ReadPicture(file, {}, Profiles::kIgnore); };
     texture->count_pixels = [file = texture_] { return CountPixels(file); };
-    texture->leave_out = [plain](Scene& without) {
+    texture->bytes = colors->size() * sizeof(glm::vec4);
+    texture->leave_out = [plain, colors](Scene& without) {
+      without.meshes[0].colors = *colors;
       without.materials[0].base_color = plain;
       without.materials[0].base_color_texture.texture = -1;
     };
@@ -454,9 +458,11 @@ class PlyLoader {
     material.bsdf = Bsdf::kDiffuse;
     if (mesh_.colors.empty()) material.base_color = kPlainColor;
     scene.materials.push_back(std::move(material));
-    KeepTexture(scene);
     if (!mesh_.triangles.empty()) {
       SCUMBLE_RETURN_IF_ERROR(MakeNormals());
+      KeepTexture(scene);
+      if (colors_collide_ && !mesh_.colors.empty())
+        warnings_.Add("where vertices and faces both have colours, those of the faces are taken", "");
       scene.meshes.push_back(std::move(mesh_));
       scene.instances.push_back({path_.stem().string(), 0, glm::translate(glm::dmat4(1.0), origin_)});
     }
@@ -478,6 +484,7 @@ class PlyLoader {
   std::vector<Polygon> polygons_;   // that have more than three corners
   std::filesystem::path texture_;   // empty: none
   bool has_corner_uvs_ = false, has_face_colors_ = false;
+  bool colors_collide_ = false;  // both faces and vertices have some that are not white
   std::vector<CornerValue> corner_values_;
   std::unordered_map<CornerValue, std::uint32_t, CornerValueHash> value_numbers_;
   std::vector<glm::uvec3> of_corners_;  // of each triangle; empty: its corners are vertices

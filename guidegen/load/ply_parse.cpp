@@ -82,7 +82,7 @@ class HeaderParser {
   void ParseComment(std::istringstream& words) {
     std::string keyword, name;
     if (words >> keyword && keyword == "TextureFile" && std::getline(words >> std::ws, name)) {
-      header_.textures.push_back(name);
+      header_.textures.push_back(name.substr(0, name.find_last_not_of(" \t\r") + 1));
     }
   }
 

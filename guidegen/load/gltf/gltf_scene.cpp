@@ -54,6 +54,7 @@ class GltfLoader {
     SCUMBLE_RETURN_IF_ERROR(CheckHasTriangles());
     SCUMBLE_RETURN_IF_ERROR(CheckAnimatedWeights());
     if (!rig_.meshes.empty()) SCUMBLE_RETURN_IF_ERROR(rig_.Pose(std::nullopt, scene_));
+    WarnOfUsedMaterials(model_, scene_, warnings_);
     WarnOfIgnoredParts();
     warnings_.MoveTo(scene_.warnings);
     missing_.Tell(scene_.notes);

@@ -383,11 +383,19 @@ Status LoadGltfMaterials(const tinygltf::Model& model, const std::string& file, 
     if (from.alphaMode == "BLEND") material.alpha_mode = AlphaMode::kBlend;
     material.alpha_cutoff = std::isfinite(from.alphaCutoff) ? static_cast<float>(from.alphaCutoff) : 0.5f;
     material.double_sided = from.doubleSided;
-    WarnOfCutAlpha(material, owner, warnings);
-    WarnOfShading(from, owner, warnings);
     scene.materials.push_back(std::move(material));
   }
   return Ok();
+}
+
+void WarnOfUsedMaterials(const tinygltf::Model& model, const Scene& scene, WarningCounter& warnings) {
+  const std::vector<bool> used = UsedMaterials(scene);
+  for (std::size_t i = 0; i < model.materials.size(); ++i) {
+    if (!used[i]) continue;
+    const std::string owner = Label("material", static_cast<int>(i), model.materials[i].name);
+    WarnOfCutAlpha(scene.materials[i], owner, warnings);
+    WarnOfShading(model.materials[i], owner, warnings);
+  }
 }
 
 }  // namespace scumble

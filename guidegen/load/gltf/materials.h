@@ -22,4 +22,8 @@ namespace scumble {
 // size, are an error at once.
 Status LoadGltfMaterials(const tinygltf::Model& model, const std::string& file, Scene& scene, WarningCounter& warnings);
 
+// Warns of transparency that is cut, and of extensions that are not read, where a mesh of the scene has the material.
+// scene.materials begins with the model's.
+void WarnOfUsedMaterials(const tinygltf::Model& model, const Scene& scene, WarningCounter& warnings);
+
 }  // namespace scumble

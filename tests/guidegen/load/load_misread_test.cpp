@@ -15,6 +15,7 @@ namespace {
 
 using nlohmann::json;
 using ::testing::AllOf;
+using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -193,13 +194,14 @@ TEST_F(Misread, ALineOfAnObjGoesOnBehindABackslash) {
   EXPECT_THAT(wrong.error().message, HasSubstr("line 5 is 'f a b c'"));
 }
 
-// A leaf's picture cuts it out by its alpha; other pictures of what is opaque are told.
+// A leaf's picture cuts it out by its alpha; other pictures of what is opaque are told, except of a material
+// without faces.
 TEST_F(Misread, WhatAnMtlCutsOut) {
   Write("leaf.mtl", std::string("newmtl leaf\nmap_Kd leaf.png\nmap_d leaf.png\nnewmtl wing\nmap_d other.png\n"
-                                "newmtl bark\nmap_Bump bark.png\n"));
+                                "newmtl bark\nmap_Bump bark.png\nnewmtl spare\nd 0.3\nmap_d other.png\n"));
   ASSERT_TRUE(WritePicture(Path("leaf.png").string(), Picture(2, 2), {}).ok());
-  const Scene scene =
-      Load(Write("a.obj", std::string("mtllib leaf.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl leaf\nf 1 2 3\n")));
+  const Scene scene = Load(Write("a.obj", "mtllib leaf.mtl\n" + kObjTriangle +
+                                              "usemtl leaf\nf 1 2 3\nusemtl wing\nf 1 2 3\nusemtl bark\nf 1 2 3\n"));
   EXPECT_EQ(scene.materials[0].alpha_mode, AlphaMode::kBlend);
   EXPECT_EQ(scene.materials[1].alpha_mode, AlphaMode::kOpaque);
   EXPECT_THAT(scene.warnings, ::testing::UnorderedElementsAre(AllOf(HasSubstr("map_d"), HasSubstr("'wing'")),
@@ -252,7 +254,7 @@ TEST_F(Misread, PlyWithValuesOfCornersAndFaces) {
                               "3 4 2 1 2 0 0 0 0 0 0\n");
   };
   const Scene plain = Load(ply(""));
-  EXPECT_THAT(plain.warnings, ElementsAre(HasSubstr("not two for each corner")));
+  EXPECT_THAT(plain.warnings, ElementsAre(HasSubstr("not two for each corner"), HasSubstr("those of the faces")));
   ASSERT_EQ(plain.meshes.size(), 1u);
   const Mesh& mesh = plain.meshes[0];
   ASSERT_EQ(mesh.triangles.size(), 4u);
@@ -275,7 +277,7 @@ TEST_F(Misread, PlyWithValuesOfCornersAndFaces) {
                                       "0 0 0\n1 0 0\n1 1 0\n3 0 1 2\n3 0 1 2 0 0 1\n")));
   EXPECT_EQ(lists.meshes.at(0).colors.at(lists.meshes[0].triangles.at(0).x), glm::vec4(1, 1, 1, 1));
   EXPECT_EQ(lists.meshes.at(0).colors.at(lists.meshes[0].triangles.at(1).x), glm::vec4(0, 0, 1, 1));
-  const Scene textured = Load(ply("comment TextureFile my paint.png\n"));
+  const Scene textured = Load(ply("comment TextureFile my paint.png \t\n"));
   ASSERT_EQ(textured.textures.size(), 1u);
   EXPECT_EQ(textured.textures[0].width, 2);
   EXPECT_EQ(textured.materials[0].base_color_texture.texture, 0);
@@ -285,6 +287,46 @@ TEST_F(Misread, PlyWithValuesOfCornersAndFaces) {
                                             HasSubstr("gone.png")));
   EXPECT_EQ(missing.materials[0].base_color_texture.texture, -1);
   EXPECT_EQ(missing.materials[0].base_color, glm::vec4(1.0f)) << "colours are the surface's then";
+  EXPECT_EQ(missing.meshes[0].colors, plain.meshes[0].colors);
+  // One that is there, but damaged.
+  Write("damaged.ora", std::string("PK\x03\x04 and nothing else"));
+  const Scene damaged = Load(ply("comment TextureFile damaged.ora\n"));
+  EXPECT_THAT(damaged.warnings, ElementsAre(HasSubstr("not two for each corner"), HasSubstr("damaged.ora")));
+  EXPECT_EQ(damaged.materials[0].base_color_texture.texture, -1);
+  EXPECT_EQ(damaged.materials[0].base_color, glm::vec4(1.0f));
+  EXPECT_EQ(damaged.meshes[0].colors, plain.meshes[0].colors);
+}
+
+// Red vertices; faces of two lists, of which the second has colours.
+TEST_F(Misread, PlyWithColorsOfVerticesAndFaces) {
+  const std::string rgb = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+  const auto load = [&](const std::string& color) {
+    return Load(Write("a.ply",
+                      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                      "property float z\nproperty float s\nproperty float t\n" +
+                          rgb +
+                          "element face 1\nproperty list uchar int vertex_indices\n"
+                          "element face 1\nproperty list uchar int vertex_indices\n"
+                          "property list uchar float texcoord\n" +
+                          rgb +
+                          "end_header\n0 0 0 0.5 1 255 0 0\n1 0 0 0.5 1 255 0 0\n1 1 0 0.5 1 255 0 0\n"
+                          "3 0 1 2\n3 0 1 2 6 0 1 0 1 0 1 " +
+                          color + "\n"));
+  };
+  const glm::vec4 red(1, 0, 0, 1), blue(0, 0, 1, 1);
+  const Scene white = load("255 255 255");
+  EXPECT_THAT(white.warnings, IsEmpty());
+  EXPECT_THAT(white.meshes.at(0).colors, Each(red));
+  const Scene colored = load("0 0 255");
+  EXPECT_THAT(colored.warnings, ElementsAre(HasSubstr("those of the faces")));
+  const Mesh& mesh = colored.meshes.at(0);
+  ASSERT_EQ(mesh.triangles.size(), 2u);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(mesh.colors.at(mesh.triangles[0][i]), red) << "its list has none";
+    EXPECT_EQ(mesh.uvs[0].at(mesh.triangles[0][i]), glm::vec2(0.5f, 0.0f));
+    EXPECT_EQ(mesh.colors.at(mesh.triangles[1][i]), blue);
+    EXPECT_EQ(mesh.uvs[0].at(mesh.triangles[1][i]), glm::vec2(0.0f, 0.0f));
+  }
 }
 
 TEST_F(Misread, FacesOfAPlyBeforeItsVertices) {
@@ -355,6 +397,13 @@ TEST_F(Misread, GltfMaterialsThatAreSeenThrough) {
   add("opaque", "OPAQUE", 0.4, {{"KHR_materials_transmission", {{"transmissionFactor", 0}}}});
   add("glass", "OPAQUE", 1.0, glass);
   add("flat", "OPAQUE", 1.0, {{"KHR_materials_unlit", json::object()}});
+  json& primitives = b.json["meshes"][0]["primitives"];
+  const json primitive = primitives[0];
+  for (std::size_t i = 0; i < b.json["materials"].size(); ++i) {
+    primitives[i] = primitive;
+    primitives[i]["material"] = i;
+  }
+  add("thin and without faces", "BLEND", 0.4, {{"KHR_materials_unlit", json::object()}});
   EXPECT_THAT(Load(Write("scene.glb", b.Glb())).warnings,
               ElementsAre(AllOf(HasSubstr("below one half are left out"), HasSubstr("(material 0 'thin')")),
                           AllOf(HasSubstr("are solid"), HasSubstr("(material 1 'thick')")),
