@@ -156,8 +156,18 @@ Expected<std::string> ChoosePrefix(const FileContents& contents, const std::stri
   return prefixes.empty() ? std::string() : *prefixes.begin();
 }
 
+// Whether the file has R, G and B of this prefix.
+bool HasColors(const FileContents& contents, const std::string& prefix) {
+  const std::string start = prefix.empty() ? "" : internal::Upper(prefix) + ".";
+  return std::ranges::all_of(std::array{"R", "G", "B"}, [&](const char* color) {
+    return std::ranges::any_of(contents.names,
+                               [&](const std::string& name) { return internal::Upper(name) == start + color; });
+  });
+}
+
 // The prefix of the file's only alpha that is no view layer's: a renderer's picture may have any name. Empty where
-// there are several.
+// there are several, and where it is not the picture's: without colours beside it, or where R, G and B without a prefix
+// are the picture.
 std::string PrefixOfOnlyAlpha(const FileContents& contents) {
   const std::set<std::string> view_layers = ViewLayers(contents);
   std::set<std::string> prefixes;
@@ -166,11 +176,12 @@ std::string PrefixOfOnlyAlpha(const FileContents& contents) {
     const bool is_matte = internal::Upper(prefix).find("CRYPTO") != std::string::npos;
     if (found.meaning.layer == Layer::kCoverage && !is_matte && !view_layers.count(prefix)) prefixes.insert(prefix);
   }
-  return prefixes.size() == 1 ? *prefixes.begin() : std::string();
+  const bool is_picture = prefixes.size() == 1 && HasColors(contents, *prefixes.begin()) && !HasColors(contents, "");
+  return is_picture ? *prefixes.begin() : std::string();
 }
 
 // The channels that fill the wanted layers: those of the chosen view layer, else those without one. Coverage may be the
-// file's only alpha.
+// alpha of the file's only picture.
 std::vector<FoundChannel> SelectChannels(const FileContents& contents, const std::string& prefix,
                                          const LayerSet& wanted) {
   std::vector<FoundChannel> selected;

@@ -361,10 +361,11 @@ TEST(GuideFile, NamesOfManyRenderersAreKnown) {
   const auto read_with = [&](std::vector<std::string> names) {
     names.insert(names.end(), {"N.X", "N.Y", "N.Z"});
     const std::size_t z = names.size() - 1;
+    if (names[0] == "Picture.A") names.insert(names.end(), {"Picture.R", "Picture.G", "Picture.B"});
     WriteExr(folder / "names.exr", OIIO::ImageSpec(2, 2, 1, OIIO::TypeDesc::FLOAT), names,
-             [&](std::size_t c, std::size_t) { return c == z || c < 2 ? 1.0f
-                                                      : c < z - 2     ? 0.5f
-                                                                      : 0.0f; });
+             [&](std::size_t c, std::size_t) { return c == z || c < 2      ? 1.0f
+                                                      : c < z - 2 || c > z ? 0.5f
+                                                                           : 0.0f; });
     GuideReadOptions options = OnlyNormals();
     options.required.Add(Layer::kDepth);
     return ReadGuides(folder / "names.exr", options);
@@ -387,6 +388,23 @@ TEST(GuideFile, NamesOfManyRenderersAreKnown) {
   ExpectRefusal(read_with({"diffuse.A", "specular.A", "Pz"}), ErrorKind::kInput,
                 {"no layer A, depth", "Known names are A, alpha, Combined.A", "for A; depth.Z, Z, depth",
                  "it also holds", "Pz", "diffuse.A", "specular.A"});
+}
+
+TEST(GuideFile, OnlyThePicturesAlphaIsCoverage) {
+  const TemporaryFolder folder;
+  const auto read_with = [&](std::vector<std::string> names) {
+    names.insert(names.end(), {"N.X", "N.Y", "N.Z"});
+    WriteExr(folder / "alpha.exr", OIIO::ImageSpec(2, 2, 1, OIIO::TypeDesc::FLOAT), names,
+             [&](std::size_t c, std::size_t) { return c == 0 || c == names.size() - 1 ? 1.0f : 0.0f; });
+    return ReadGuides(folder / "alpha.exr", OnlyNormals());
+  };
+  EXPECT_TRUE(read_with({"Picture.A", "Picture.R", "picture.g", "Picture.B", "shadow.R", "shadow.G", "shadow.B"}));
+  for (const std::vector<std::string>& names :
+       {std::vector<std::string>{"shadow.A", "shadow.R", "shadow.G", "shadow.B", "R", "G", "B"},
+        {"specular.A", "R", "G", "B"},
+        {"shadow.A", "shadow.R"}}) {
+    ExpectRefusal(read_with(names), ErrorKind::kInput, {"no layer A", names[0]});
+  }
 }
 
 // As Arnold and Karma name them, in one view layer or beside it.
