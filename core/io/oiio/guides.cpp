@@ -329,19 +329,17 @@ std::string MattePrefix(const FileContents& contents, const std::string& prefix)
   return has_its_own || contents.from_blender ? prefix : "";
 }
 
-// The Cryptomattes of a prefix that stand for these layers, their planes not yet read. Coverage comes from all ranks of
-// Blender's; of others the first two are enough.
-Expected<BlenderMattes> MattesOf(const FileContents& contents, const std::string& prefix, const LayerSet& layers,
-                                 const std::string& name) {
-  BlenderMattes mattes;
+// The Cryptomatte of a prefix that stands for a layer, its planes not yet read; without ranks where there is none.
+// Coverage comes from all ranks of Blender's; of others the first two are enough.
+Expected<Matte> MatteOf(const FileContents& contents, const std::string& prefix, Layer layer, const std::string& name) {
+  Matte matte;
   for (const FoundMatte& found : contents.mattes) {
-    if (found.meaning.prefix != prefix || !layers.Has(found.meaning.layer)) continue;
+    if (found.meaning.prefix != prefix || found.meaning.layer != layer) continue;
     if (!contents.from_blender && found.meaning.index >= 4) continue;
     if (!found.is_float) {
       return InputError(name + ": its Cryptomatte " + found.meaning.matte +
                         " is stored in half floats, which no id survives; write it in 32-bit float");
     }
-    Matte& matte = mattes[found.meaning.layer];
     if (matte.ranks.empty()) {
       const auto manifest = contents.manifests.find(found.meaning.matte);
       if (manifest != contents.manifests.end()) {
@@ -354,6 +352,20 @@ Expected<BlenderMattes> MattesOf(const FileContents& contents, const std::string
     const std::size_t index = static_cast<std::size_t>(found.meaning.index);
     if (matte.ranks.size() <= index) matte.ranks.resize((index / 4 + 1) * 4);
     matte.ranks[index].resize(std::size_t(contents.spec.full_width) * contents.spec.full_height);
+  }
+  return matte;
+}
+
+// The Cryptomattes of a prefix that stand for these layers. One that cannot be used is an error for a layer that is
+// needed; others do without.
+Expected<BlenderMattes> MattesOf(const FileContents& contents, const std::string& prefix, const LayerSet& layers,
+                                 const LayerSet& needed, const std::string& name) {
+  BlenderMattes mattes;
+  for (const Layer layer : {Layer::kObject, Layer::kMaterial}) {
+    if (!layers.Has(layer)) continue;
+    Expected<Matte> matte = MatteOf(contents, prefix, layer, name);
+    if (!matte && needed.Has(layer)) return matte.error();
+    if (matte && !matte->ranks.empty()) mattes[layer] = std::move(*matte);
   }
   return mattes;
 }
@@ -457,7 +469,8 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
     if (!options.blender_camera.empty()) {
       SCUMBLE_ASSIGN(camera, ReadBlenderCamera(options.blender_camera));
     }
-    SCUMBLE_ASSIGN(mattes, MattesOf(contents, prefix, {Layer::kObject, Layer::kMaterial}, name));
+    const LayerSet ids = {Layer::kObject, Layer::kMaterial};
+    SCUMBLE_ASSIGN(mattes, MattesOf(contents, prefix, ids, ids, name));
     // One Cryptomatte is always read: it has the coverage that an opaque film's alpha lacks.
     if (!wanted.Has(Layer::kMaterial) && mattes.count(Layer::kObject)) mattes.erase(Layer::kMaterial);
     read_along.Add({Layer::kDepth, Layer::kPosition});
@@ -470,7 +483,7 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
     for (const Layer layer : {Layer::kObject, Layer::kMaterial}) {
       if (wanted.Has(layer) && !complete.Has(layer)) without_ids.Add(layer);
     }
-    SCUMBLE_ASSIGN(mattes, MattesOf(contents, matte_prefix, without_ids, name));
+    SCUMBLE_ASSIGN(mattes, MattesOf(contents, matte_prefix, without_ids, options.required, name));
   }
   LayerSet missing = options.required;
   for (const LayerInfo& info : AllLayers()) {
@@ -478,6 +491,11 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
     if (complete.Has(info.layer) || mattes.count(info.layer) || lit) missing.Remove(info.layer);
   }
   const bool solves_camera = contents.from_blender && !camera;
+  if (!contents.dwa.empty() && !contents.from_blender) {
+    for (const Layer layer : {Layer::kObject, Layer::kMaterial}) {
+      if (!options.required.Has(layer)) mattes.erase(layer);
+    }
+  }
   if (!contents.dwa.empty() && (solves_camera || !mattes.empty())) {
     return InputError(name + ": its compression " + contents.dwa +
                       " is lossy, which Position and Cryptomatte do not survive; render it again with the codec ZIP");
@@ -525,7 +543,10 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
   } else {
     for (const auto& [layer, matte] : mattes) {
       auto& names = layer == Layer::kObject ? guides.object_names : guides.material_names;
-      SCUMBLE_RETURN_IF_ERROR(NameMattes(matte.ranks, matte.manifest, name, guides.Plane(layer), names));
+      const Status named = NameMattes(matte.ranks, matte.manifest, name, guides.Plane(layer), names);
+      if (named) continue;
+      if (options.required.Has(layer)) return named.error();
+      guides.Remove(layer);
     }
   }
   internal::ClampCoverage(guides);

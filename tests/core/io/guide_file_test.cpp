@@ -463,6 +463,15 @@ TEST(GuideFile, CryptomatteOfOtherRenderersGivesIdsAndNames) {
   EXPECT_TRUE(read->object_names.empty());
 }
 
+// Reads a file where objects are optional.
+void ExpectNoObject(const fs::path& path) {
+  GuideReadOptions options = OnlyNormals();
+  options.optional = {Layer::kDepth, Layer::kObject};
+  const auto read = ReadGuides(path, options);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_FALSE(read->Has(Layer::kObject));
+}
+
 TEST(GuideFile, ACryptomatteThatLostItsIdsIsRefusedWhereItIsNeeded) {
   const TemporaryFolder folder;
   std::vector<std::string> names = kNormalAndA;
@@ -477,11 +486,26 @@ TEST(GuideFile, ACryptomatteThatLostItsIdsIsRefusedWhereItIsNeeded) {
     ASSERT_TRUE(output->write_image(OIIO::TypeDesc::FLOAT, ones.data())) << output->geterror();
     ASSERT_TRUE(output->close());
     EXPECT_TRUE(ReadGuides(folder / "lost.exr", OnlyNormals())) << "nothing needs it";
+    ExpectNoObject(folder / "lost.exr");
     GuideReadOptions options = OnlyNormals();
     options.required.Add(Layer::kObject);
     ExpectRefusal(ReadGuides(folder / "lost.exr", options), ErrorKind::kInput,
                   {"lost.exr", "Cryptomatte", is_half ? "half floats" : "dwaa"});
   }
+}
+
+TEST(GuideFile, ADamagedManifestIsRefusedWhereItIsNeeded) {
+  const TemporaryFolder folder;
+  std::vector<std::string> names = kNormalAndA;
+  for (const char* c : {"R", "G", "B", "A"}) names.push_back(std::string("crypto_object00.") + c);
+  OIIO::ImageSpec spec(2, 2, 1, OIIO::TypeDesc::FLOAT);
+  spec.attribute("cryptomatte/1234567/name", "crypto_object");
+  spec.attribute("cryptomatte/1234567/manifest", R"({"Pear":"zz"})");
+  WriteExr(folder / "damaged.exr", spec, names, [](std::size_t, std::size_t) { return 1.0f; });
+  ExpectNoObject(folder / "damaged.exr");
+  GuideReadOptions options = OnlyNormals();
+  options.required.Add(Layer::kObject);
+  ExpectRefusal(ReadGuides(folder / "damaged.exr", options), ErrorKind::kInput, {"damaged.exr", "manifest is damaged"});
 }
 
 TEST(GuideFile, OneOfSeveralViewLayers) {
