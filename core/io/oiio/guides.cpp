@@ -28,7 +28,7 @@ struct FoundMatte {
   int subimage;
   int channel;
   bool is_float;
-  bool is_pxr24;
+  std::string compression;
   MatteChannel meaning;
 };
 
@@ -46,7 +46,7 @@ struct FileContents {
   std::vector<FoundLight> lights;
   std::map<std::string, std::string> manifests;  // by the matte's name: "ViewLayer.CryptoObject"
   std::vector<std::string> names;                // of all channels
-  std::string dwa;  // dwaa or dwab, where a part with depth, position or a matte has that compression
+  std::string dwa;  // dwaa or dwab, where a part with depth or position has that compression
   bool has_half = false;
   bool from_blender = false;
   bool is_ours = false;  // Scumble wrote it
@@ -94,7 +94,6 @@ Expected<FileContents> Survey(OIIO::ImageInput& input, const std::string& name) 
       return InputError(name + ": its parts differ in size; write all guides at one size");
     }
     const std::string compression(spec.get_string_attribute("compression"));
-    bool has_exact = false;  // what lossy numbers make useless
     for (int c = 0; c < spec.nchannels; ++c) {
       const std::string part(spec.get_string_attribute("oiio:subimagename"));
       const std::string channel = FullName(part, spec.channelnames[c]);
@@ -103,16 +102,15 @@ Expected<FileContents> Survey(OIIO::ImageInput& input, const std::string& name) 
       if (channel.find("Combined.R") != std::string::npos) contents.from_blender = true;
       if (auto matte = ParseMatteChannel(channel)) {
         const bool is_float = spec.channelformat(c) == OIIO::TypeDesc::FLOAT;
-        contents.mattes.push_back({subimage, c, is_float, compression == "pxr24", *matte});
-        has_exact = true;
+        contents.mattes.push_back({subimage, c, is_float, compression, *matte});
       } else if (auto meaning = ParseChannelName(channel)) {
         (IsAlsoColor(channel, *meaning) ? of_colors : contents.channels).push_back({subimage, c, *meaning});
-        has_exact = has_exact || meaning->layer == Layer::kPosition || meaning->layer == Layer::kDepth;
+        const bool is_place = meaning->layer == Layer::kPosition || meaning->layer == Layer::kDepth;
+        if (is_place && compression.starts_with("dwa")) contents.dwa = compression;
       } else if (auto light = ParseLightChannel(channel)) {
         contents.lights.push_back({subimage, c, *light});
       }
     }
-    if (has_exact && compression.starts_with("dwa")) contents.dwa = compression;
     FindManifests(spec, contents);
   }
   contents.channels.insert(contents.channels.end(), of_colors.begin(), of_colors.end());
@@ -329,6 +327,11 @@ std::string MattePrefix(const FileContents& contents, const std::string& prefix)
   return has_its_own || contents.from_blender ? prefix : "";
 }
 
+Error LossyCompression(const std::string& name, const std::string& compression) {
+  return InputError(name + ": its compression " + compression +
+                    " is lossy, which Position and Cryptomatte do not survive; render it again with the codec ZIP");
+}
+
 // The Cryptomatte of a prefix that stands for a layer, its planes not yet read; without ranks where there is none.
 // Coverage comes from all ranks of Blender's; of others the first two are enough.
 Expected<Matte> MatteOf(const FileContents& contents, const std::string& prefix, Layer layer, const std::string& name) {
@@ -340,11 +343,12 @@ Expected<Matte> MatteOf(const FileContents& contents, const std::string& prefix,
       return InputError(name + ": its Cryptomatte " + found.meaning.matte +
                         " is stored in half floats, which no id survives; write it in 32-bit float");
     }
+    if (found.compression.starts_with("dwa")) return LossyCompression(name, found.compression);
     if (matte.ranks.empty()) {
       const auto manifest = contents.manifests.find(found.meaning.matte);
       if (manifest != contents.manifests.end()) {
         SCUMBLE_ASSIGN(matte.manifest, ReadManifest(manifest->second, name));
-        if (found.is_pxr24) {
+        if (found.compression == "pxr24") {
           SCUMBLE_ASSIGN(matte.manifest, RoundedAsPxr24(matte.manifest, name));
         }
       }
@@ -491,15 +495,7 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
     if (complete.Has(info.layer) || mattes.count(info.layer) || lit) missing.Remove(info.layer);
   }
   const bool solves_camera = contents.from_blender && !camera;
-  if (!contents.dwa.empty() && !contents.from_blender) {
-    for (const Layer layer : {Layer::kObject, Layer::kMaterial}) {
-      if (!options.required.Has(layer)) mattes.erase(layer);
-    }
-  }
-  if (!contents.dwa.empty() && (solves_camera || !mattes.empty())) {
-    return InputError(name + ": its compression " + contents.dwa +
-                      " is lossy, which Position and Cryptomatte do not survive; render it again with the codec ZIP");
-  }
+  if (!contents.dwa.empty() && solves_camera) return LossyCompression(name, contents.dwa);
   if (solves_camera && !missing.empty()) {  // name at once the layers that the next run would lack
     for (const Layer layer : {Layer::kDepth, Layer::kPosition}) {
       if (!complete.Has(layer)) missing.Add(layer);

@@ -494,6 +494,30 @@ TEST(GuideFile, ACryptomatteThatLostItsIdsIsRefusedWhereItIsNeeded) {
   }
 }
 
+TEST(GuideFile, OnlyTheCryptomattesOwnPartNeedsExactNumbers) {
+  const TemporaryFolder folder;
+  std::vector<OIIO::ImageSpec> specs(2, OIIO::ImageSpec(2, 2, 5, OIIO::TypeDesc::FLOAT));
+  specs[0].channelnames = {"A", "normal.X", "normal.Y", "normal.Z", "Z"};
+  specs[0].attribute("oiio:subimagename", "data");
+  specs[0].attribute("compression", "dwaa");
+  specs[1].channelnames = {"crypto_object00.R", "crypto_object00.G", "crypto_object00.B", "crypto_object00.A", "other"};
+  specs[1].attribute("oiio:subimagename", "mattes");
+  specs[1].attribute("compression", "zips");
+  const std::string file = (folder / "parts.exr").string();
+  const std::vector<float> ones(20, 1.0f);
+  auto output = OIIO::ImageOutput::create(file);
+  ASSERT_TRUE(output->open(file, 2, specs.data())) << output->geterror();
+  ASSERT_TRUE(output->write_image(OIIO::TypeDesc::FLOAT, ones.data())) << output->geterror();
+  ASSERT_TRUE(output->open(file, specs[1], OIIO::ImageOutput::AppendSubimage)) << output->geterror();
+  ASSERT_TRUE(output->write_image(OIIO::TypeDesc::FLOAT, ones.data())) << output->geterror();
+  ASSERT_TRUE(output->close());
+  GuideReadOptions options = OnlyNormals();
+  options.required.Add({Layer::kDepth, Layer::kObject});
+  const auto read = ReadGuides(file, options);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->object_names.size(), 1u);
+}
+
 TEST(GuideFile, ADamagedManifestIsRefusedWhereItIsNeeded) {
   const TemporaryFolder folder;
   std::vector<std::string> names = kNormalAndA;
