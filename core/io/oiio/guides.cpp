@@ -21,6 +21,7 @@ struct FoundChannel {
   int subimage;
   int channel;
   ChannelMeaning meaning;
+  bool is_bare_id;  // "object" or "material" alone, which may be a renderer's numbers of any kind
 };
 
 // A channel of a Cryptomatte.
@@ -72,7 +73,13 @@ std::string FullName(const std::string& part, const std::string& channel) {
   return is_known || (of_full && !ParseChannelName(channel)) ? full : channel;
 }
 
-// Names that a colour may have as well: they count where no other of the file means the same.
+// Whether a channel has a layer's name and no component.
+bool IsBareId(const std::string& channel) {
+  const std::string name = internal::Upper(channel.substr(channel.rfind('.') + 1));
+  return name == "OBJECT" || name == "MATERIAL";
+}
+
+// Names that a colour may have as well.
 bool IsAlsoColor(const std::string& channel, const ChannelMeaning& meaning) {
   const std::string name = internal::Upper(channel);
   const auto ends_in_one_of = [&](std::string_view letters) { return letters.find(name.back()) != letters.npos; };
@@ -86,7 +93,7 @@ bool IsAlsoColor(const std::string& channel, const ChannelMeaning& meaning) {
 Expected<FileContents> Survey(OIIO::ImageInput& input, const std::string& name) {
   FileContents contents;
   contents.spec = input.spec(0);
-  std::vector<FoundChannel> of_colors;
+  std::vector<FoundChannel> last;  // they count where no other of the file means the same
   for (int subimage = 0; input.seek_subimage(subimage, 0); ++subimage) {
     const OIIO::ImageSpec spec = input.spec(subimage);
     SCUMBLE_RETURN_IF_ERROR(internal::CheckSize(spec, name));
@@ -104,7 +111,9 @@ Expected<FileContents> Survey(OIIO::ImageInput& input, const std::string& name) 
         const bool is_float = spec.channelformat(c) == OIIO::TypeDesc::FLOAT;
         contents.mattes.push_back({subimage, c, is_float, compression, *matte});
       } else if (auto meaning = ParseChannelName(channel)) {
-        (IsAlsoColor(channel, *meaning) ? of_colors : contents.channels).push_back({subimage, c, *meaning});
+        const bool is_bare_id = IsBareId(channel);
+        const bool is_last = is_bare_id || IsAlsoColor(channel, *meaning);
+        (is_last ? last : contents.channels).push_back({subimage, c, *meaning, is_bare_id});
         const bool is_place = meaning->layer == Layer::kPosition || meaning->layer == Layer::kDepth;
         if (is_place && compression.starts_with("dwa")) contents.dwa = compression;
       } else if (auto light = ParseLightChannel(channel)) {
@@ -113,7 +122,7 @@ Expected<FileContents> Survey(OIIO::ImageInput& input, const std::string& name) 
     }
     FindManifests(spec, contents);
   }
-  contents.channels.insert(contents.channels.end(), of_colors.begin(), of_colors.end());
+  contents.channels.insert(contents.channels.end(), last.begin(), last.end());
   if (contents.spec.get_string_attribute("Software").substr(0, 7) == "Blender") contents.from_blender = true;
   contents.is_ours = !contents.spec.get_string_attribute("scumble:generator").empty();
   if (contents.is_ours) contents.from_blender = false;
@@ -179,14 +188,15 @@ std::string PrefixOfOnlyAlpha(const FileContents& contents) {
 }
 
 // The channels that fill the wanted layers: those of the chosen view layer, else those without one. Coverage may be the
-// alpha of the file's only picture.
+// alpha of the file's only picture. Ids of a bare name count for layers of `required` alone.
 std::vector<FoundChannel> SelectChannels(const FileContents& contents, const std::string& prefix,
-                                         const LayerSet& wanted) {
+                                         const LayerSet& wanted, const LayerSet& required) {
   std::vector<FoundChannel> selected;
   LayerSet open = wanted;
   const auto take = [&](const std::string& from) {
     for (const FoundChannel& found : contents.channels) {
       if (!open.Has(found.meaning.layer) || found.meaning.prefix != from) continue;
+      if (found.is_bare_id && !required.Has(found.meaning.layer)) continue;
       const bool taken = std::any_of(selected.begin(), selected.end(), [&](const FoundChannel& other) {
         return other.meaning.layer == found.meaning.layer && other.meaning.component == found.meaning.component;
       });
@@ -479,7 +489,7 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
     if (!wanted.Has(Layer::kMaterial) && mattes.count(Layer::kObject)) mattes.erase(Layer::kMaterial);
     read_along.Add({Layer::kDepth, Layer::kPosition});
   }
-  const std::vector<FoundChannel> channels = SelectChannels(contents, prefix, read_along);
+  const std::vector<FoundChannel> channels = SelectChannels(contents, prefix, read_along, options.required);
   LayerSet complete = CompleteLayers(channels);
   const std::string matte_prefix = MattePrefix(contents, prefix);
   if (!contents.from_blender) {
@@ -511,7 +521,7 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
     if (options.remedy && !is_for_camera) remedy += options.remedy(missing);
     LayerSet every;
     for (const LayerInfo& info : AllLayers()) every.Add(info.layer);
-    LayerSet there = CompleteLayers(SelectChannels(contents, prefix, every));
+    LayerSet there = CompleteLayers(SelectChannels(contents, prefix, every, every));
     for (const auto& [layer, matte] : mattes) there.Add(layer);
     return InputError(name + " has no layer " + missing.ToString() + remedy + ". It has " +
                       (there.empty() ? "none" : there.ToString()) + PartsOf(missing, channels) +
@@ -576,7 +586,7 @@ Expected<GuideFileInfo> InspectGuides(const std::filesystem::path& path) {
   std::set<std::string> prefixes = ViewLayers(contents);
   if (prefixes.empty()) prefixes.insert("");
   for (const std::string& prefix : prefixes) {
-    info.layers[prefix] = CompleteLayers(SelectChannels(contents, prefix, all));
+    info.layers[prefix] = CompleteLayers(SelectChannels(contents, prefix, all, all));
     for (const FoundMatte& found : contents.mattes) {
       if (!contents.is_ours && found.meaning.prefix == MattePrefix(contents, prefix))
         info.layers[prefix].Add(found.meaning.layer);

@@ -390,6 +390,24 @@ TEST(GuideFile, NamesOfManyRenderersAreKnown) {
                  "it also holds", "Pz", "diffuse.A", "specular.A"});
 }
 
+TEST(GuideFile, IdsOfABareNameAreReadWhereTheyAreRequired) {
+  const TemporaryFolder folder;
+  std::vector<std::string> names = kNormalAndA;
+  names.insert(names.end(), {"material", "object", "object.ID"});
+  WriteExr(folder / "bare.exr", OIIO::ImageSpec(2, 2, 1, OIIO::TypeDesc::FLOAT), names, [](std::size_t c, std::size_t) {
+    return c == 4 || c == 5 ? 5e8f : c == 6 ? 7.0f : 1.0f;
+  });
+  GuideReadOptions options = OnlyNormals();
+  options.required.Add(Layer::kObject);
+  options.optional = {Layer::kObject, Layer::kMaterial};
+  const auto read = ReadGuides(folder / "bare.exr", options);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->Plane(Layer::kObject)[3], 7.0f) << "object.ID goes before object";
+  EXPECT_FALSE(read->Has(Layer::kMaterial));
+  options.required.Add(Layer::kMaterial);
+  ExpectRefusal(ReadGuides(folder / "bare.exr", options), ErrorKind::kInput, {"layer material", "above 2^24"});
+}
+
 TEST(GuideFile, OnlyThePicturesAlphaIsCoverage) {
   const TemporaryFolder folder;
   const auto read_with = [&](std::vector<std::string> names) {
