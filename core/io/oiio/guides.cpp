@@ -21,6 +21,7 @@ struct FoundChannel {
   int subimage;
   int channel;
   ChannelMeaning meaning;
+  bool is_bare_id;  // "object" or "material" alone, which may be a renderer's numbers of any kind
 };
 
 // A channel of a Cryptomatte.
@@ -28,7 +29,7 @@ struct FoundMatte {
   int subimage;
   int channel;
   bool is_float;
-  bool is_pxr24;
+  std::string compression;
   MatteChannel meaning;
 };
 
@@ -46,7 +47,7 @@ struct FileContents {
   std::vector<FoundLight> lights;
   std::map<std::string, std::string> manifests;  // by the matte's name: "ViewLayer.CryptoObject"
   std::vector<std::string> names;                // of all channels
-  std::string dwa;  // dwaa or dwab, where a part with depth, position or a matte has that compression
+  std::string dwa;  // dwaa or dwab, where a part with depth or position has that compression
   bool has_half = false;
   bool from_blender = false;
   bool is_ours = false;  // Scumble wrote it
@@ -72,7 +73,13 @@ std::string FullName(const std::string& part, const std::string& channel) {
   return is_known || (of_full && !ParseChannelName(channel)) ? full : channel;
 }
 
-// Names that a colour may have as well: they count where no other of the file means the same.
+// Whether a channel has a layer's name and no component.
+bool IsBareId(const std::string& channel) {
+  const std::string name = internal::Upper(channel.substr(channel.rfind('.') + 1));
+  return name == "OBJECT" || name == "MATERIAL";
+}
+
+// Names that a colour may have as well.
 bool IsAlsoColor(const std::string& channel, const ChannelMeaning& meaning) {
   const std::string name = internal::Upper(channel);
   const auto ends_in_one_of = [&](std::string_view letters) { return letters.find(name.back()) != letters.npos; };
@@ -86,7 +93,7 @@ bool IsAlsoColor(const std::string& channel, const ChannelMeaning& meaning) {
 Expected<FileContents> Survey(OIIO::ImageInput& input, const std::string& name) {
   FileContents contents;
   contents.spec = input.spec(0);
-  std::vector<FoundChannel> of_colors;
+  std::vector<FoundChannel> last;  // they count where no other of the file means the same
   for (int subimage = 0; input.seek_subimage(subimage, 0); ++subimage) {
     const OIIO::ImageSpec spec = input.spec(subimage);
     SCUMBLE_RETURN_IF_ERROR(internal::CheckSize(spec, name));
@@ -94,7 +101,6 @@ Expected<FileContents> Survey(OIIO::ImageInput& input, const std::string& name) 
       return InputError(name + ": its parts differ in size; write all guides at one size");
     }
     const std::string compression(spec.get_string_attribute("compression"));
-    bool has_exact = false;  // what lossy numbers make useless
     for (int c = 0; c < spec.nchannels; ++c) {
       const std::string part(spec.get_string_attribute("oiio:subimagename"));
       const std::string channel = FullName(part, spec.channelnames[c]);
@@ -103,19 +109,20 @@ Expected<FileContents> Survey(OIIO::ImageInput& input, const std::string& name) 
       if (channel.find("Combined.R") != std::string::npos) contents.from_blender = true;
       if (auto matte = ParseMatteChannel(channel)) {
         const bool is_float = spec.channelformat(c) == OIIO::TypeDesc::FLOAT;
-        contents.mattes.push_back({subimage, c, is_float, compression == "pxr24", *matte});
-        has_exact = true;
+        contents.mattes.push_back({subimage, c, is_float, compression, *matte});
       } else if (auto meaning = ParseChannelName(channel)) {
-        (IsAlsoColor(channel, *meaning) ? of_colors : contents.channels).push_back({subimage, c, *meaning});
-        has_exact = has_exact || meaning->layer == Layer::kPosition || meaning->layer == Layer::kDepth;
+        const bool is_bare_id = IsBareId(channel);
+        const bool is_last = is_bare_id || IsAlsoColor(channel, *meaning);
+        (is_last ? last : contents.channels).push_back({subimage, c, *meaning, is_bare_id});
+        const bool is_place = meaning->layer == Layer::kPosition || meaning->layer == Layer::kDepth;
+        if (is_place && compression.starts_with("dwa")) contents.dwa = compression;
       } else if (auto light = ParseLightChannel(channel)) {
         contents.lights.push_back({subimage, c, *light});
       }
     }
-    if (has_exact && compression.starts_with("dwa")) contents.dwa = compression;
     FindManifests(spec, contents);
   }
-  contents.channels.insert(contents.channels.end(), of_colors.begin(), of_colors.end());
+  contents.channels.insert(contents.channels.end(), last.begin(), last.end());
   if (contents.spec.get_string_attribute("Software").substr(0, 7) == "Blender") contents.from_blender = true;
   contents.is_ours = !contents.spec.get_string_attribute("scumble:generator").empty();
   if (contents.is_ours) contents.from_blender = false;
@@ -156,8 +163,18 @@ Expected<std::string> ChoosePrefix(const FileContents& contents, const std::stri
   return prefixes.empty() ? std::string() : *prefixes.begin();
 }
 
+// Whether the file has R, G and B of this prefix.
+bool HasColors(const FileContents& contents, const std::string& prefix) {
+  const std::string start = prefix.empty() ? "" : internal::Upper(prefix) + ".";
+  return std::ranges::all_of(std::array{"R", "G", "B"}, [&](const char* color) {
+    return std::ranges::any_of(contents.names,
+                               [&](const std::string& name) { return internal::Upper(name) == start + color; });
+  });
+}
+
 // The prefix of the file's only alpha that is no view layer's: a renderer's picture may have any name. Empty where
-// there are several.
+// there are several, and where it is not the picture's: without colours beside it, or where R, G and B without a prefix
+// are the picture.
 std::string PrefixOfOnlyAlpha(const FileContents& contents) {
   const std::set<std::string> view_layers = ViewLayers(contents);
   std::set<std::string> prefixes;
@@ -166,18 +183,20 @@ std::string PrefixOfOnlyAlpha(const FileContents& contents) {
     const bool is_matte = internal::Upper(prefix).find("CRYPTO") != std::string::npos;
     if (found.meaning.layer == Layer::kCoverage && !is_matte && !view_layers.count(prefix)) prefixes.insert(prefix);
   }
-  return prefixes.size() == 1 ? *prefixes.begin() : std::string();
+  const bool is_picture = prefixes.size() == 1 && HasColors(contents, *prefixes.begin()) && !HasColors(contents, "");
+  return is_picture ? *prefixes.begin() : std::string();
 }
 
 // The channels that fill the wanted layers: those of the chosen view layer, else those without one. Coverage may be the
-// file's only alpha.
+// alpha of the file's only picture. Ids of a bare name count for layers of `required` alone.
 std::vector<FoundChannel> SelectChannels(const FileContents& contents, const std::string& prefix,
-                                         const LayerSet& wanted) {
+                                         const LayerSet& wanted, const LayerSet& required) {
   std::vector<FoundChannel> selected;
   LayerSet open = wanted;
   const auto take = [&](const std::string& from) {
     for (const FoundChannel& found : contents.channels) {
       if (!open.Has(found.meaning.layer) || found.meaning.prefix != from) continue;
+      if (found.is_bare_id && !required.Has(found.meaning.layer)) continue;
       const bool taken = std::any_of(selected.begin(), selected.end(), [&](const FoundChannel& other) {
         return other.meaning.layer == found.meaning.layer && other.meaning.component == found.meaning.component;
       });
@@ -318,24 +337,28 @@ std::string MattePrefix(const FileContents& contents, const std::string& prefix)
   return has_its_own || contents.from_blender ? prefix : "";
 }
 
-// The Cryptomattes of a prefix that stand for these layers, their planes not yet read. Coverage comes from all ranks of
-// Blender's; of others the first two are enough.
-Expected<BlenderMattes> MattesOf(const FileContents& contents, const std::string& prefix, const LayerSet& layers,
-                                 const std::string& name) {
-  BlenderMattes mattes;
+Error LossyCompression(const std::string& name, const std::string& compression) {
+  return InputError(name + ": its compression " + compression +
+                    " is lossy, which Position and Cryptomatte do not survive; render it again with the codec ZIP");
+}
+
+// The Cryptomatte of a prefix that stands for a layer, its planes not yet read; without ranks where there is none.
+// Coverage comes from all ranks of Blender's; of others the first two are enough.
+Expected<Matte> MatteOf(const FileContents& contents, const std::string& prefix, Layer layer, const std::string& name) {
+  Matte matte;
   for (const FoundMatte& found : contents.mattes) {
-    if (found.meaning.prefix != prefix || !layers.Has(found.meaning.layer)) continue;
+    if (found.meaning.prefix != prefix || found.meaning.layer != layer) continue;
     if (!contents.from_blender && found.meaning.index >= 4) continue;
     if (!found.is_float) {
       return InputError(name + ": its Cryptomatte " + found.meaning.matte +
                         " is stored in half floats, which no id survives; write it in 32-bit float");
     }
-    Matte& matte = mattes[found.meaning.layer];
+    if (found.compression.starts_with("dwa")) return LossyCompression(name, found.compression);
     if (matte.ranks.empty()) {
       const auto manifest = contents.manifests.find(found.meaning.matte);
       if (manifest != contents.manifests.end()) {
         SCUMBLE_ASSIGN(matte.manifest, ReadManifest(manifest->second, name));
-        if (found.is_pxr24) {
+        if (found.compression == "pxr24") {
           SCUMBLE_ASSIGN(matte.manifest, RoundedAsPxr24(matte.manifest, name));
         }
       }
@@ -343,6 +366,20 @@ Expected<BlenderMattes> MattesOf(const FileContents& contents, const std::string
     const std::size_t index = static_cast<std::size_t>(found.meaning.index);
     if (matte.ranks.size() <= index) matte.ranks.resize((index / 4 + 1) * 4);
     matte.ranks[index].resize(std::size_t(contents.spec.full_width) * contents.spec.full_height);
+  }
+  return matte;
+}
+
+// The Cryptomattes of a prefix that stand for these layers. One that cannot be used is an error for a layer that is
+// needed; others do without.
+Expected<BlenderMattes> MattesOf(const FileContents& contents, const std::string& prefix, const LayerSet& layers,
+                                 const LayerSet& needed, const std::string& name) {
+  BlenderMattes mattes;
+  for (const Layer layer : {Layer::kObject, Layer::kMaterial}) {
+    if (!layers.Has(layer)) continue;
+    Expected<Matte> matte = MatteOf(contents, prefix, layer, name);
+    if (!matte && needed.Has(layer)) return matte.error();
+    if (matte && !matte->ranks.empty()) mattes[layer] = std::move(*matte);
   }
   return mattes;
 }
@@ -446,12 +483,13 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
     if (!options.blender_camera.empty()) {
       SCUMBLE_ASSIGN(camera, ReadBlenderCamera(options.blender_camera));
     }
-    SCUMBLE_ASSIGN(mattes, MattesOf(contents, prefix, {Layer::kObject, Layer::kMaterial}, name));
+    const LayerSet ids = {Layer::kObject, Layer::kMaterial};
+    SCUMBLE_ASSIGN(mattes, MattesOf(contents, prefix, ids, ids, name));
     // One Cryptomatte is always read: it has the coverage that an opaque film's alpha lacks.
     if (!wanted.Has(Layer::kMaterial) && mattes.count(Layer::kObject)) mattes.erase(Layer::kMaterial);
     read_along.Add({Layer::kDepth, Layer::kPosition});
   }
-  const std::vector<FoundChannel> channels = SelectChannels(contents, prefix, read_along);
+  const std::vector<FoundChannel> channels = SelectChannels(contents, prefix, read_along, options.required);
   LayerSet complete = CompleteLayers(channels);
   const std::string matte_prefix = MattePrefix(contents, prefix);
   if (!contents.from_blender) {
@@ -459,7 +497,7 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
     for (const Layer layer : {Layer::kObject, Layer::kMaterial}) {
       if (wanted.Has(layer) && !complete.Has(layer)) without_ids.Add(layer);
     }
-    SCUMBLE_ASSIGN(mattes, MattesOf(contents, matte_prefix, without_ids, name));
+    SCUMBLE_ASSIGN(mattes, MattesOf(contents, matte_prefix, without_ids, options.required, name));
   }
   LayerSet missing = options.required;
   for (const LayerInfo& info : AllLayers()) {
@@ -467,10 +505,7 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
     if (complete.Has(info.layer) || mattes.count(info.layer) || lit) missing.Remove(info.layer);
   }
   const bool solves_camera = contents.from_blender && !camera;
-  if (!contents.dwa.empty() && (solves_camera || !mattes.empty())) {
-    return InputError(name + ": its compression " + contents.dwa +
-                      " is lossy, which Position and Cryptomatte do not survive; render it again with the codec ZIP");
-  }
+  if (!contents.dwa.empty() && solves_camera) return LossyCompression(name, contents.dwa);
   if (solves_camera && !missing.empty()) {  // name at once the layers that the next run would lack
     for (const Layer layer : {Layer::kDepth, Layer::kPosition}) {
       if (!complete.Has(layer)) missing.Add(layer);
@@ -486,7 +521,7 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
     if (options.remedy && !is_for_camera) remedy += options.remedy(missing);
     LayerSet every;
     for (const LayerInfo& info : AllLayers()) every.Add(info.layer);
-    LayerSet there = CompleteLayers(SelectChannels(contents, prefix, every));
+    LayerSet there = CompleteLayers(SelectChannels(contents, prefix, every, every));
     for (const auto& [layer, matte] : mattes) there.Add(layer);
     return InputError(name + " has no layer " + missing.ToString() + remedy + ". It has " +
                       (there.empty() ? "none" : there.ToString()) + PartsOf(missing, channels) +
@@ -514,7 +549,10 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
   } else {
     for (const auto& [layer, matte] : mattes) {
       auto& names = layer == Layer::kObject ? guides.object_names : guides.material_names;
-      SCUMBLE_RETURN_IF_ERROR(NameMattes(matte.ranks, matte.manifest, name, guides.Plane(layer), names));
+      const Status named = NameMattes(matte.ranks, matte.manifest, name, guides.Plane(layer), names);
+      if (named) continue;
+      if (options.required.Has(layer)) return named.error();
+      guides.Remove(layer);
     }
   }
   internal::ClampCoverage(guides);
@@ -548,7 +586,7 @@ Expected<GuideFileInfo> InspectGuides(const std::filesystem::path& path) {
   std::set<std::string> prefixes = ViewLayers(contents);
   if (prefixes.empty()) prefixes.insert("");
   for (const std::string& prefix : prefixes) {
-    info.layers[prefix] = CompleteLayers(SelectChannels(contents, prefix, all));
+    info.layers[prefix] = CompleteLayers(SelectChannels(contents, prefix, all, all));
     for (const FoundMatte& found : contents.mattes) {
       if (!contents.is_ours && found.meaning.prefix == MattePrefix(contents, prefix))
         info.layers[prefix].Add(found.meaning.layer);

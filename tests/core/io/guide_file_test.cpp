@@ -361,10 +361,11 @@ TEST(GuideFile, NamesOfManyRenderersAreKnown) {
   const auto read_with = [&](std::vector<std::string> names) {
     names.insert(names.end(), {"N.X", "N.Y", "N.Z"});
     const std::size_t z = names.size() - 1;
+    if (names[0] == "Picture.A") names.insert(names.end(), {"Picture.R", "Picture.G", "Picture.B"});
     WriteExr(folder / "names.exr", OIIO::ImageSpec(2, 2, 1, OIIO::TypeDesc::FLOAT), names,
-             [&](std::size_t c, std::size_t) { return c == z || c < 2 ? 1.0f
-                                                      : c < z - 2     ? 0.5f
-                                                                      : 0.0f; });
+             [&](std::size_t c, std::size_t) { return c == z || c < 2      ? 1.0f
+                                                      : c < z - 2 || c > z ? 0.5f
+                                                                           : 0.0f; });
     GuideReadOptions options = OnlyNormals();
     options.required.Add(Layer::kDepth);
     return ReadGuides(folder / "names.exr", options);
@@ -387,6 +388,41 @@ TEST(GuideFile, NamesOfManyRenderersAreKnown) {
   ExpectRefusal(read_with({"diffuse.A", "specular.A", "Pz"}), ErrorKind::kInput,
                 {"no layer A, depth", "Known names are A, alpha, Combined.A", "for A; depth.Z, Z, depth",
                  "it also holds", "Pz", "diffuse.A", "specular.A"});
+}
+
+TEST(GuideFile, IdsOfABareNameAreReadWhereTheyAreRequired) {
+  const TemporaryFolder folder;
+  std::vector<std::string> names = kNormalAndA;
+  names.insert(names.end(), {"material", "object", "object.ID"});
+  WriteExr(folder / "bare.exr", OIIO::ImageSpec(2, 2, 1, OIIO::TypeDesc::FLOAT), names, [](std::size_t c, std::size_t) {
+    return c == 4 || c == 5 ? 5e8f : c == 6 ? 7.0f : 1.0f;
+  });
+  GuideReadOptions options = OnlyNormals();
+  options.required.Add(Layer::kObject);
+  options.optional = {Layer::kObject, Layer::kMaterial};
+  const auto read = ReadGuides(folder / "bare.exr", options);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->Plane(Layer::kObject)[3], 7.0f) << "object.ID goes before object";
+  EXPECT_FALSE(read->Has(Layer::kMaterial));
+  options.required.Add(Layer::kMaterial);
+  ExpectRefusal(ReadGuides(folder / "bare.exr", options), ErrorKind::kInput, {"layer material", "above 2^24"});
+}
+
+TEST(GuideFile, OnlyThePicturesAlphaIsCoverage) {
+  const TemporaryFolder folder;
+  const auto read_with = [&](std::vector<std::string> names) {
+    names.insert(names.end(), {"N.X", "N.Y", "N.Z"});
+    WriteExr(folder / "alpha.exr", OIIO::ImageSpec(2, 2, 1, OIIO::TypeDesc::FLOAT), names,
+             [&](std::size_t c, std::size_t) { return c == 0 || c == names.size() - 1 ? 1.0f : 0.0f; });
+    return ReadGuides(folder / "alpha.exr", OnlyNormals());
+  };
+  EXPECT_TRUE(read_with({"Picture.A", "Picture.R", "picture.g", "Picture.B", "shadow.R", "shadow.G", "shadow.B"}));
+  for (const std::vector<std::string>& names :
+       {std::vector<std::string>{"shadow.A", "shadow.R", "shadow.G", "shadow.B", "R", "G", "B"},
+        {"specular.A", "R", "G", "B"},
+        {"shadow.A", "shadow.R"}}) {
+    ExpectRefusal(read_with(names), ErrorKind::kInput, {"no layer A", names[0]});
+  }
 }
 
 // As Arnold and Karma name them, in one view layer or beside it.
@@ -445,6 +481,15 @@ TEST(GuideFile, CryptomatteOfOtherRenderersGivesIdsAndNames) {
   EXPECT_TRUE(read->object_names.empty());
 }
 
+// Reads a file where objects are optional.
+void ExpectNoObject(const fs::path& path) {
+  GuideReadOptions options = OnlyNormals();
+  options.optional = {Layer::kDepth, Layer::kObject};
+  const auto read = ReadGuides(path, options);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_FALSE(read->Has(Layer::kObject));
+}
+
 TEST(GuideFile, ACryptomatteThatLostItsIdsIsRefusedWhereItIsNeeded) {
   const TemporaryFolder folder;
   std::vector<std::string> names = kNormalAndA;
@@ -459,11 +504,50 @@ TEST(GuideFile, ACryptomatteThatLostItsIdsIsRefusedWhereItIsNeeded) {
     ASSERT_TRUE(output->write_image(OIIO::TypeDesc::FLOAT, ones.data())) << output->geterror();
     ASSERT_TRUE(output->close());
     EXPECT_TRUE(ReadGuides(folder / "lost.exr", OnlyNormals())) << "nothing needs it";
+    ExpectNoObject(folder / "lost.exr");
     GuideReadOptions options = OnlyNormals();
     options.required.Add(Layer::kObject);
     ExpectRefusal(ReadGuides(folder / "lost.exr", options), ErrorKind::kInput,
                   {"lost.exr", "Cryptomatte", is_half ? "half floats" : "dwaa"});
   }
+}
+
+TEST(GuideFile, OnlyTheCryptomattesOwnPartNeedsExactNumbers) {
+  const TemporaryFolder folder;
+  std::vector<OIIO::ImageSpec> specs(2, OIIO::ImageSpec(2, 2, 5, OIIO::TypeDesc::FLOAT));
+  specs[0].channelnames = {"A", "normal.X", "normal.Y", "normal.Z", "Z"};
+  specs[0].attribute("oiio:subimagename", "data");
+  specs[0].attribute("compression", "dwaa");
+  specs[1].channelnames = {"crypto_object00.R", "crypto_object00.G", "crypto_object00.B", "crypto_object00.A", "other"};
+  specs[1].attribute("oiio:subimagename", "mattes");
+  specs[1].attribute("compression", "zips");
+  const std::string file = (folder / "parts.exr").string();
+  const std::vector<float> ones(20, 1.0f);
+  auto output = OIIO::ImageOutput::create(file);
+  ASSERT_TRUE(output->open(file, 2, specs.data())) << output->geterror();
+  ASSERT_TRUE(output->write_image(OIIO::TypeDesc::FLOAT, ones.data())) << output->geterror();
+  ASSERT_TRUE(output->open(file, specs[1], OIIO::ImageOutput::AppendSubimage)) << output->geterror();
+  ASSERT_TRUE(output->write_image(OIIO::TypeDesc::FLOAT, ones.data())) << output->geterror();
+  ASSERT_TRUE(output->close());
+  GuideReadOptions options = OnlyNormals();
+  options.required.Add({Layer::kDepth, Layer::kObject});
+  const auto read = ReadGuides(file, options);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->object_names.size(), 1u);
+}
+
+TEST(GuideFile, ADamagedManifestIsRefusedWhereItIsNeeded) {
+  const TemporaryFolder folder;
+  std::vector<std::string> names = kNormalAndA;
+  for (const char* c : {"R", "G", "B", "A"}) names.push_back(std::string("crypto_object00.") + c);
+  OIIO::ImageSpec spec(2, 2, 1, OIIO::TypeDesc::FLOAT);
+  spec.attribute("cryptomatte/1234567/name", "crypto_object");
+  spec.attribute("cryptomatte/1234567/manifest", R"({"Pear":"zz"})");
+  WriteExr(folder / "damaged.exr", spec, names, [](std::size_t, std::size_t) { return 1.0f; });
+  ExpectNoObject(folder / "damaged.exr");
+  GuideReadOptions options = OnlyNormals();
+  options.required.Add(Layer::kObject);
+  ExpectRefusal(ReadGuides(folder / "damaged.exr", options), ErrorKind::kInput, {"damaged.exr", "manifest is damaged"});
 }
 
 TEST(GuideFile, OneOfSeveralViewLayers) {
