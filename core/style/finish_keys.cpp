@@ -195,15 +195,12 @@ Status TurnFinishDial(std::span<FinishPass> passes, const std::string& key, cons
 
 namespace {
 
-// Numbers with all digits: as a float if they are one, else as a double.
+// Numbers with all digits of a float.
 std::string ExactText(const KeyValue& value) {
   const auto* number = std::get_if<double>(&value);
   if (!number || !std::isfinite(*number)) return ToText(value);
   char text[40];
-  const auto single = static_cast<float>(*number);
-  const bool is_float = static_cast<double>(single) == *number;
-  const char* end = is_float ? std::to_chars(text, text + sizeof text, single).ptr
-                             : std::to_chars(text, text + sizeof text, *number).ptr;
+  const char* const end = std::to_chars(text, text + sizeof text, static_cast<float>(*number)).ptr;
   return std::string(static_cast<const char*>(text), end);
 }
 

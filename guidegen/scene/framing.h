@@ -15,10 +15,10 @@ namespace scumble {
 struct ViewAngles {
   double azimuth = 35.0;
   double elevation = 20.0;  // -90 … 90
-  double distance = 0.0;  // m from the centre of the scene's bounding sphere; 0 frames it with a margin
-  double right = 0.0;     // m in the picture plane from that centre to what is looked at
-  double up = 0.0;        // likewise
-  double fov = 0.0;       // the picture's vertical angle of view, below 180; 0: 35
+  double distance = 0.0;    // m from the centre of the scene's bounding sphere; 0 frames it with a margin
+  double right = 0.0;       // m in the picture plane from that centre to what is looked at
+  double up = 0.0;          // likewise
+  double fov = 0.0;         // the picture's vertical angle of view, below 180; 0: 35
 };
 
 // The direction of a sun in the camera's view space, degrees (core/image/direction.h).

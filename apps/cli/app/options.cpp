@@ -231,7 +231,8 @@ Expected<std::optional<ViewAngles>> ParseView(const std::string& text) {
   if (numbers.size() == 4) return UsageError("--view " + text + ": RIGHT needs UP: AZ,EL,DIST,RIGHT,UP");
   numbers.resize(6, 0.0);
   const ViewAngles view{numbers[0], numbers[1], numbers[2], numbers[3], numbers[4], numbers[5]};
-  if (const Status good = CheckView(view); !good.ok()) return UsageError("--view " + text + ": " + good.error().message);
+  if (const Status good = CheckView(view); !good.ok())
+    return UsageError("--view " + text + ": " + good.error().message);
   return std::optional(view);
 }
 
