@@ -48,15 +48,13 @@ Status PictureSequence::Begin(const Sequence& sequence, int width, int height, c
   FrameToMeasure choice;
   for (const int frame : sequence.frames) {
     const Expected<FrameGuides> found = guides_at(frame, progress);
-    if (!found && found.error().kind == ErrorKind::kCancelled) return found.error();
-    if (!found) continue;  // told when it is made
+    if (!found) return CannotMeasure(found.error(), frame, is_exposed() ? "--exposure STOPS" : "--finish-measures");
     if (choice.IsEnough(frame, *found->guides)) return measure(frame, *found->guides);
   }
   if (choice.best) {
     SCUMBLE_ASSIGN(const FrameGuides found, guides_at(*choice.best, progress));
     return measure(*choice.best, *found.guides);
   }
-  if (!choice.any_read) return Ok();
   if (is_exposed()) state_.exposure = 0.0;
   if (MeasuresFinish(styles_)) state_.finish_measures.emplace();
   const char* const options = !is_exposed()             ? "--finish-measures"

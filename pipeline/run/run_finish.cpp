@@ -282,13 +282,13 @@ Expected<RunReport> RunFinish(FinishRequest request, const SequenceListener& lis
     FrameToMeasure choice;
     for (const int frame : sequence->frames) {
       const Expected<GuideSet> set = guides_at(frame);
-      if (set && choice.IsEnough(frame, *set)) return measure(frame, *set);  // else told when it is made
+      if (!set) return CannotMeasure(set.error(), frame, "--finish-measures");
+      if (choice.IsEnough(frame, *set)) return measure(frame, *set);
     }
     if (choice.best) {
       SCUMBLE_ASSIGN(const GuideSet set, guides_at(*choice.best));
       return measure(*choice.best, set);
     }
-    if (!choice.any_read) return Ok();
     state.measures.emplace();
     context.Warn(NothingToMeasure(sequence->frames, "--finish-measures"));
     return Ok();

@@ -285,10 +285,15 @@ FinishMeasures MeasureAndTell(const GuideSet& guides, const LayerSet& read, std:
 }
 
 bool FrameToMeasure::IsEnough(int frame, const GuideSet& guides) {
-  any_read = true;
   const double shown = CoveredShare(guides);
   if (shown > share) best = frame, share = shown;
   return shown >= kEnoughToMeasure;
+}
+
+Error CannotMeasure(const Error& error, int frame, const std::string& option) {
+  if (error.kind == ErrorKind::kCancelled) return error;
+  return {error.kind, fmt::format("{}; all frames are painted by what frame {} shows: fix it, or give {}",
+                                  error.message, frame, option)};
 }
 
 std::string NothingToMeasure(const std::vector<int>& frames, const std::string& options) {

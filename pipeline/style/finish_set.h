@@ -89,11 +89,14 @@ FinishMeasures MeasureAndTell(const GuideSet& guides, const LayerSet& read, std:
 struct FrameToMeasure {
   std::optional<int> best;  // so far
   double share = 0.0;       // that it shows
-  bool any_read = false;
 
-  // Whether it need not look on. To be called once for each frame that can be read, in order.
+  // Whether it need not look on. To be called once for each frame, in order.
   bool IsEnough(int frame, const GuideSet& guides);
 };
+
+// The error of a frame that cannot be read, and might be the one to measure: without it, others would be painted
+// otherwise than with it. `option`: what gives what was to be measured.
+Error CannotMeasure(const Error& error, int frame, const std::string& option);
 
 // The warning of a sequence in which no frame shows a surface. `options`: those that give what was to be measured.
 std::string NothingToMeasure(const std::vector<int>& frames, const std::string& options);

@@ -120,16 +120,16 @@ Region Whole(const WideCase& all) { return {0, 0, all.guides.width(), all.guides
 
 // White paint at one pixel of a black chunk.
 TEST(WideVote, AChunkVotesOverOneCellOfItsGrid) {
-  Picture paint(64, 64);
+  Picture paint(128, 128);
   std::fill(paint.rgba.begin(), paint.rgba.end(), std::uint16_t{65535});
-  for (int y = 0; y < 64; ++y) {
-    for (int x = 0; x < 32; ++x) std::fill_n(paint.At(x, y), 3, std::uint16_t{0});
+  for (int y = 0; y < 128; ++y) {
+    for (int x = 0; x < 64; ++x) std::fill_n(paint.At(x, y), 3, std::uint16_t{0});
   }
   for (int level = 0; level <= 4; ++level) {
     WideCase all{GuideSet(31, 31), {}, std::vector<std::uint8_t>(31 * 31, 1), Prepared({paint}, 0.0)};
     all.field.Reset(31, 31);
-    for (int i = 0; i < 31 * 31; ++i) all.field.Set(std::size_t(i), i % 31, i / 31, 0, 6);
-    all.field.Set(all.field.Index(15, 15), 50, 15, 0, level);
+    for (int i = 0; i < 31 * 31; ++i) all.field.Set(std::size_t(i), 30 + i % 31, 45 + i / 31, 0, 6);
+    all.field.Set(all.field.Index(15, 15), 85, 64, 0, level);
     for (const int radius : {2, 3, 8}) {
       const Picture painted = WideVotes(all.Input(radius, Whole(all)));
       const int reach = std::min(radius, 1 << level);
