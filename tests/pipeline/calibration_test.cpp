@@ -261,34 +261,47 @@ TEST(Calibration, AnewForgetsWhatWasKept) {
 }
 
 TEST(Calibration, ABrokenCacheIsMeasuredOver) {
-  const std::string runs10 = "[1,1,1,1,1,1,1,1,1,1]";
-  for (
-      const std::string& text :
-      {std::string(), std::string("{"), std::string("[]"), std::string("{\"ways\": {}}"),
-       std::string(R"({"circumstances": "others", "cold_ms": 0, "off": {}, "ways": {"way 0": [1]}})"),
-       std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "off": {}})"),
-       std::string(R"({"circumstances": "a machine and a scene", "off": {}, "ways": {"way 0": [1]}})"),
-       std::string(R"({"circumstances": "a machine and a scene", "cold_ms": -1, "off": {}, "ways": {"way 0": [1]}})"),
-       std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "off": {}, "ways": {"way 0": 1}})"),
-       std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "ways": {"way 0": [1]}})"),
-       std::string(
-           R"({"circumstances": "a machine and a scene", "cold_ms": 0, "off": {"way 0": -1}, "ways": {"way 0": [1]}})"),
-       std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "off": [], "ways": {"way 0": [1]}})"),
-       std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "off": {}, "ways": {"way 0": ["x"]}})"),
-       std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "off": {}, "ways": {"way 0": [-1]}})"),
-       R"({"circumstances": "a machine and a scene", "cold_ms": 0, "off": {}, "ways": {"way 0": )" + runs10 + "}}"}) {
-    MemoryCache cache;
-    FakeClock clock{{{50.0}, {30.0}}};
-    MustPick(Ladder(2, &cache), 40.0, clock);
-    cache.Overwrite(text);
-    FakeClock again{{{20.0}, {10.0}}};
-    EXPECT_EQ(MustPick(Ladder(2, &cache), 40.0, again).variant, 0u) << text;
-    EXPECT_EQ(again.runs[0], kCalibrationRuns) << text;
+  MemoryCache cache;
+  FakeClock clock{{{50.0}, {30.0}}};
+  MustPick(Ladder(2, &cache), 40.0, clock);
+  const std::vector<std::byte>& bytes = cache.kept.begin()->second;
+  const std::string good(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  // The later clock says 20 ms of the first variant: it is picked where the times that are kept are not taken.
+  const auto is_taken = [](const std::string& text) {
+    MemoryCache again;
+    FakeClock before{{{50.0}, {30.0}}}, later{{{20.0}, {10.0}}};
+    MustPick(Ladder(2, &again), 40.0, before);
+    again.Overwrite(text);
+    const PickedVariant picked = MustPick(Ladder(2, &again), 40.0, later);
+    EXPECT_EQ(picked.variant == 0, later.runs[0] == kCalibrationRuns) << text;
+    return picked.variant != 0;
+  };
+  EXPECT_TRUE(is_taken(good)) << good;
+  for (const std::string& text : {std::string(), std::string("{"), std::string("\n"), "more\n" + good}) {
+    EXPECT_FALSE(is_taken(text)) << text;
+  }
+  const std::string name = "circumstances a machine and a scene\n";
+  const std::pair<std::string, std::string> changes[] = {{name, ""},
+                                                         {name, "circumstances others\n"},
+                                                         {"cold_ms 0\n", ""},
+                                                         {"cold_ms 0", "cold_ms -1"},
+                                                         {"cold_ms 0", "cold_ms x"},
+                                                         {"cold_ms 0", "cold_ms inf"},
+                                                         {"runs 9 ", "runs 99 "},
+                                                         {"runs 9 ", "runs x "},
+                                                         {"runs 1 50 ", "runs 1 -50 "},
+                                                         {"runs 1 50 ", "runs 1 x "},
+                                                         {"runs 1 50 ", "runs 1 inf "}};
+  for (const auto& [from, to] : changes) {
+    std::string text = good;
+    const std::size_t at = text.find(from);
+    ASSERT_NE(at, std::string::npos) << from << " in " << good;
+    EXPECT_FALSE(is_taken(text.replace(at, from.size(), to))) << text;
   }
 }
 
 // A variant that the ladder no longer has does not matter.
-TEST(Calibration, TimesOfWaysThatThereAreNoMoreDoNotCount) {
+TEST(Calibration, TimesOfVariantsThatThereAreNoMoreDoNotCount) {
   MemoryCache cache;
   FakeClock clock{{{50.0}, {30.0}, {5.0}}};
   MustPick(Ladder(3, &cache), 10.0, clock);
