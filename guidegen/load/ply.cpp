@@ -405,8 +405,8 @@ class PlyLoader {
     return Ok();
   }
 
-  // The texture stands in place of colours, which scans have beside it for programs that show no textures. They are back
-  // if it cannot be decoded. Call it when the vertices are final.
+  // The texture stands in place of colours, which scans have beside it for programs that show no textures. They are
+  // back if it cannot be decoded. Call it when the vertices are final.
   void KeepTexture(Scene& scene) {
     if (texture_.empty() || mesh_.uvs[0].empty()) return;
     Material& material = scene.materials[0];

@@ -17,6 +17,15 @@
 
 namespace scumble {
 
+inline const std::vector<std::string> kNormalAndA = {"A", "normal.X", "normal.Y", "normal.Z"};
+
+inline GuideReadOptions OnlyNormals(const std::string& view_layer = "") {
+  GuideReadOptions options;
+  options.required = {Layer::kCoverage, Layer::kNormal};
+  options.view_layer = view_layer;
+  return options;
+}
+
 inline LayerSet EveryLayer() {
   LayerSet all;
   for (const LayerInfo& info : AllLayers()) all.Add(info.layer);

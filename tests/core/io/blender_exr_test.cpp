@@ -19,9 +19,9 @@
 #include "core/io/file/atomic_file.h"
 #include "core/io/guide_file.h"
 #include "core/io/guides/cryptomatte.h"
+#include "tests/core/io/true_camera.h"
 #include "tests/support/refusal.h"
 #include "tests/support/temporary_folder.h"
-#include "tests/support/true_camera.h"
 
 namespace scumble {
 namespace {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/core/io/true_camera.h"
 #include "tests/support/refusal.h"
-#include "tests/support/true_camera.h"
 
 namespace scumble {
 namespace {
