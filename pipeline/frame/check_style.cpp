@@ -9,7 +9,7 @@
 #include "core/style/kit/sphere_kit.h"
 #include "core/style/place_sphere.h"
 #include "pipeline/file_cache.h"
-#include "pipeline/frame/paint_picture.h"
+#include "pipeline/frame/prepare_frame.h"
 #include "pipeline/style/kit_template.h"
 #include "pipeline/style/style_locations.h"
 #include "transfer/transfer.h"

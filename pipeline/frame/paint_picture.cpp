@@ -7,16 +7,10 @@
 #include <numeric>
 #include <utility>
 
-#include "core/image/painting/soft_edge.h"
 #include "core/image/stopwatch.h"
 #include "core/io/file/atomic_file.h"
 #include "core/io/picture_file.h"
-#include "core/style/finish_keys.h"
-#include "core/style/place_sphere.h"
-#include "core/style/style_keyframes.h"
-#include "core/style/style_keys.h"
 #include "measure/mosaic/coherence.h"
-#include "measure/painting/paint_faults.h"
 #include "pipeline/frame/explain_frame.h"
 #include "pipeline/style/finish_order.h"
 #include "transfer/upsample_guides.h"
@@ -135,29 +129,6 @@ void WarnOfOtherSize(const GuideSet& guides, const std::string& name, const RunC
                            name, guides.width(), guides.height(), state.width, state.height));
 }
 
-Expected<PreparedStyle> PrepareAndWarn(const Style& style, int height, const RunContext& context) {
-  SCUMBLE_ASSIGN(PreparedStyle prepared, PrepareStyle(style, height, context));
-  if (style.transfer.edge == EdgeMode::kExemplar && prepared.rims.empty()) {
-    context.Warn(
-        "style " + style.name +
-        ": transfer.edge is \"exemplar\", but the exemplar has no painted edge, because its paint does not end "
-        "near the rim on bare paper; outlines stay exact. Leave paper free in the corners, or set it to \"exact\"");
-  }
-  return prepared;
-}
-
-// Of exemplars that are used otherwise than as they stand in their files.
-void NoteExemplarUse(const Style& style, const RunContext& context) {
-  for (const Exemplar& exemplar : style.exemplars) {
-    if (exemplar.cut) context.Note(exemplar.name + ": " + DescribeCut(*exemplar.cut));
-    const int soft_edge = exemplar.is_sphere ? SoftEdge(exemplar.picture) : 0;
-    if (soft_edge > style.transfer.rim) {
-      context.Warn(fmt::format("{}: {}; accept this with --set transfer.rim={}, or flatten the picture on its paper",
-                               exemplar.name, DescribeSoftEdge(soft_edge), soft_edge));
-    }
-  }
-}
-
 // The passes of a picture that is painted by `guides`, and measured by those that were `given`, before they were
 // upsampled.
 FrameFinish FinishOf(const StyleSet& styles, const GuideSet& given, const GuideSet& guides, const StyleMap* map,
@@ -175,22 +146,91 @@ FrameFinish FinishOf(const StyleSet& styles, const GuideSet& given, const GuideS
   return finish;
 }
 
-LayerSet LayersRead(const StyleSet& styles) {
-  LayerSet read = LayersOverTime(styles.finish);
-  for (const Style& style : styles.styles) {
-    if (const Expected<LayerSet> of_style = LayersOverTime(style)) read.Add(*of_style);
+// The guides of a larger picture, where one is asked for.
+Expected<std::optional<GuideSet>> LargerGuides(const GuideSet& given, const PictureRequest& request, int threads) {
+  if (request.upsample > 1) {
+    SCUMBLE_RETURN_IF_ERROR(CheckLargerSize(given.width(), given.height(), request.upsample));
   }
-  return read;
+  if (request.GuideFactor() == 1) return std::optional<GuideSet>();
+  SCUMBLE_ASSIGN(GuideSet larger, UpsampleGuides(given, request.GuideFactor(), threads));
+  return std::optional<GuideSet>(std::move(larger));
+}
+
+// What a frame is painted from, besides the prepared styles.
+struct FrameInputs {
+  const GuideSet& guides;
+  const StyleMap* map;  // null: one style paints all
+  FrameFinish finish;
+  FrameSettings settings;  // without its pointers to results
+};
+
+// The time of each step in milliseconds, a value a run, in the order of the steps.
+struct RunTimes {
+  std::vector<std::pair<std::string, std::vector<double>>> steps;
+
+  void Add(const std::string& step, double ms) {
+    const auto found = std::find_if(steps.begin(), steps.end(), [&](const auto& one) { return one.first == step; });
+    (found == steps.end() ? steps.emplace_back(step, std::vector<double>()) : *found).second.push_back(ms);
+  }
+  std::vector<std::pair<std::string, double>> Sums() const {
+    std::vector<std::pair<std::string, double>> sums;
+    for (const auto& [step, ms] : steps) sums.emplace_back(step, std::accumulate(ms.begin(), ms.end(), 0.0));
+    return sums;
+  }
+};
+
+// All runs make the same picture.
+struct PaintedRuns {
+  Picture picture;
+  FinishedLayers layers;
+  RunTimes times;
+};
+
+// Paints `request.repeat` times.
+Expected<PaintedRuns> PaintRuns(const FrameInputs& inputs, const PictureRequest& request, const LayersWanted& wanted,
+                                const RunContext& context, const Progress& progress, PictureState& state) {
+  PaintedRuns painted;
+  double finish_ms = 0.0;
+  FrameSettings settings = inputs.settings;
+  settings.finish = inputs.finish.steps.empty() ? nullptr : &inputs.finish, settings.finish_ms = &finish_ms;
+  settings.layers = &painted.layers;
+  for (int run = 0; run < request.repeat; ++run) {
+    const double begin = double(run) / request.repeat, end = double(run + 1) / request.repeat;
+    if (run + 1 == request.repeat) settings.layers_wanted = wanted;
+    SCUMBLE_RETURN_IF_ERROR(PaintFrame(state.prepared, inputs.map, inputs.guides, settings, context,
+                                       Within(progress, begin, end), state.scratch, painted.picture));
+    painted.times.Add("match", state.scratch.times.match_ms);
+    painted.times.Add("vote", state.scratch.times.vote_ms);
+    painted.times.Add("compose", state.scratch.times.compose_ms);
+    if (settings.finish) painted.times.Add("finish", std::exchange(finish_ms, 0.0));
+    if (request.PictureFactor() == 1) continue;
+    Stopwatch watch;
+    painted.picture = UpscalePicture(painted.picture, request.PictureFactor(), context.threads);
+    painted.times.Add("upscale", watch.Lap());
+  }
+  return painted;
+}
+
+// Without the times.
+PictureReport ReportOf(const StyleSet& styles, const PictureRequest& request, const PaintedPicture& made,
+                       const PictureState& state) {
+  PictureReport report;
+  report.output = request.output, report.width = made.picture.width, report.height = made.picture.height;
+  report.upsample = request.upsample, report.upscale = request.upscale, report.repeat = request.repeat;
+  report.seed = request.seed;
+  for (std::size_t i = 0; i < state.prepared.size(); ++i) {
+    report.styles.push_back(ReportOf(styles.given[i], styles.styles[i], state.prepared[i]));
+  }
+  if (std::any_of(state.prepared.begin(), state.prepared.end(), LooksAtLightWhenPrepared)) {
+    report.exposure = state.exposure;
+  }
+  report.layers_output = request.layers_out;
+  for (const FinishLayer& layer : made.layers.layers) report.layers.push_back(layer.name);
+  if (request.measure_chunks) report.chunks = ChunksOf(state.scratch.field);
+  return report;
 }
 
 }  // namespace
-
-void MeasureFinishOf(const StyleSet& styles, const GuideSet& guides, std::optional<int> frame,
-                     const RunContext& context, PictureState& state) {
-  if (state.finish_measures || !EverLooksAtMeasures(styles)) return;
-  state.finish_measures = styles.options.finish_measures;
-  if (!state.finish_measures) state.finish_measures = MeasureAndTell(guides, LayersRead(styles), frame, context);
-}
 
 Expected<Picture> ReadUnderneath(const std::string& file, const std::string& view_layer) {
   auto picture = ReadPicture(file, view_layer);
@@ -229,98 +269,14 @@ std::string SamplesAsked(const std::map<std::string, std::string>& attributes) {
   return found->second.find_first_not_of("0123456789-") == std::string::npos ? found->second : "";
 }
 
-bool IsReadEachFrame(const std::string& key) {
-  if (key.rfind(kFinishKeys, 0) == 0) return true;
-  const StyleKey* const found = FindStyleKey(key);
-  return found && !found->needs_preparing;
-}
-
-Status PrepareFrame(StyleSet& styles, const GuideSet& guides, const PictureRequest& request, const RunContext& context,
-                    PictureState& state) {
-  const int height = guides.height() * request.GuideFactor();
-  const bool all = state.prepared.empty() || state.prepared.front().output_height != height;
-  SCUMBLE_RETURN_IF_ERROR(SetFinishFrame(styles.finish, request.frame.value_or(0)));
-  for (std::size_t i = 0; i < styles.styles.size(); ++i) {
-    SCUMBLE_ASSIGN(const auto changed, SetStyleFrame(styles.styles[i], request.frame.value_or(0)));
-    if (all || changed.empty() || i >= state.prepared.size()) continue;
-    if (std::all_of(changed.begin(), changed.end(), IsReadEachFrame)) {
-      state.prepared[i].settings = styles.styles[i].transfer;
-      state.prepared[i].required = TransferLayers(styles.styles[i]);
-      continue;
-    }
-    Expected<PreparedStyle> one = PrepareAndWarn(styles.styles[i], height, context);
-    if (!one) {
-      state.prepared.resize(i);  // the style has moved on: what was prepared of it is stale
-      return std::move(one).error();
-    }
-    state.prepared[i] = *std::move(one);
-  }
-  if (all) state.prepared.clear();
-  // All of them, or those that the scene has asked for since.
-  for (std::size_t i = state.prepared.size(); i < styles.styles.size(); ++i) {
-    SCUMBLE_RETURN_IF_ERROR(context.CheckNotCancelled());
-    SCUMBLE_ASSIGN(PreparedStyle one, PrepareAndWarn(styles.styles[i], height, context));
-    NoteExemplarUse(styles.styles[i], context);
-    for (const auto& [image, what, fix] : EqualLights(styles.styles[i], one)) {
-      context.Warn(image + " " + what + ": " + fix);
-    }
-    state.prepared.push_back(std::move(one));
-  }
-  if (state.exposure) return Ok();
-  state.exposure = ExposureOf(request.exposure, state.prepared, guides, context.threads);
-  if (!MeasuresExposure(styles, request)) return Ok();
-  if (CoveredShare(guides) == 0.0) {
-    context.Warn(
-        "the picture shows no surface, so no exposure was measured, and it is 0 stops: where it is one of a sequence, "
-        "give --exposure of a frame that shows something");
-  } else {
-    context.Note(fmt::format("exposure: {:.2f} stops; --exposure {:.2f} repeats it", *state.exposure, *state.exposure));
-  }
-  return Ok();
-}
-
-std::vector<EqualLight> EqualLights(const Style& style, const PreparedStyle& prepared) {
-  std::vector<EqualLight> equal;
-  const auto luminances = prepared.illumination.luminances();
-  for (std::size_t later = 1; later < luminances.size(); ++later) {
-    const auto first = std::find(luminances.begin(), luminances.begin() + std::ptrdiff_t(later), luminances[later]);
-    const auto index = static_cast<std::size_t>(first - luminances.begin());
-    if (index == later) continue;
-    equal.push_back(
-        {style.exemplars[later].name,
-         fmt::format("has the luminance {:.4g} as {} has, which stands first and is taken, so it never shows",
-                     luminances[later], style.exemplars[index].name),
-         "give each [[exemplar]] its own"});
-  }
-  return equal;
-}
-
-std::string DescribeLuminance(const Exemplar& exemplar, double rim) {
-  const bool by_guides = exemplar.guides && exemplar.guides->Has(Layer::kLuminance);
-  const char* const source = exemplar.luminance ? "given"
-                             : by_guides        ? "measured from its guides"
-                                                : "measured from its paint";
-  return fmt::format("luminance {:.4g}, {}", LuminanceOf(exemplar, rim), source);
-}
-
-bool MeasuresExposure(const StyleSet& styles, const PictureRequest& request) {
-  return !request.exposure && std::any_of(styles.styles.begin(), styles.styles.end(), LooksAtLight);
-}
-
 Expected<PaintedPicture> PaintInMemory(StyleSet& styles, const GuideSet& given, const GuideSource& source,
                                        const PictureRequest& request, const RunContext& context,
                                        const Progress& progress, PictureState& state) {
   StepTimes times = source.times;
   Stopwatch watch;
   WarnOfOtherSize(given, source.name, context, state);
-  if (request.upsample > 1) {
-    SCUMBLE_RETURN_IF_ERROR(CheckLargerSize(given.width(), given.height(), request.upsample));
-  }
-  std::optional<GuideSet> larger;
-  if (request.GuideFactor() > 1) {
-    SCUMBLE_ASSIGN(larger, UpsampleGuides(given, request.GuideFactor(), context.threads));
-    times.emplace_back("upsample", watch.Lap());
-  }
+  SCUMBLE_ASSIGN(const std::optional<GuideSet> larger, LargerGuides(given, request, context.threads));
+  if (larger) times.emplace_back("upsample", watch.Lap());
   const GuideSet& guides = larger ? *larger : given;
   SCUMBLE_ASSIGN(const Picture* const over, OverFor(request, guides, source.name, state));
   if (over) times.emplace_back("over", watch.Lap());
@@ -336,89 +292,40 @@ Expected<PaintedPicture> PaintInMemory(StyleSet& styles, const GuideSet& given, 
   const LayersWanted wanted{request.show_finish, !request.layers_out.empty()};
   SCUMBLE_RETURN_IF_ERROR(CheckLayersWanted(wanted, AllPasses(styles)));
 
-  const FrameFinish finish =
-      FinishOf(styles, given, guides, needs_map ? &map : nullptr, over != nullptr, request.frame, context, state);
-  double finish_ms = 0.0;
-  FrameSettings settings{request.seed, request.frame.value_or(0), RateOf(request.fps, given), *state.exposure,
-                         over,         request.KeepsField()};
-  settings.finish = finish.steps.empty() ? nullptr : &finish, settings.finish_ms = &finish_ms;
-  FinishedLayers layers;
-  settings.layers = &layers;
-  TransferScratch& scratch = state.scratch;
-  Picture picture;
-  std::vector<double> match, vote, compose, finished, upscale;
-  for (int run = 0; run < request.repeat; ++run) {
-    const double begin = double(run) / request.repeat, end = double(run + 1) / request.repeat;
-    if (run + 1 == request.repeat) settings.layers_wanted = wanted;
-    SCUMBLE_RETURN_IF_ERROR(PaintFrame(state.prepared, needs_map ? &map : nullptr, guides, settings, context,
-                                       Within(progress, begin, end), scratch, picture));
-    match.push_back(scratch.times.match_ms);
-    vote.push_back(scratch.times.vote_ms);
-    compose.push_back(scratch.times.compose_ms);
-    finished.push_back(std::exchange(finish_ms, 0.0));
-    if (request.PictureFactor() == 1) continue;
-    watch.Lap();
-    picture = UpscalePicture(picture, request.PictureFactor(), context.threads);
-    upscale.push_back(watch.Lap());
-  }
+  FrameInputs inputs{guides, needs_map ? &map : nullptr, {}, {}};
+  inputs.finish = FinishOf(styles, given, guides, inputs.map, over != nullptr, request.frame, context, state);
+  inputs.settings = {request.seed, request.frame.value_or(0), RateOf(request.fps, given), *state.exposure,
+                     over,         request.KeepsField()};
+  SCUMBLE_ASSIGN(PaintedRuns painted, PaintRuns(inputs, request, wanted, context, progress, state));
   PaintedPicture made;
-  made.layers.layers = std::move(layers.layers);
-  if (wanted.all && request.IsShowing()) made.layers.merged = picture;
-  if (request.show)
-    picture = Show(*request.show, {state.prepared, map, guides, scratch.field, settings.exposure, picture});
-  if (layers.alone) picture = *std::move(layers.alone);
-  const auto sum = [](const std::vector<double>& ms) { return std::accumulate(ms.begin(), ms.end(), 0.0); };
-  std::vector<std::pair<std::string, double>> inside{
-      {"match", sum(match)}, {"vote", sum(vote)}, {"compose", sum(compose)}};
-  if (!finish.steps.empty()) inside.emplace_back("finish", sum(finished));
-  if (!upscale.empty()) inside.emplace_back("upscale", sum(upscale));
-  context.EndStage("transfer", inside);
+  made.layers.layers = std::move(painted.layers.layers);
+  if (wanted.all && request.IsShowing()) made.layers.merged = painted.picture;
+  if (request.show) {
+    painted.picture =
+        Show(*request.show, {state.prepared, map, guides, state.scratch.field, *state.exposure, painted.picture});
+  }
+  if (painted.layers.alone) painted.picture = *std::move(painted.layers.alone);
+  made.picture = std::move(painted.picture);
+  context.EndStage("transfer", painted.times.Sums());
 
   made.write = {request.bits, request.png_level};
   made.write.fast = request.fast_io;
-  PictureSettings made_with = SettingsOf(request, settings.fps, settings.exposure, SamplesAsked(given.attributes),
+  PictureSettings made_with = SettingsOf(request, inputs.settings.fps, state.exposure, SamplesAsked(given.attributes),
                                          GuidesText(given.attributes, source.chosen));
   if (state.finish_measures) made_with.finish_measures = MeasuresText(*state.finish_measures);
   made_with.finish_measured = !styles.options.finish_measures;
   made.write.settings = SettingsText(styles, made_with, state.hashes);
-  PictureReport report{request.output,
-                       picture.width,
-                       picture.height,
-                       request.upsample,
-                       request.upscale,
-                       request.repeat,
-                       request.seed,
-                       {},
-                       {},
-                       {},
-                       {}};
-  for (std::size_t i = 0; i < state.prepared.size(); ++i) {
-    report.styles.push_back(ReportOf(styles.given[i], styles.styles[i], state.prepared[i]));
-  }
-  if (std::any_of(state.prepared.begin(), state.prepared.end(), LooksAtLightWhenPrepared)) {
-    report.exposure = settings.exposure;
-  }
-  report.layers_output = request.layers_out;
-  for (const FinishLayer& layer : made.layers.layers) report.layers.push_back(layer.name);
-  if (request.measure_chunks) report.chunks = ChunksOf(scratch.field);
+  PictureReport report = ReportOf(styles, request, made, state);
   for (const auto& [name, ms] : times) report.steps.push_back({name, ms, ms, ms});
-  report.steps.push_back(SpreadOf("match", match));
-  report.steps.push_back(SpreadOf("vote", vote));
-  report.steps.push_back(SpreadOf("compose", compose));
-  if (!finish.steps.empty()) report.steps.push_back(SpreadOf("finish", finished));
-  if (!upscale.empty()) report.steps.push_back(SpreadOf("upscale", upscale));
+  for (const auto& [name, ms] : painted.times.steps) report.steps.push_back(SpreadOf(name, ms));
   made.report = {std::move(report), source.plan, source.memory, source.cost, 0, 0.0};
-  if (request.keep_field) made.kept = TakeField(styles, state.prepared, needs_map ? &map : nullptr, scratch);
-  made.picture = std::move(picture);
+  if (request.keep_field) made.kept = TakeField(styles, state.prepared, needs_map ? &map : nullptr, state.scratch);
   return made;
 }
 
-Expected<FrameWrite> PaintPicture(StyleSet& styles, const GuideSet& guides, const GuideSource& source,
-                                  const PictureRequest& request, const RunContext& context, const Progress& progress,
-                                  PictureState& state) {
-  SCUMBLE_ASSIGN(PaintedPicture painted, PaintInMemory(styles, guides, source, request, context, progress, state));
+FrameWrite WriteOf(PaintedPicture painted, const std::string& output, const std::string& layers_out) {
   const auto made = std::make_shared<PaintedPicture>(std::move(painted));
-  return FrameWrite([made, output = request.output, layers_out = request.layers_out]() -> Expected<FrameReport> {
+  return [made, output, layers_out]() -> Expected<FrameReport> {
     Stopwatch watch;
     const std::uint64_t before = BytesWrittenByThisThread();
     if (!layers_out.empty()) {
@@ -432,7 +339,14 @@ Expected<FrameWrite> PaintPicture(StyleSet& styles, const GuideSet& guides, cons
     std::get<PictureReport>(report.made).steps.push_back({"write", ms, ms, ms});
     report.bytes_written = BytesWrittenByThisThread() - before;
     return report;
-  });
+  };
+}
+
+Expected<FrameWrite> PaintPicture(StyleSet& styles, const GuideSet& guides, const GuideSource& source,
+                                  const PictureRequest& request, const RunContext& context, const Progress& progress,
+                                  PictureState& state) {
+  SCUMBLE_ASSIGN(PaintedPicture painted, PaintInMemory(styles, guides, source, request, context, progress, state));
+  return WriteOf(std::move(painted), request.output, request.layers_out);
 }
 
 }  // namespace scumble

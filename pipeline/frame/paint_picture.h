@@ -13,6 +13,7 @@
 #include "core/io/picture_file.h"
 #include "pipeline/frame/frame_painter.h"
 #include "pipeline/frame/frame_report.h"
+#include "pipeline/frame/prepare_frame.h"
 #include "pipeline/frame/provenance.h"
 #include "pipeline/requests.h"
 #include "pipeline/run_context.h"
@@ -40,46 +41,11 @@ struct GuideSource {
   std::string chosen = {};             // of the layers in their file, for GuidesText
 };
 
-// What a sequence keeps from frame to frame.
-struct PictureState {
-  std::vector<PreparedStyle> prepared;            // by style; empty: not yet
-  std::optional<double> exposure;                 // stops, once given or measured
-  std::optional<FinishMeasures> finish_measures;  // once they are measured
-  TransferScratch scratch;
-  ExemplarHashes hashes;
-  std::string over_file;        // that `over` is from
-  std::optional<Picture> over;  // one picture underneath all frames is read once
-  int width = 0, height = 0;    // of the first frame's guides
-  FinishRemarks finish_remarks;
-  bool warned = false;  // of options that change nothing
-  bool warned_of_size = false;
-};
-
 // The picture underneath: that of the view layer where it has one of that name, else the only one.
 Expected<Picture> ReadUnderneath(const std::string& file, const std::string& view_layer);
 
 // Reads PictureRequest::over, unless `state` has it already.
 Status ReadOver(const PictureRequest& request, PictureState& state);
-
-// Measures what finishing passes look at, unless `state` has it already, and tells it. Nothing where none looks.
-// `frame`: of a sequence.
-void MeasureFinishOf(const StyleSet& styles, const GuideSet& guides, std::optional<int> frame,
-                     const RunContext& context, PictureState& state);
-
-// Of two lighting conditions with one luminance only the first is ever chosen: the others, with what is wrong
-// and how to fix it.
-struct EqualLight {
-  std::string image, what, fix;
-};
-std::vector<EqualLight> EqualLights(const Style& style, const PreparedStyle& prepared);
-
-// "luminance 0.8, given" or where it is measured. `rim` is the style's.
-std::string DescribeLuminance(const Exemplar& exemplar, double rim);
-
-// Brings the styles to the request's frame and prepares what has changed since the last call; finds the exposure if it
-// is not known yet. PaintPicture calls it.
-Status PrepareFrame(StyleSet& styles, const GuideSet& guides, const PictureRequest& request, const RunContext& context,
-                    PictureState& state);
 
 // A frame that is made, and has still to be encoded and written: does that once, on any thread, and needs nothing that
 // the next frame changes.
@@ -128,15 +94,12 @@ Expected<PaintedPicture> PaintInMemory(StyleSet& styles, const GuideSet& guides,
                                        const PictureRequest& request, const RunContext& context,
                                        const Progress& progress, PictureState& state);
 
+// Writes the picture and, unless `layers_out` is empty, its layers; the report gets the step "write".
+FrameWrite WriteOf(PaintedPicture painted, const std::string& output, const std::string& layers_out);
+
 // As PaintInMemory; the returned function writes the picture to request.output and reports.
 Expected<FrameWrite> PaintPicture(StyleSet& styles, const GuideSet& guides, const GuideSource& source,
                                   const PictureRequest& request, const RunContext& context, const Progress& progress,
                                   PictureState& state);
-
-// Settings of the transfer that are read frame by frame: where only these change, exemplars stay prepared.
-bool IsReadEachFrame(const std::string& key);
-
-// Whether the exposure is measured, and by some style is looked at.
-bool MeasuresExposure(const StyleSet& styles, const PictureRequest& request);
 
 }  // namespace scumble

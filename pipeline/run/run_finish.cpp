@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <fstream>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -14,7 +13,6 @@
 #include "core/image/hash.h"
 #include "core/image/stopwatch.h"
 #include "core/io/existing_output.h"
-#include "core/io/file/atomic_file.h"
 #include "core/io/guide_file.h"
 #include "core/io/picture_file.h"
 #include "core/style/finish_keys.h"
@@ -22,6 +20,7 @@
 #include "finish/jitter.h"
 #include "pipeline/frame/finish_layers.h"
 #include "pipeline/frame/frame_painter.h"
+#include "pipeline/frame/paint_picture.h"
 #include "pipeline/frame/provenance.h"
 #include "pipeline/memory/memory_estimate.h"
 #include "pipeline/scene/run_inputs.h"
@@ -133,21 +132,20 @@ Expected<FrameWrite> Finish(const FinishRequest& request, const FrameFiles& file
   SCUMBLE_RETURN_IF_ERROR(SetFinishFrame(state.chain, files.frame.value_or(0)));
   StepTimes times;
   Stopwatch watch;
-  const auto picture = std::make_shared<Picture>();
-  SCUMBLE_ASSIGN(*picture, ReadPicture(files.picture, request.view_layer));
+  SCUMBLE_ASSIGN(Picture picture, ReadPicture(files.picture, request.view_layer));
   SCUMBLE_ASSIGN(const std::string picture_hash, HashOfFile(files.picture));
   std::optional<GuideSet> guides;
   if (!files.guides.empty() && state.required.empty()) SCUMBLE_RETURN_IF_ERROR(InspectGuides(files.guides));
   if (!files.guides.empty() && !state.required.empty()) {
     SCUMBLE_ASSIGN(guides, ReadGuides(files.guides, ReadOptions(request, state.required, files.guides, files.camera)));
-    if (guides->width() != picture->width || guides->height() != picture->height) {
+    if (guides->width() != picture.width || guides->height() != picture.height) {
       return InputError(fmt::format("{} is {}×{}, its guides {} are {}×{}: render both at one size", files.picture,
-                                    picture->width, picture->height, files.guides, guides->width(), guides->height()));
+                                    picture.width, picture.height, files.guides, guides->width(), guides->height()));
     }
   }
   times.emplace_back("read", watch.Lap());
   context.EndStage("read");
-  const Size size{picture->width, picture->height};
+  const Size size{picture.width, picture.height};
   const std::vector<FinishStep> steps = FinishStepsOf(
       state.chain.passes, size, guides ? &*guides : nullptr,
       [&](const FinishRemark& remark) { state.remarks.Tell(remark, files.frame, files.guides, context); });
@@ -157,40 +155,32 @@ Expected<FrameWrite> Finish(const FinishRequest& request, const FrameFiles& file
   FinishFrame frame{guides ? &*guides : nullptr, state.measures.value_or(FinishMeasures()), 1.0, request.seed};
   const FrameRate fps = RateFor(request, files.guides);
   frame.frame = files.frame.value_or(0), frame.fps_numerator = fps.numerator, frame.fps_denominator = fps.denominator;
-  if (request.reference_height > 0) frame.scale = double(picture->height) / request.reference_height;
+  if (request.reference_height > 0) frame.scale = double(picture.height) / request.reference_height;
   if (guides && ChangesGuides(steps)) {
     SCUMBLE_RETURN_IF_ERROR(ApplyToGuides(steps, frame, context.threads, {}, *guides));
   }
   FinishLayerOptions names;
   names.paint = "picture";
-  SCUMBLE_ASSIGN(FinishedLayers made_layers,
-                 FinishWithLayers(steps, frame, WantedOf(request), names, context.threads, progress, *picture));
-  const auto layers = std::make_shared<FinishedLayers>(std::move(made_layers));
+  SCUMBLE_ASSIGN(FinishedLayers layers,
+                 FinishWithLayers(steps, frame, WantedOf(request), names, context.threads, progress, picture));
   times.emplace_back("finish", watch.Lap());
   context.EndStage("finish");
-  PictureWriteOptions write{request.bits, request.png_level};
-  write.fast = request.fast_io,
-  write.settings = SettingsText(request, state.chain, picture_hash, state.measures, !request.measures, fps);
-  PictureReport report{files.output, picture->width, picture->height, 1, false, 1, request.seed, {}, {}, {}, {}};
+  PaintedPicture made;
+  made.write = {request.bits, request.png_level};
+  made.write.fast = request.fast_io,
+  made.write.settings = SettingsText(request, state.chain, picture_hash, state.measures, !request.measures, fps);
+  PictureReport report;
+  report.output = files.output, report.width = picture.width, report.height = picture.height;
+  report.seed = request.seed;
   for (const auto& [name, ms] : times) report.steps.push_back({name, ms, ms, ms});
   report.layers_output = files.layers;
-  for (const FinishLayer& layer : layers->layers) report.layers.push_back(layer.name);
-  return FrameWrite([picture, layers, write, output = files.output, layers_out = files.layers,
-                     memory = std::move(memory),
-                     made = std::make_shared<PictureReport>(std::move(report))]() -> Expected<FrameReport> {
-    Stopwatch clock;
-    const std::uint64_t before = BytesWrittenByThisThread();
-    if (!layers_out.empty())
-      SCUMBLE_RETURN_IF_ERROR(WriteLayers(layers_out, std::move(layers->layers), *picture, write.settings));
-    SCUMBLE_RETURN_IF_ERROR(WritePicture(output, layers->alone ? *layers->alone : *picture, write));
-    const double ms = clock.Lap();
-    made->steps.push_back({"write", ms, ms, ms});
-    FrameReport done;
-    done.made = std::move(*made);
-    done.memory = memory;
-    done.write_ms = ms, done.bytes_written = BytesWrittenByThisThread() - before;
-    return done;
-  });
+  for (const FinishLayer& layer : layers.layers) report.layers.push_back(layer.name);
+  made.report.made = std::move(report);
+  made.report.memory = std::move(memory);
+  made.layers.layers = std::move(layers.layers);
+  if (layers.alone) made.layers.merged = std::exchange(picture, *std::move(layers.alone));
+  made.picture = std::move(picture);
+  return WriteOf(std::move(made), files.output, files.layers);
 }
 
 // What the passes read must be there before any frame is begun.

@@ -15,7 +15,7 @@
 #include "core/io/guide_file.h"
 #include "guidegen/load/load_scene.h"
 #include "guidegen/scene_textures.h"
-#include "pipeline/frame/paint_picture.h"
+#include "pipeline/frame/prepare_frame.h"
 #include "pipeline/scene/scene_guides.h"
 #include "pipeline/style/style_locations.h"
 #include "pipeline/style/style_set.h"

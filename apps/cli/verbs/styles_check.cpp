@@ -12,7 +12,7 @@
 #include "apps/cli/verbs/paint_report.h"
 #include "measure/painting/paint_faults.h"
 #include "pipeline/frame/check_style.h"
-#include "pipeline/frame/paint_picture.h"
+#include "pipeline/frame/prepare_frame.h"
 
 namespace scumble {
 namespace {

@@ -23,7 +23,6 @@
 #include "core/io/file/atomic_file.h"
 #include "core/io/file/pending_temporaries.h"
 #include "measure/tradeoff/report.h"
-#include "pipeline/frame/paint_picture.h"
 #include "pipeline/memory/memory_limit.h"
 #include "pipeline/run/sequence.h"
 #include "pipeline/scene/run_inputs.h"
