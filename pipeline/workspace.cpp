@@ -361,7 +361,7 @@ Status Workspace::State::Cast(SceneRequest request, std::optional<int> frame, co
   }
   const auto next = following ? std::optional(NextFrame{following->scene, following->view.camera}) : std::nullopt;
   SCUMBLE_ASSIGN(SceneGuides made, CastScene(posed->scene, posed->view.camera, next ? &*next : nullptr, request,
-                                             posed->layers, context, progress, false, &rays));
+                                             posed->layers, context, progress, &rays));
   ++counters.guides_cast;
   counters.structures_built += std::size_t(made.builds);
   StoreFrameRate(request, posed->animation, made.guides);

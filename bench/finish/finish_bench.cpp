@@ -1,5 +1,6 @@
 // The time of each finishing effect at 1080p, as a ratio to a copy of the bytes that it reads and writes, in the same
-// run and on the same threads: the picture and the layers that the effect needs. Prints the table of docs/finish.md.
+// run and on the same threads: the picture and the layers that the effect needs. Before each, the caches are emptied: a
+// frame's transfer, too, leaves them full of other things. Prints the table of docs/finish.md.
 // Where OpenCV is installed (libopencv-imgproc-dev, libopencv-contrib-dev), its filters are timed, too.
 //   finish_bench [RUNS [NAME]]    only work whose name has NAME in it
 #include <tbb/blocked_range.h>
@@ -50,10 +51,24 @@ Spread Timed(int runs, const Work& work) {
   return Timed(runs, work, [] {});
 }
 
+// Fills the caches with something else.
+class OtherMemory {
+ public:
+  void Touch() {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, bytes_.size(), 1 << 20), [&](const auto& part) {
+      for (std::size_t i = part.begin(); i < part.end(); i += 64) ++bytes_[i];
+    });
+  }
+
+ private:
+  std::vector<unsigned char> bytes_ = std::vector<unsigned char>(std::size_t(256) << 20);
+};
+
 // Copies of one picture and of layers of its size, made by all threads.
 class Copies {
  public:
-  Copies(const Picture& picture, const GuideSet& guides) : guides_(guides), picture_(picture), texels_(picture.rgba) {}
+  Copies(const Picture& picture, const GuideSet& guides, OtherMemory& other)
+      : guides_(guides), picture_(picture), texels_(picture.rgba), other_(other) {}
 
   Spread Time(int runs, const LayerSet& layers) {
     std::vector<std::span<const float>> planes;
@@ -63,10 +78,11 @@ class Copies {
     }
     planes_.resize(std::max(planes_.size(), planes.size()));
     for (std::size_t i = 0; i < planes.size(); ++i) planes_[i].resize(planes[i].size());
-    return Timed(runs, [&] {
+    const auto copy = [&] {
       Copy(picture_.rgba.data(), picture_.rgba.size(), texels_.data());
       for (std::size_t i = 0; i < planes.size(); ++i) Copy(planes[i].data(), planes[i].size(), planes_[i].data());
-    });
+    };
+    return Timed(runs, copy, [&] { other_.Touch(); });
   }
 
  private:
@@ -81,6 +97,7 @@ class Copies {
   const Picture& picture_;
   std::vector<std::uint16_t> texels_;
   std::vector<std::vector<float>> planes_;
+  OtherMemory& other_;
 };
 
 int Run(int runs, const std::string& part) {
@@ -95,7 +112,8 @@ int Run(int runs, const std::string& part) {
   const GuideSet& guides = *layers->state()->guides;
   const FinishFrame frame{&guides, MeasureFinish(guides), 1.0, 0};
 
-  Copies copies(*painted, guides);
+  OtherMemory other;
+  Copies copies(*painted, guides, other);
   const Spread plain = copies.Time(runs, {});
   std::printf("%-36s %7s %16s %7s %7s\n", "work", "ms", "spread", "copies", "copy");
   const auto print = [&](const std::string& name, const Spread& spread, const Spread& copy) {
@@ -116,7 +134,10 @@ int Run(int runs, const std::string& part) {
     LayerSet needed;
     for (const FinishPass& pass : passes) needed.Add(RequiredLayers(pass));
     const Spread copy = copies.Time(runs, needed);
-    const Spread spread = Timed(runs, apply, [&] { picture.rgba = painted->rgba; });
+    const Spread spread = Timed(runs, apply, [&] {
+      picture.rgba = painted->rgba;
+      other.Touch();
+    });
     print(name, spread, copy);
     return spread.median;
   };

@@ -55,8 +55,7 @@ SceneRequest OurRequest(const CrosscheckRequest& request, const std::string& pat
 // Our data layers, as authored.
 Status MakeOurData(Scene& scene, const SceneRequest& options, const RunContext& context, const Progress& progress,
                    BothSides& sides) {
-  SCUMBLE_ASSIGN(SceneGuides data,
-                 MakeGuidesOf(scene, options, {Layer::kPosition, Layer::kAlbedo}, context, progress, false));
+  SCUMBLE_ASSIGN(SceneGuides data, MakeGuidesOf(scene, options, {Layer::kPosition, Layer::kAlbedo}, context, progress));
   sides.ours = std::move(data.guides);
   return Ok();
 }
@@ -76,7 +75,7 @@ Status MakeOurLight(const CrosscheckRequest& request, Scene& scene, SceneRequest
     options.max_bounces = request.max_bounces;
     const double end = count == counts.back() ? 1.0 : begin + 0.1;
     SCUMBLE_ASSIGN(SceneGuides light,
-                   MakeGuidesOf(scene, options, PathLayers(), context, Within(progress, begin, end), false));
+                   MakeGuidesOf(scene, options, PathLayers(), context, Within(progress, begin, end)));
     sides.ours_light.push_back(std::move(light.guides));
     begin = end;
   }

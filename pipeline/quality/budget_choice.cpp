@@ -235,8 +235,8 @@ class SceneTrials {
     small.size = {request_.size.width / UpsampleOf(variant), request_.size.height / UpsampleOf(variant)};
     TakeSamples(variant, small);
     Stopwatch watch;
-    SCUMBLE_ASSIGN(SceneGuides made, CastScene(opened_->scene, opened_->view.camera, nullptr, small, opened_->layers,
-                                               silent_, {}, false));
+    SCUMBLE_ASSIGN(SceneGuides made,
+                   CastScene(opened_->scene, opened_->view.camera, nullptr, small, opened_->layers, silent_, {}));
     casting_ms = watch.Lap();
     return std::move(made.guides);
   }

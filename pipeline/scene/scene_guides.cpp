@@ -105,10 +105,10 @@ Status CheckWithoutBlender(const std::string& path, const BlenderRequest& blende
 }
 
 Expected<SceneGuides> MakeGuidesOf(Scene& scene, const SceneRequest& options, const LayerSet& layers,
-                                   const RunContext& context, const Progress& progress, bool plan_only) {
+                                   const RunContext& context, const Progress& progress) {
   SCUMBLE_ASSIGN(const PreparedView prepared, ViewScene(scene, options, layers));
   for (const std::string& note : prepared.notes) context.Note(note);
-  return CastScene(scene, prepared.camera, nullptr, options, layers, context, progress, plan_only);
+  return CastScene(scene, prepared.camera, nullptr, options, layers, context, progress);
 }
 
 namespace {
@@ -168,18 +168,17 @@ std::string GuideSettings(const SceneRequest& options) {
                             SamplesText(options), options.max_bounces, options.noise);
 }
 
-Expected<SceneGuides> CastScene(Scene& scene, const Camera& camera, const NextFrame* next, const SceneRequest& options,
-                                const LayerSet& layers, const RunContext& context, const Progress& progress,
-                                bool plan_only, std::optional<RayScene>* rays) {
-  const Size& size = options.size;
-  SceneGuides result;
+namespace {
+
+GuidegenOptions GuidegenOptionsOf(const SceneRequest& options, const LayerSet& layers, int threads,
+                                  const Progress& progress) {
   GuidegenOptions guidegen;
-  guidegen.width = size.width, guidegen.height = size.height;
+  guidegen.width = options.size.width, guidegen.height = options.size.height;
   guidegen.layers = layers;
   guidegen.aa = options.aa;
   guidegen.normal_frame = options.normal_frame;
   guidegen.raw_normals = options.raw_normals;
-  guidegen.threads = context.threads;
+  guidegen.threads = threads;
   guidegen.isa = options.isa;
   guidegen.robust = options.robust;
   guidegen.progress = progress;
@@ -190,12 +189,26 @@ Expected<SceneGuides> CastScene(Scene& scene, const Camera& camera, const NextFr
   guidegen.seed = options.seed;
   guidegen.time_budget_seconds = options.time_budget_seconds;
   if (options.samples_given) guidegen.max_samples = options.samples;
-  result.plan = PlanGuides(scene, guidegen);
+  return guidegen;
+}
+
+}  // namespace
+
+SceneGuides PlanScene(const Scene& scene, const SceneRequest& options, const LayerSet& layers,
+                      const RunContext& context) {
+  SceneGuides result;
+  result.plan = PlanGuides(scene, GuidegenOptionsOf(options, layers, context.threads, {}));
   AddProgram(context.threads, result.memory);
   AddScene(scene, CountNeededPixels(scene, options, layers), result.memory);
-  AddGuides(size, layers, options, result.memory);
-  if (options.more_memory) options.more_memory(size, layers, result.memory);
-  if (plan_only) return result;
+  AddGuides(options.size, layers, options, result.memory);
+  if (options.more_memory) options.more_memory(options.size, layers, result.memory);
+  return result;
+}
+
+Expected<SceneGuides> CastScene(Scene& scene, const Camera& camera, const NextFrame* next, const SceneRequest& options,
+                                const LayerSet& layers, const RunContext& context, const Progress& progress,
+                                std::optional<RayScene>* rays) {
+  SceneGuides result = PlanScene(scene, options, layers, context);
   SCUMBLE_RETURN_IF_ERROR(CheckMemory(result.memory, context, "take a smaller --size, or fewer layers"));
   Stopwatch watch;
   Expected<SceneCost> decoded = DecodeNeededTextures(scene, options, layers, context);
@@ -204,6 +217,7 @@ Expected<SceneGuides> CastScene(Scene& scene, const Camera& camera, const NextFr
   result.cost = *decoded;
   const double textures_ms = watch.Lap();
   context.EndStage("scene");
+  const GuidegenOptions guidegen = GuidegenOptionsOf(options, layers, context.threads, progress);
   if (rays && !*rays) {
     SCUMBLE_ASSIGN(*rays, RayScene::Make(scene, camera));
   }

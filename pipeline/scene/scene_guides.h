@@ -86,18 +86,22 @@ std::string SamplesText(const SceneRequest& options);
 // The attribute scumble:settings of the guides: how they are seen, for --resume to compare.
 std::string GuideSettings(const SceneRequest& options);
 
+// What casting would do, and the memory that it would take; the guides stay empty.
+SceneGuides PlanScene(const Scene& scene, const SceneRequest& options, const LayerSet& layers,
+                      const RunContext& context);
+
 // Casts the guides of a scene that is ready; textures that they need are decoded and stay in it. The layer motion
 // needs `next`, which may be null otherwise. `rays` is for casting this scene and camera again without building: it is
 // made where it is empty, and made again where a texture has been left out, which changes materials. Null: the
 // acceleration structure is built for this cast alone.
 Expected<SceneGuides> CastScene(Scene& scene, const Camera& camera, const NextFrame* next, const SceneRequest& options,
                                 const LayerSet& layers, const RunContext& context, const Progress& progress,
-                                bool plan_only, std::optional<RayScene>* rays = nullptr);
+                                std::optional<RayScene>* rays = nullptr);
 
 // Casts the guides of an open scene; the key light, where one is needed, stays in it. Notes which camera and light were
-// chosen, and warns of a picture that shows nothing. With `plan_only` the guides stay empty.
+// chosen, and warns of a picture that shows nothing.
 Expected<SceneGuides> MakeGuidesOf(Scene& scene, const SceneRequest& options, const LayerSet& layers,
-                                   const RunContext& context, const Progress& progress, bool plan_only);
+                                   const RunContext& context, const Progress& progress);
 
 // Adds to the plan which layers the styles and the finishing effects read.
 void NameStylesInPlan(std::vector<PlanItem>& plan, const StyleSet& styles);

@@ -103,8 +103,7 @@ Status SceneFrames::StartFile(const Progress& progress) {
     return Ok();
   }
   const NextFrame next{now_, camera_};
-  SCUMBLE_ASSIGN(*guides_,
-                 CastScene(now_, camera_, motion_ ? &next : nullptr, options_, layers_, context_, progress, false));
+  SCUMBLE_ASSIGN(*guides_, CastScene(now_, camera_, motion_ ? &next : nullptr, options_, layers_, context_, progress));
   StoreFrameRate(options_, {}, guides_->guides);
   guides_->times.insert(guides_->times.begin(), {"load", load_ms});
   animation_.reset();
@@ -148,8 +147,8 @@ Expected<SceneGuides> SceneFrames::CastFile(int frame, const RunContext& context
   };
   // Without motion the next scene is empty: it has no camera either.
   const auto next = motion_ ? std::optional(NextFrame{next_, camera_of(next_)}) : std::nullopt;
-  SCUMBLE_ASSIGN(SceneGuides guides, CastScene(now_, camera_of(now_), next ? &*next : nullptr, options_, layers_,
-                                               context, progress, false));
+  SCUMBLE_ASSIGN(SceneGuides guides,
+                 CastScene(now_, camera_of(now_), next ? &*next : nullptr, options_, layers_, context, progress));
   StoreFrameRate(options_, {}, guides.guides);
   guides.times.insert(guides.times.begin(), {"move", move_ms});
   if (load_ms_) guides.times.insert(guides.times.begin(), {"load", *load_ms_});
@@ -182,7 +181,7 @@ Expected<SceneGuides> SceneFrames::CastBlender(int frame, const RunContext& cont
   std::optional<NextFrame> next;
   if (following) next.emplace(NextFrame{*following, following_view.camera});
   SCUMBLE_ASSIGN(SceneGuides guides,
-                 CastScene(scene, view.camera, next ? &*next : nullptr, options_, layers, context, progress, false));
+                 CastScene(scene, view.camera, next ? &*next : nullptr, options_, layers, context, progress));
   StoreFrameRate(options_, blender_->animation(), guides.guides);
   guides.times.insert(guides.times.begin(), {"load", load_ms});
   return guides;
@@ -287,8 +286,12 @@ Status ViewAgain(StaticScene& rest, const OwnLights& lights, const SceneRequest&
 Expected<SceneGuides> MakeStaticGuides(const SceneRequest& options, const LayersFor& layers_for, bool motion,
                                        const RunContext& context, const Progress& progress, bool plan_only) {
   SCUMBLE_ASSIGN(StaticScene rest, OpenStaticScene(options, layers_for, motion, context, plan_only));
-  SCUMBLE_ASSIGN(SceneGuides result,
-                 CastScene(rest.scene, rest.view.camera, nullptr, options, rest.layers, context, progress, plan_only));
+  SceneGuides result;
+  if (plan_only) {
+    result = PlanScene(rest.scene, options, rest.layers, context);
+  } else {
+    SCUMBLE_ASSIGN(result, CastScene(rest.scene, rest.view.camera, nullptr, options, rest.layers, context, progress));
+  }
   StoreFrameRate(options, rest.animation, result.guides);
   result.times.insert(result.times.begin(), {"load", rest.load_ms});
   return result;

@@ -173,8 +173,7 @@ class Trade {
   // itself.
   Expected<MemoryNeed> NeedOfAll(const std::vector<Variant>& variants) {
     const LayerSet& layers = stage_.scene.layers;
-    SCUMBLE_ASSIGN(SceneGuides plan, CastScene(stage_.scene.scene, stage_.scene.view.camera, nullptr, setup_.scene,
-                                               layers, silent_, {}, true));
+    SceneGuides plan = PlanScene(stage_.scene.scene, setup_.scene, layers, silent_);
     if (GuidesKey(ConvergedVariant(), layers, true) != GuidesKey(variants.front(), layers, true)) {
       AddGuides({stage_.width, stage_.height}, layers, setup_.scene, plan.memory);
     }
