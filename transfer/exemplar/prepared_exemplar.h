@@ -116,6 +116,18 @@ class PreparedExemplar {
     return {nx, ny};
   }
 
+  // The normal that is compared with those of the exemplar. A sphere shows none beyond its usable rim, and none that
+  // points away from the eye: that of the rim which is nearest stands for these, or no source would be within the
+  // threshold of a surface seen almost edge-on. Scenes: the normal as it is.
+  glm::vec3 WithinRim(glm::vec3 normal) const {
+    if (scene_ || IsWithinRim(normal.x, normal.y, normal.z)) return normal;
+    const glm::vec2 at = OnDisc(normal);
+    return {at.x, at.y, std::sqrt(std::fmax(0.0f, 1.0f - at.x * at.x - at.y * at.y))};
+  }
+  bool IsWithinRim(float x, float y, float z) const {
+    return !(x * x + y * y > usable_radius_ * usable_radius_) && !(z < 0.0f);
+  }
+
   // Other sources for a normal; computed by the first call, on whichever thread.
   const SourceVariation& source_variation() const;
 

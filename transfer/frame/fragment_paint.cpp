@@ -59,7 +59,7 @@ struct CellSum {
 };
 
 void ReadGuide(const MatchInput& match, const GuideSet& values, std::size_t fragment, PixelGuide& guide) {
-  guide.normal = values.Vec3(Layer::kNormal, fragment);
+  guide.normal = match.exemplar.WithinRim(values.Vec3(Layer::kNormal, fragment));
   guide.light = match.luminance.empty() ? 0.0f : values.Plane(Layer::kLuminance)[fragment] * match.brightness;
   if (match.space) match.space->Read(values, fragment, match.brightness, guide.extra_values);
 }

@@ -57,7 +57,7 @@ struct MatchInput {
   float LuminanceAt(std::size_t i) const { return luminance.empty() ? 0.0f : luminance[i]; }
 
   void ReadGuide(std::size_t i, PixelGuide& guide) const {
-    guide.normal = guides.Vec3(Layer::kNormal, i);
+    guide.normal = exemplar.WithinRim(guides.Vec3(Layer::kNormal, i));
     guide.light = LuminanceAt(i);
     if (space) space->Read(guides, i, brightness, guide.extra_values);
   }

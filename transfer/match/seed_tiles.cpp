@@ -89,7 +89,7 @@ void TileSeeds::Fill(int index, TileCandidate& candidate) {
   const std::size_t i = input_->guides.Index(q.x, q.y);
   if (!input_->Paints(i)) return;
   PixelGuide guide;
-  guide.normal = {normal_[0][i], normal_[1][i], normal_[2][i]};
+  guide.normal = input_->exemplar.WithinRim({normal_[0][i], normal_[1][i], normal_[2][i]});
   guide.light = input_->LuminanceAt(i);
   internal::Candidate own = OwnCandidate(*input_, guide);
   candidate.can_vary = false;

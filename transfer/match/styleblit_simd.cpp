@@ -182,6 +182,7 @@ class TileMatcher {
     if (open == 0) return 0;
     const std::size_t pixel = input_.guides.Index(tile_.x0, y);
     for (int c = 0; c < 3; ++c) row.normal[c] = Values(input_.guides.Plane(Layer::kNormal, c).data() + pixel, c);
+    KeepWithinRim(width);
     row.light = input_.luminance.empty() ? nullptr : Values(input_.luminance.data() + pixel, 3);
     if (!field_.guide_offset.empty()) std::fill_n(row.guide_offset, width, glm::vec3(0.0f));
     return open;
@@ -192,6 +193,27 @@ class TileMatcher {
     if (width % kBlock == 0) return plane;
     std::fill(std::copy_n(plane, width, row_.copy[copy]), row_.copy[copy] + blocks_ * kBlock, 0.0f);
     return row_.copy[copy];
+  }
+
+  // PreparedExemplar::WithinRim. Only rows that have such a normal are copied.
+  void KeepWithinRim(int width) {
+    if (!rows_.is_sphere) return;
+    const PreparedExemplar& exemplar = input_.exemplar;
+    const float* const x = row_.normal[0];
+    const float* const y = row_.normal[1];
+    const float* const z = row_.normal[2];
+    int i = 0;
+    while (i < width && exemplar.IsWithinRim(x[i], y[i], z[i])) ++i;
+    if (i == width) return;
+    for (int c = 0; c < 3; ++c) {
+      if (row_.normal[c] == row_.copy[c]) continue;
+      std::copy_n(row_.normal[c], width, row_.copy[c]);
+      row_.normal[c] = row_.copy[c];
+    }
+    for (; i < width; ++i) {
+      const glm::vec3 normal = exemplar.WithinRim({row_.copy[0][i], row_.copy[1][i], row_.copy[2][i]});
+      for (int c = 0; c < 3; ++c) row_.copy[c][i] = normal[c];
+    }
   }
 
   static HWY_INLINE std::uint32_t Nonzero(const std::uint8_t* bytes) {

@@ -108,6 +108,26 @@ TEST(NearestNeighbour, TiesGoToTheLowestRowAndColumn) {
   EXPECT_EQ(exemplar.NearestNeighbour({0, 0, 1}), (Source{3, 3}));
 }
 
+TEST(NormalsCompared, AreThoseOfTheSphereOrTheNearestOfItsRim) {
+  const PreparedExemplar exemplar(PositionPicture(64), 8.0, 64);
+  const double rim = 24.0 / 32.0, height = std::sqrt(1.0 - rim * rim);
+  int beyond = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const glm::vec3 n = AnyDirection(Hash(i));
+    const glm::vec3 found = exemplar.WithinRim(n);
+    const double length = std::hypot(n.x, n.y);
+    if (n.z >= 0.0f && length < rim) {
+      EXPECT_EQ(found, n);
+      continue;
+    }
+    ++beyond;
+    EXPECT_NEAR(found.x, n.x / length * rim, 1e-5);
+    EXPECT_NEAR(found.y, n.y / length * rim, 1e-5);
+    EXPECT_NEAR(found.z, height, 1e-5);
+  }
+  EXPECT_GT(beyond, 500);
+}
+
 TEST(UsableDisc, EndsAtOneMinusRim) {
   for (const int size : {64, 101}) {
     const PreparedExemplar exemplar(PositionPicture(size), 5.0, size);

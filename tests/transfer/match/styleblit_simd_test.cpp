@@ -323,6 +323,16 @@ TEST(TransferTiles, NormalsThatAreNone) {
   }
 }
 
+TEST(TransferTiles, SurfacesSeenAlmostEdgeOnAreCopiedInChunks) {
+  const float elevation = 0.07f;  // 4 degrees; the exemplar shows none below 27
+  const GuideSet guides =
+      MakeGuides(320, 180, [&](int, int) { return glm::vec3(0.0f, std::cos(elevation), std::sin(elevation)); });
+  const PreparedExemplar exemplar(NoisePicture(64), 3.5, 256);
+  const SourceField field = Matches(guides, exemplar).ExpectEqual({}, "edge-on");
+  const auto alone = std::count(field.level.begin(), field.level.end(), std::int8_t{0});
+  EXPECT_LT(double(alone) / double(guides.pixel_count()), 0.1);
+}
+
 TEST(TransferTiles, RowsKnowWhatIsUsable) {
   for (const int size : {1, 2, 3, 7, 16, 101, 256}) {
     for (const double rim : {0.0, 1.0, 3.5, 1e9}) {
