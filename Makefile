@@ -1,7 +1,7 @@
 # A thin wrapper: CMake builds, .ci/ holds the scripts. `make help` lists the targets.
 .DEFAULT_GOAL := build
-.PHONY: help build demo bare check test test-asan test-tsan fuzz bench bench-budget bench-cycles tradeoff exemplars traits \
-  scenes gallery format clean
+.PHONY: help build demo bare check test test-asan test-tsan fuzz bench bench-budget bench-cycles tradeoff exemplars \
+  traits scenes gallery format clean
 
 JOBS := $(shell nproc)
 
@@ -33,22 +33,24 @@ test: ## install what is missing (Blender too), build everything, run all tests
 	@cmake --build build -j $(JOBS)
 	@ctest --test-dir build --output-on-failure -j $(JOBS)
 
-test-asan: ## all tests but the longest of the painter's under AddressSanitizer and UndefinedBehaviorSanitizer, in build-asan/; takes an hour or two
+test-asan: ## all tests but the painter's longest with AddressSanitizer and UBSan, in build-asan/; an hour or two
 	@.ci/install test
 	@cmake --preset asan
 	@cmake --build build-asan -j $(JOBS)
-	@ASAN_OPTIONS=$(NO_GUESSED_TLS) LSAN_OPTIONS=suppressions=$(CURDIR)/tests/support/leaks.supp ctest --test-dir build-asan --output-on-failure -j $(JOBS) -E painting_repeats
+	@ASAN_OPTIONS=$(NO_GUESSED_TLS) LSAN_OPTIONS=suppressions=$(CURDIR)/tests/support/leaks.supp \
+	  ctest --test-dir build-asan --output-on-failure -j $(JOBS) -E painting_repeats
 
 # GCC 12's sanitizer guesses the place of the C library's thread-local memory, wrongly once a library is loaded late,
 # and then crashes in its search for leaks there.
 NO_GUESSED_TLS := intercept_tls_get_addr=0
 
-test-tsan: ## all tests but the longest of Blender's and of the painter's under ThreadSanitizer, in build-tsan/; takes hours
+test-tsan: ## all tests but the longest of Blender's and the painter's with ThreadSanitizer, in build-tsan/; hours
 	@.ci/install tsan
 	@.ci/tsan_tbb build-tsan/onetbb
 	@cmake --preset tsan
 	@cmake --build build-tsan -j $(JOBS)
-	@TSAN_OPTIONS=history_size=7:suppressions=$(CURDIR)/tests/support/threads.supp ctest --test-dir build-tsan --output-on-failure -j $(JOBS) -E "painting_repeats|cycles_matrix_test"
+	@TSAN_OPTIONS=history_size=7:suppressions=$(CURDIR)/tests/support/threads.supp \
+	  ctest --test-dir build-tsan --output-on-failure -j $(JOBS) -E "painting_repeats|cycles_matrix_test"
 
 fuzz: ## libFuzzer (clang) on everything that reads other people's files, 60 s each; FUZZ="600 gltf" 600 s of one
 	@.ci/install fuzz
@@ -70,7 +72,7 @@ bench-cycles: build ## our speed beside Cycles' on the same scene, into out/benc
 bench-budget: build ## whether --budget-ms keeps its budgets (docs/budget.md)
 	@/usr/bin/python3 bench/budget.py --scumble build/scumble $(BENCH_ARGS)
 
-tradeoff: build ## speed against accuracy on the sample scenes, into out/tradeoff/; WRITE_DOCS=1 puts it into docs/tradeoff.md
+tradeoff: build ## speed against accuracy on the sample scenes, into out/tradeoff/; WRITE_DOCS=1: docs/tradeoff.md too
 	@.ci/install test
 	@/usr/bin/python3 bench/tradeoff.py $(if $(WRITE_DOCS),--write-docs) $(TRADEOFF_ARGS)
 
@@ -91,7 +93,7 @@ scenes: ## make the sample scenes again (Blender)
 	@.ci/install test
 	@blender -b -noaudio --factory-startup -P blender_scripts/make_scenes.py -- --output scenes
 
-gallery: build ## make the pictures of README and docs/ again; ONLY="edge colorize" makes those, "materials" takes minutes
+gallery: build ## make the pictures of README and docs/; ONLY="edge colorize" makes those, "materials" takes minutes
 	@.ci/install test
 	@.ci/gallery $(ONLY)
 

@@ -3,8 +3,8 @@
 
     /usr/bin/python3 bench/area_light_scenes.py FOLDER
 
-ball.glb: a ball on a ground under a square lamp, seen as StyLit's exemplar scene is. level.glb: four rooms of some 2,400
-triangles with doorways, pillars, stairs, shelves and crates, six area lights under their ceilings.
+ball.glb: a ball on a ground under a square lamp, seen as StyLit's exemplar scene is. level.glb: four rooms of some
+2,400 triangles with doorways, pillars, stairs, shelves and crates, six area lights under their ceilings.
 """
 
 import argparse

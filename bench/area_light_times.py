@@ -5,8 +5,8 @@ they are from 1,024 samples: the table of docs/performance.md.
     /usr/bin/python3 bench/area_light_times.py --program build/scumble [--runs 5] [--write-docs]
     /usr/bin/python3 bench/area_light_times.py --scene ball --keep FOLDER
 
-The scenes are those of bench/area_light_scenes.py. Contestants take turns; everything runs once before it counts. FLIP is
-that of `scumble compare --flip`, the mean over the picture. Without --write-docs the table goes to standard output.
+The scenes are those of bench/area_light_scenes.py. Contestants take turns; everything runs once before it counts. FLIP
+is that of `scumble compare --flip`, the mean over the picture. Without --write-docs the table goes to standard output.
 """
 
 import argparse
@@ -67,7 +67,8 @@ def main():
     parser.add_argument("--size", default="960x540")
     parser.add_argument("--runs", type=int, default=5)
     parser.add_argument("--scene", choices=["ball", "level"], help="measure one scene alone")
-    parser.add_argument("--keep", type=Path, help="a folder for scenes and pictures of 1,024 samples, used again if there")
+    parser.add_argument("--keep", type=Path,
+                        help="a folder for scenes and pictures of 1,024 samples, used again if there")
     parser.add_argument("--write-docs", action="store_true")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:

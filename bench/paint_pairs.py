@@ -246,7 +246,8 @@ def draw_row(pair):
         panels = [exemplar_part(pair["style"], 360, 360)] + sides
     gap = np.full((panels[0].shape[0], 8, 3), 0.97)
     row = np.concatenate([panels[0], gap, panels[1], gap, panels[2]], 1)
-    return np.concatenate([np.full((26, row.shape[1], 3), 0.97), row], 0), panels[0].shape[1] + 8, panels[1].shape[1] + 8
+    head = np.full((26, row.shape[1], 3), 0.97)
+    return np.concatenate([head, row], 0), panels[0].shape[1] + 8, panels[1].shape[1] + 8
 
 
 def draw(pairs, locked):

@@ -5,8 +5,8 @@ frame, assignment, light or undo of all.
 
 Usage: studio_changes.py --scumble build/scumble [--changes 10000] [--size 320x180]
 
-Prints the memory that the program has allocated (RssAnon) after each tenth, at rest. Exit code 1 where any later tenth has over 5% more than the first one, or
-where the studio does not answer or end as it should.
+Prints the memory that the program has allocated (RssAnon) after each tenth, at rest. Exit code 1 where any later tenth
+has over 5% more than the first one, or where the studio does not answer or end as it should.
 """
 import argparse
 import pathlib

@@ -132,14 +132,15 @@ def new_mesh(instance, depsgraph):
 
 
 def new_shape(instance, depsgraph):
-    """(mesh, hair): the mesh is empty where only the hair is shown, or there is no mesh. A view layer's filter may leave
-    out all surfaces, or all curves."""
+    """(mesh, hair): the mesh is empty where only the hair is shown, or there is no mesh. A view layer's filter may
+    leave out all surfaces, or all curves."""
     thing, layer = instance.object, depsgraph.view_layer
     if thing.type == "CURVES":
         return bpy.data.meshes.new("scumble"), export_hair.curves_hair(thing) if layer.use_strand else []
     shown = layer.use_solid and (instance.is_instance or instance.show_self)
     mesh = new_mesh(instance, depsgraph) if shown else bpy.data.meshes.new("scumble")
-    drawn = layer.use_strand and not is_generated(instance, depsgraph) and (instance.is_instance or instance.show_particles)
+    drawn = (layer.use_strand and not is_generated(instance, depsgraph)
+             and (instance.is_instance or instance.show_particles))
     return mesh, export_hair.particle_hair(thing) if drawn and thing.type == "MESH" else []
 
 

@@ -2,7 +2,8 @@
 
 A curves primitive has mode 0 (points), so that other readers show something, and extras.scumble.curves. POSITION are
 control points, the first and the last of each curve twice; `_SCUMBLE_RADIUS` their radii; TEXCOORD_0, the place of the
-curve's root in its emitter's textures; the indices give the first of the four control points of each Catmull-Rom segment.
+curve's root in its emitter's textures; the indices give the first of the four control points of each Catmull-Rom
+segment.
 """
 
 from dataclasses import dataclass

@@ -98,8 +98,8 @@ def describe_border(scene, unsupported):
     pixels = [int(numpy.float32(at) * numpy.float32(size)) for at, size in zip(sides, frame)]  # Blender's own rounding
     width, height = pixels[2] - pixels[0], pixels[3] - pixels[1]
     if width < 1 or height < 1:
-        unsupported.add("the render's border (Output > Format > Render Region) holds no pixel: Blender renders nothing, "
-                        "the whole frame is drawn instead")
+        unsupported.add("the render's border (Output > Format > Render Region) holds no pixel: Blender renders "
+                        "nothing, the whole frame is drawn instead")
         return {}
     if render.use_crop_to_border:
         sides = [at / size for at, size in zip(pixels, frame)]

@@ -1,9 +1,9 @@
 """Normals as Cycles has them, where Blender's exporter would write others: part of export_scene.py.
 
-Without Auto Smooth, Cycles takes the evaluated mesh's own normals at vertices of smooth faces, and the triangle's at flat
-ones. The exporter makes both anew from the faces of a copy. That differs for metaballs, whose normals come from their
-field, and for flat polygons that are bent, of which each triangle has a normal of its own. With Auto Smooth, and from
-Blender 4.1 on where a mesh has corner normals, both take those.
+Without Auto Smooth, Cycles takes the evaluated mesh's own normals at vertices of smooth faces, and the triangle's at
+flat ones. The exporter makes both anew from the faces of a copy. That differs for metaballs, whose normals come from
+their field, and for flat polygons that are bent, of which each triangle has a normal of its own. With Auto Smooth, and
+from Blender 4.1 on where a mesh has corner normals, both take those.
 """
 
 import bmesh
@@ -66,8 +66,8 @@ def cut(mesh, polygons):
 
 
 def of_metaballs(depsgraph):
-    """The normals at the vertices of each metaball's evaluated mesh, by the object's full name. That mesh is an instance
-    of its own, beside the object, whose copy has normals made anew."""
+    """The normals at the vertices of each metaball's evaluated mesh, by the object's full name. That mesh is an
+    instance of its own, beside the object, whose copy has normals made anew."""
     found = {}
     for instance in depsgraph.object_instances:
         thing = instance.object

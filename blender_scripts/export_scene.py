@@ -10,9 +10,9 @@ active camera comes first. docs/blender.md explains the extras.
 With --frames, `#` in the output's name stands for the frame's number, and the scene is opened anew for each frame. So
 no frame depends on those before it, by remains of an export or by a simulation that was not baked.
 
-Each loss is one line "scumble: unsupported: …" on stderr and one in the scene's extras; each choice among several, which
-nobody asked for, is a line "scumble: note: …". Exit codes: 0, 3 when the scene
-cannot be exported, 5 when this Blender's version is not supported. The reason is a line "scumble: error: …" on stderr.
+Each loss is one line "scumble: unsupported: …" on stderr and one in the scene's extras; each choice among several,
+which nobody asked for, is a line "scumble: note: …". Exit codes: 0, 3 when the scene cannot be exported, 5 when this
+Blender's version is not supported. The reason is a line "scumble: error: …" on stderr.
 """
 
 import argparse
@@ -155,8 +155,8 @@ def note_choices(arguments):
 
 
 def export_start(arguments):
-    """What is the same in all frames: their rate and range, the files that the scene reads, and where we must decide from where
-    the scene is seen or lit, the scene at its first frame. False where there was nothing to export."""
+    """What is the same in all frames: their rate and range, the files that the scene reads, and where we must decide
+    from where the scene is seen or lit, the scene at its first frame. False where there was nothing to export."""
     scene = choose_scene(arguments.scene)
     if arguments.fps_file:
         fps, base = scene.render.fps, scene.render.fps_base
@@ -196,7 +196,8 @@ def main():
     which.add_argument("--frames", type=parse_frames, help="several frames, as 1-24 or 3,5-10 or 12-24x2")
     parser.add_argument("--ahead", type=int, default=0,
                         help="with --frames: wait while so many files are there; a reader deletes them. 0: never wait")
-    parser.add_argument("--fps-file", type=Path, help="write there the frames a second, the first frame and the last, as text")
+    parser.add_argument("--fps-file", type=Path,
+                        help="write there the frames a second, the first frame and the last, as text")
     parser.add_argument("--files-file", type=Path,
                         help="write the libraries, pictures and other files there that the .blend reads, one a line")
     parser.add_argument("--start-file", type=Path,

@@ -153,8 +153,8 @@ def mixed(name):
 
 
 def bent(name, *nodes):
-    """A Diffuse surface whose Normal is fed by a chain of nodes, the last one first: (type, what feeds it, settings). What
-    feeds it is an image or the type of a node."""
+    """A Diffuse surface whose Normal is fed by a chain of nodes, the last one first: (type, what feeds it, settings).
+    What feeds it is an image or the type of a node."""
     surface, shader = new_material(name, "ShaderNodeBsdfDiffuse")
     tree, socket = surface.node_tree, shader.inputs["Normal"]
     for kind, feed, settings in nodes:
@@ -509,8 +509,8 @@ def bordered():
 
 
 def layers():
-    """Three scenes; in the first one three view layers and a collection that is hidden from render, in the next one a shadow
-    catcher."""
+    """Three scenes; in the first one three view layers and a collection that is hidden from render, in the next one a
+    shadow catcher."""
     scene = bpy.context.scene
     scene.name = "Shot"
     grey = new_material("Grey", "ShaderNodeBsdfDiffuse")[0]

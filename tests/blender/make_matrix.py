@@ -173,8 +173,8 @@ def diffuse_set():
 
 
 def diffuse_and_glossy_set(small=0.0):
-    """Diffuse surfaces, glossy ones of roughness 0.1 to 0.7, and a mirror. The floor and the side, which light meets first,
-    are diffuse: caustics of caustics would need thousands of samples on both sides."""
+    """Diffuse surfaces, glossy ones of roughness 0.1 to 0.7, and a mirror. The floor and the side, which light meets
+    first, are diffuse: caustics of caustics would need thousands of samples on both sides."""
     return {**diffuse_set(), "Back": material("glossy", (0.7, 0.7, 0.8), 0.7),
             "Ball": material("glossy", (0.9, 0.8, 0.5), 0.1), "Ring": material("glossy", (0.8, 0.8, 0.8), 0.6),
             "Small": material("glossy", (0.9, 0.9, 0.9), small)}
@@ -277,8 +277,8 @@ def emissive():
 
 
 def rough():
-    """Diffuse roughness from a quarter to all of it, in direct light at every angle, in bounced light, and before a rough
-    metal, whose highlights on diffuse surfaces Cycles blurs by the densities of the path."""
+    """Diffuse roughness from a quarter to all of it, in direct light at every angle, in bounced light, and before a
+    rough metal, whose highlights on diffuse surfaces Cycles blurs by the densities of the path."""
     materials = diffuse_set()
     for step, name in enumerate(("Side", "Back", "Floor", "Ball", "Ring", "Box")):
         node = materials[name].node_tree.nodes["Diffuse BSDF"]
@@ -289,8 +289,8 @@ def rough():
 
 
 def coarse():
-    """Shading normals that mirror the line of sight into the surface, which Cycles bends: low-poly shapes shaded smooth,
-    caps as fans of triangles among them, and a dense folded one."""
+    """Shading normals that mirror the line of sight into the surface, which Cycles bends: low-poly shapes shaded
+    smooth, caps as fans of triangles among them, and a dense folded one."""
     materials = diffuse_set()
     quad("Floor", (-2.5, -2.5, 0), (5, 0, 0), (0, 4.5, 0), materials["Floor"])
     quad("Back", (-2.5, 2, 0), (5, 0, 0), (0, 0, 3), materials["Back"])

@@ -132,8 +132,8 @@ def add_with_modifiers(material):
     subdivision.show_viewport, subdivision.levels, subdivision.render_levels = False, 0, 2
     hidden = thing.modifiers.new("Hidden", "SIMPLE_DEFORM")
     hidden.show_render, hidden.angle = False, 2.0
-    thing = add_mesh("Thick", lambda shape: bmesh.ops.create_grid(shape, x_segments=4, y_segments=4, size=0.5), material,
-                     True)
+    thing = add_mesh("Thick", lambda shape: bmesh.ops.create_grid(shape, x_segments=4, y_segments=4, size=0.5),
+                     material, True)
     thing.modifiers.new("Solid", "SOLIDIFY").thickness = 0.2
     thing.modifiers.new("Cast", "CAST").factor = 0.5
 

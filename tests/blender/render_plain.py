@@ -4,8 +4,9 @@
 
 Writes FOLDER/NAME.exr, multilayer, and FOLDER/NAME.camera with the camera that Blender had. A shot's name lists its
 special settings: one of the cameras (landscape, portrait, shifted, ortho, far), the film (opaque, clear), the filter
-(filtered, sharp), lens, dof, slightdof or nopos, and lit (a hard sun, and the passes of its light), catcher (lit, and the
-floor is a shadow catcher) or painted (everything has one colour and one point of a texture): "shifted-opaque-filtered".
+(filtered, sharp), lens, dof, slightdof or nopos, and lit (a hard sun, and the passes of its light), catcher (lit, and
+the floor is a shadow catcher) or painted (everything has one colour and one point of a texture):
+"shifted-opaque-filtered".
 """
 
 import argparse

@@ -217,7 +217,8 @@ def make_gltf():
     hair = {"mode": 0, "indices": accessor(struct.pack("<2H", 0, 1), 2, "SCALAR", 5123),
             "attributes": {"POSITION": strand, "TEXCOORD_0": accessor(floats(*(0.2, 0.8) * 5), 5, "VEC2"),
                            "_SCUMBLE_RADIUS": accessor(floats(0.2, 0.2, 0.1, 0, 0), 5, "SCALAR")}}
-    shapes = [{**hair, "extras": {"scumble": {"curves": {"ribbons": ribbons, "pieces": 5}}}} for ribbons in (True, False)]
+    shapes = [{**hair, "extras": {"scumble": {"curves": {"ribbons": ribbons, "pieces": 5}}}}
+              for ribbons in (True, False)]
     write("gltf", "hair.glb", glb({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
                                    "nodes": [{"mesh": 0}], "meshes": [{"primitives": shapes}],
                                    "bufferViews": views, "accessors": accessors}))
@@ -320,12 +321,14 @@ def make_changes():
     view = {"azimuth": 33.25, "elevation": -10, "distance": 4.5, "right": 0.1, "up": -0.05, "fov": 40}
     for name, change in {
             "view": {"view": view, "light": {"azimuth": 20, "elevation": 30.5}},
-            "keys": {"style": "oil", "keys": {"transfer.threshold": 0.3, "transfer.levels": 5, "transfer.coherent": True,
-                                              "transfer.method": "litsphere", "transfer.paper": "#f4efe6", "name": "a'b",
-                                              "transfer.jitter": None, "transfer.hybrid": "inf"}},
+            "keys": {"style": "oil",
+                     "keys": {"transfer.threshold": 0.3, "transfer.levels": 5, "transfer.coherent": True,
+                              "transfer.method": "litsphere", "transfer.paper": "#f4efe6", "name": "a'b",
+                              "transfer.jitter": None, "transfer.hybrid": "inf"}},
             "scene": {"scene": "toys", "camera": "Camera.001", "frame": 13, "size": [320, 180], "seed": 7},
             "assign": {"assignments": [{"name": "Suzanne*", "style": "ink"}, {"name": "Ball", "style": "oil"}]},
-            "dash": {"camera": "--help", "assignments": [{"name": "-o x", "style": "ink"}], "keys": {"name": "--a=b\nc"}},
+            "dash": {"camera": "--help", "assignments": [{"name": "-o x", "style": "ink"}],
+                     "keys": {"name": "--a=b\nc"}},
             "nul": {"camera": "a\0b"}, "nul_name": {"assignments": [{"name": "a\0", "style": "ink"}]},
             "nul_key": {"keys": {"name": "a\0"}}, "far": {"view": {"azimuth": 1e6, "elevation": 90, "distance": 1e12}},
             "numbers": {"seed": 18446744073709551615, "frame": -1000000, "size": [16384, 1], "budget_ms": 1e-300},

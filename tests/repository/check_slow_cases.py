@@ -24,8 +24,8 @@ def main():
         # Prefix/Suite.Case/parameter; the prefix and the parameter belong to INSTANTIATE_TEST_SUITE_P.
         suite, case = line.split()[1].split(".", 1)
         if (suite.split("/")[-1], case.split("/")[0]) not in cases:
-            missing.append(f"tests/slow_cases.txt:{number}: no source file has {suite}.{case}; delete the line or name the "
-                           "case that took its place")
+            missing.append(f"tests/slow_cases.txt:{number}: no source file has {suite}.{case}; delete the line or name "
+                           "the case that took its place")
     print("\n".join(missing) or f"{listed} slow cases, all of them in the sources")
     return 1 if missing or not listed else 0
 

@@ -17,7 +17,8 @@
  *   styles: {id: string, name: string, bundled: boolean, writable: boolean, save_as: boolean}[],
  *   cameras: string[], objects: string[], materials: string[],
  *   animation: {first: number, last: number, fps: number} | null, lights: number, exemplars: Exemplar[],
- *   run: string, as_started: boolean, first: {scene: string, style: string, options: string}, keys: Record<string, KeyValue>, file_keys: Record<string, KeyValue>, assignments: Assignment[],
+ *   run: string, as_started: boolean, first: {scene: string, style: string, options: string},
+ *   keys: Record<string, KeyValue>, file_keys: Record<string, KeyValue>, assignments: Assignment[],
  *   camera: string, view: Orbit | null, light: Light | null, finish: Finish | null,
  *   finishes: {name: string, help: string}[], eye: Orbit, frame: number | null,
  *   size: [number, number], seed: number, quality: string, budget_ms: number, problem: Problem | null}} State

@@ -97,7 +97,10 @@ export class BrushPanel {
     try {
       if (!this.hasUnsaved) this.paintable = await this.ask();
       else if (this.belongsTo === here) this.paintable = this.own;
-      else this.paintable = {ok: false, why: `Strokes on ${this.file} are not saved: go back to it to save or undo them.`};
+      else {
+        const why = `Strokes on ${this.file} are not saved: go back to it to save or undo them.`;
+        this.paintable = {ok: false, why};
+      }
     } catch (error) {
       this.page.error(error);
       this.close();

@@ -31,7 +31,8 @@ export class FinishPanel {
   /** @param {State} state */
   update(state) {
     const options = state.finishes.map(({name, help}) => ({value: name, text: name, title: help}));
-    fillSelect(this.name, [{value: '', text: "The style's own alone", title: ''}, ...options], state.finish?.name ?? '');
+    const none = {value: '', text: "The style's own alone", title: ''};
+    fillSelect(this.name, [none, ...options], state.finish?.name ?? '');
     this.dials.hidden = !state.finish;
     for (const {dial, input} of this.sliders) {
       const value = state.finish?.[dial] ?? 0.5;

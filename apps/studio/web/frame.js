@@ -80,7 +80,10 @@ export class Frames {
     this.running = false;
     /** @type {{quality: string, abort: AbortController} | null} */
     this.current = null;
-    /** On the screen, or a draft that will be in a moment. @type {{revision: number, quality: string, show: string} | null} */
+    /**
+     * On the screen, or a draft that will be in a moment.
+     * @type {{revision: number, quality: string, show: string} | null}
+     */
     this.drawn = null;
     this.drawing = Promise.resolve();
     this.failed = '';

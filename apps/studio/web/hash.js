@@ -4,7 +4,10 @@ import {settingsOf} from './store.js';
 
 /** @typedef {import('./api.js').State} State */
 /** @typedef {import('./api.js').Changes} Changes */
-/** @typedef {{revision: number, run?: string, first?: State['first'], settings: Changes, page: Record<string, any>}} Kept */
+/**
+ * @typedef {{revision: number, run?: string, first?: State['first'], settings: Changes,
+ *   page: Record<string, any>}} Kept
+ */
 
 /** @type {Record<string, () => unknown>} */
 const parts = {};

@@ -119,7 +119,8 @@ export class History {
 
   /**
    * Keys were written into a style's file: what was seen with the file's values has them as keys of its own now.
-   * @param {string} style @param {Record<string, any>} saved @param {Record<string, any>} before as Store.rebase has them
+   * @param {string} style
+   * @param {Record<string, any>} saved @param {Record<string, any>} before as Store.rebase has them
    */
   rebase(style, saved, before) {
     for (const entry of this.entries) {

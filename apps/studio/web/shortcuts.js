@@ -3,10 +3,10 @@ import {byId, isField, make} from './dom.js';
 
 /**
  * @typedef {{group: string, keys: string, does: string, key?: string[], code?: string[], ctrl?: boolean,
- *   shift?: boolean, single?: boolean, isUndo?: boolean, run?: (event: KeyboardEvent) => boolean | void, release?: () => void}} Shortcut
- * `single`: a key that types a character, which can be switched off; `isUndo`: text
- * fields have their own. `run` answers false where the key is not its.
- * Without `run` the row is for the help alone.
+ *   shift?: boolean, single?: boolean, isUndo?: boolean, run?: (event: KeyboardEvent) => boolean | void,
+ *   release?: () => void}} Shortcut
+ * `single`: a key that types a character, which can be switched off; `isUndo`: text fields have their own. `run`
+ * answers false where the key is not its. Without `run` the row is for the help alone.
  */
 
 const kStored = 'scumble.letters';

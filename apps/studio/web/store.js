@@ -202,7 +202,8 @@ export class Store {
   }
 
   /**
-   * Keys were written into the style's file: "as the file has it" is another value now, in what undo and redo bring back.
+   * Keys were written into the style's file: "as the file has it" is another value now, in what undo and redo bring
+   * back.
    * @param {string} style
    * @param {Record<string, any>} saved the keys, as they were changed
    * @param {Record<string, any>} before the values in the file until now
@@ -216,8 +217,8 @@ export class Store {
   }
 
   /**
-   * The style was saved under another name, which is chosen now: the newest steps, back to a choice of a style, are taken
-   * back in the copy.
+   * The style was saved under another name, which is chosen now: the newest steps, back to a choice of a style, are
+   * taken back in the copy.
    * @param {Record<string, any>} saved @param {Record<string, any>} before as rebase has them
    * @param {string} copy
    */

@@ -22,7 +22,8 @@ from browser_page import Page, SCUMBLE, SOURCE, Studio, WORK, axe_source
 
 class Pictures(Page):
     def test_the_first_picture_is_the_command_lines(self):
-        self.assertEqual(self.js("const c = document.getElementById('picture'); return [c.width, c.height]"), [320, 180])
+        size = self.js("const c = document.getElementById('picture'); return [c.width, c.height]")
+        self.assertEqual(size, [320, 180])
         command = self.call("POST", "/api/export", {"what": "command"})[1]["command"]
         file = self.folder / "cli.png"
         command = command.replace("scumble stylize", f"{SCUMBLE} stylize --quiet", 1).replace("picture.png", str(file))

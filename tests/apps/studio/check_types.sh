@@ -1,5 +1,6 @@
 #!/bin/sh
-# The types of the studio's page, which stand in its comments, agree: check_types.sh FOLDER, with Debian's node-typescript.
+# The types of the studio's page, which stand in its comments, agree: check_types.sh FOLDER, with Debian's
+# node-typescript.
 set -eu
 if ! command -v tsc >/dev/null; then
   echo "tsc is not here: install node-typescript" >&2

@@ -317,7 +317,7 @@ TEST(GuideSpace, DefinedForEveryValue) {
 
 // ---- weights -------------------------------------------------------------------------------------------------------
 
-Picture Painted(const Style& style, const GuideSet& guides, TransferOptions options = {}) {
+Picture PaintedPicture(const Style& style, const GuideSet& guides, TransferOptions options = {}) {
   return MustTransfer(style, guides, options).picture;
 }
 
@@ -328,10 +328,11 @@ TEST(GuideSpace, TwiceTheWeightsAtTwiceTheThresholdAreTheSame) {
       Style once = LitStyle(true, FifteenDimensions(), 3), twice = once;
       for (Style* style : {&once, &twice}) style->transfer.method = method, style->transfer.threshold_metric = metric;
       for (const LayerInfo& info : AllLayers()) twice.transfer.guide_weights[info.layer] *= 2.0f;
-      EXPECT_FALSE(method != Method::kLitSphere && Painted(once, guides).rgba == Painted(twice, guides).rgba)
+      EXPECT_FALSE(method != Method::kLitSphere &&
+                   PaintedPicture(once, guides).rgba == PaintedPicture(twice, guides).rgba)
           << "a threshold half as large cuts more";
       twice.transfer.threshold *= 2.0f;
-      EXPECT_TRUE(Painted(once, guides).rgba == Painted(twice, guides).rgba);
+      EXPECT_TRUE(PaintedPicture(once, guides).rgba == PaintedPicture(twice, guides).rgba);
     }
   }
 }
@@ -354,7 +355,7 @@ TEST(GuideSpace, NormalsThatCountTwiceAreTheTreeOfNormals) {
     Style twice = plain;
     twice.transfer.guide_weights[Layer::kNormal] = 2.0f;
     twice.transfer.threshold = 0.25f;
-    EXPECT_TRUE(Painted(plain, guides).rgba == Painted(twice, guides).rgba) << key;
+    EXPECT_TRUE(PaintedPicture(plain, guides).rgba == PaintedPicture(twice, guides).rgba) << key;
   }
 }
 
@@ -374,7 +375,7 @@ TEST(GuideSpace, SharesOfTheBrightestAreWhatIsCompared) {
     options.exposure = *stops;
     GuideSet albedo = guides;  // not weighed, so it does not matter
     albedo.Remove(Layer::kAlbedo);
-    const Picture picture = Painted(style, albedo, options);
+    const Picture picture = PaintedPicture(style, albedo, options);
     if (!first) first = picture;
     EXPECT_TRUE(picture.rgba == first->rgba) << scale;
   }
@@ -396,9 +397,9 @@ TEST(GuideSpace, ThreadsAndRegionsMakeNoDifference) {
     if (key == 4) style.transfer.match_step = 2;
     TransferOptions options;
     options.threads = 1;
-    const Picture whole = Painted(style, guides, options);
+    const Picture whole = PaintedPicture(style, guides, options);
     options.threads = 4;
-    EXPECT_TRUE(Painted(style, guides, options).rgba == whole.rgba) << key;
+    EXPECT_TRUE(PaintedPicture(style, guides, options).rgba == whole.rgba) << key;
     const auto prepared = Prepare(style, guides.height());
     ASSERT_TRUE(prepared.ok());
     Picture parts(guides.width(), guides.height());
@@ -416,9 +417,9 @@ TEST(GuideSpace, TheToneOfAHybridIsTheNearestNeighboursInAllGuides) {
   style.transfer.method = Method::kLitSphere;
   style.transfer.blend_radius = 0;
   const GuideSet guides = LitHills(5);
-  const Picture plain = Painted(style, guides);
+  const Picture plain = PaintedPicture(style, guides);
   style.transfer.hybrid = 3.0;
-  const Picture hybrid = Painted(style, guides);
+  const Picture hybrid = PaintedPicture(style, guides);
   // Tone and texture of one place are its paint, within rounding.
   for (std::size_t i = 0; i < plain.rgba.size(); ++i) ASSERT_NEAR(hybrid.rgba[i], plain.rgba[i], 1) << i;
 }

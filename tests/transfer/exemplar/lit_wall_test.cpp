@@ -16,7 +16,7 @@ constexpr float kShade = 0.05f;
 // A wall that faces the viewer, one unit behind a light at `lamp` (in pixels): the luminance of a point light on white
 // Lambert is proportional to cos θ / r² = (1 + d²)^(-3/2), d being the distance along the wall in units of the light's.
 // Right of `shadow` a screen leaves a twentieth of it.
-float Light(float x, float y, glm::vec2 lamp, float unit, int shadow) {
+float LightAt(float x, float y, glm::vec2 lamp, float unit, int shadow) {
   const float d = glm::length(glm::vec2(x + 0.5f, y + 0.5f) - lamp) / unit;
   return (x < shadow ? 1.0f : kShade) / std::pow(1.0f + d * d, 1.5f);
 }
@@ -26,7 +26,7 @@ GuideSet Wall(int width, int height, glm::vec2 lamp, float unit, int shadow, flo
   guides.Add(Layer::kLuminance), guides.Add(Layer::kLpeLDE);
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      const float light = strength * Light(float(x), float(y), lamp, unit, shadow);
+      const float light = strength * LightAt(float(x), float(y), lamp, unit, shadow);
       guides.Plane(Layer::kLuminance)[guides.Index(x, y)] = light;
       for (int c = 0; c < 3; ++c) guides.Plane(Layer::kLpeLDE, c)[guides.Index(x, y)] = light;
     }
