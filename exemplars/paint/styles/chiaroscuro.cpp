@@ -16,9 +16,11 @@ enum Pass : std::uint64_t { kTone = kFirstStream, kSmudge, kRim, kAccents, kFirs
 
 // The target darkness, of which the bare paper has 0.44.
 Touch Target(Light light) {
-  return [light](glm::vec2 at) {
+  // In the light chalk reaches what faces the viewer, or walls would be bare paper like the ground behind them.
+  const glm::vec2 chalk = light == Light::kKey ? glm::vec2(0.85f, 0.40f) : glm::vec2(1.0f, 0.50f);
+  return [light, chalk](glm::vec2 at) {
     const float value = ShadingAt(at, light).value;
-    return 0.10f + 0.34f * Ramp(1.0f, 0.50f, value) + 0.24f * Ramp(0.52f, 0.24f, value) +
+    return 0.10f + 0.34f * Ramp(chalk.x, chalk.y, value) + 0.24f * Ramp(0.52f, 0.24f, value) +
            0.20f * Ramp(0.28f, 0.04f, value);
   };
 }
