@@ -184,6 +184,7 @@ struct HatchPass {
   int layers = 2;           // 1 … 4
   double fullest = 0.6;     // 0.05 … 1: share of ink at which a layer is full, and the next begins
   double bare = 1.0;        // 0 … 1: tone from which on nothing is hatched
+  double deepest = 0.0;     // 0 … 1: tone below which all is hatched alike, so that paper shows in the deepest shade
   double wobble = 0.6;      // 0 … 16 pixels: how far strokes stray
   double jitter_fps = 0.0;  // new strokes a second, up to 1000; 0: none; -1: in each frame
   Tone tone = Tone::kLight;

@@ -285,6 +285,7 @@ std::vector<FinishKey> HatchKeys() {
           PassWhole("layers", &P::layers, 1, 4, "layers of strokes"),
           PassNumber("fullest", &P::fullest, 0.05, 1.0, "share of ink at which the next layer begins"),
           PassNumber("bare", &P::bare, 0.0, 1.0, "tone from which on nothing is hatched"),
+          PassNumber("deepest", &P::deepest, 0.0, 1.0, "tone of the deepest shade: above 0, paper shows there"),
           PassNumber("wobble", &P::wobble, 0.0, 16.0, "how far strokes stray, pixels"),
           PassJitter(&P::jitter_fps),
           PassText("strokes", &P::strokes, "lines; or of pencil, pen, charcoal; or the file of a threshold texture"),

@@ -276,7 +276,8 @@ void DrawHatch(const HatchPass& pass, double strength, std::span<const std::uint
       ToneOf(pass.tone == HatchPass::Tone::kLight ? EdgesPass::Tone::kLight : EdgesPass::Tone::kPaint, frame, picture);
   const auto spacing = static_cast<float>(std::max(1.0, pass.spacing * frame.scale));
   const auto wobble = static_cast<float>(pass.wobble * frame.scale);
-  const auto fullest = static_cast<float>(pass.fullest), from = static_cast<float>(pass.bare);
+  const auto fullest = static_cast<float>(pass.fullest), from = static_cast<float>(pass.bare),
+             deepest = static_cast<float>(pass.deepest);
   const Strokes strokes(pass, spacing);
   std::vector<NoiseField> strays;  // of each layer's strokes
   for (int k = 0; k < pass.layers && wobble > 0.0f; ++k)
@@ -302,7 +303,8 @@ void DrawHatch(const HatchPass& pass, double strength, std::span<const std::uint
         const std::size_t p = std::size_t(y) * width + x;
         std::uint16_t* const pixel = picture.rgba.data() + 4 * p;
         if (pixel[3] == 0 || (!only.empty() && !only[p])) continue;
-        float left = from > 0.0f ? std::min(1.0f, tones[p] / from) : 1.0f;  // of the tone, after the layers so far
+        // Of the tone, after the layers so far.
+        float left = from > 0.0f ? std::max(deepest, std::min(1.0f, tones[p] / from)) : 1.0f;
         if (left >= 1.0f) continue;
         const Axis axis = patches.At(p);
         const glm::vec2 at(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);

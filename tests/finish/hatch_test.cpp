@@ -61,6 +61,13 @@ TEST(Hatch, LightAboveTheLimitIsBare) {
 
 TEST(Hatch, DarknessIsFull) { EXPECT_NEAR(Mean(HatchOf({}, FlatInLight(0.0))), 1.0, 1e-3); }
 
+TEST(Hatch, TheDeepestShadeKeepsItsShareOfPaper) {
+  HatchPass pass;
+  pass.deepest = 0.1;
+  EXPECT_NEAR(Mean(HatchOf(pass, FlatInLight(0.0))), 0.9, 0.01);
+  EXPECT_EQ(HatchOf(pass, FlatInLight(0.5)), HatchOf({}, FlatInLight(0.5)));
+}
+
 // How much the ink changes from a pixel to one `dx`, `dy` away.
 double Change(const std::vector<double>& ink, int width, int height, int dx, int dy) {
   double sum = 0.0;
