@@ -120,13 +120,12 @@ class PreparedExemplar {
   // points away from the eye: that of the rim which is nearest stands for these, or no source would be within the
   // threshold of a surface seen almost edge-on. Scenes: the normal as it is.
   glm::vec3 WithinRim(glm::vec3 normal) const {
-    if (scene_ || IsWithinRim(normal.x, normal.y, normal.z)) return normal;
+    if (scene_ || (!(normal.x * normal.x + normal.y * normal.y > squared_rim()) && !(normal.z < 0.0f))) return normal;
     const glm::vec2 at = OnDisc(normal);
     return {at.x, at.y, std::sqrt(std::fmax(0.0f, 1.0f - at.x * at.x - at.y * at.y))};
   }
-  bool IsWithinRim(float x, float y, float z) const {
-    return !(x * x + y * y > usable_radius_ * usable_radius_) && !(z < 0.0f);
-  }
+  // Of a sphere of radius 1: x² + y² of the normals at its usable rim.
+  float squared_rim() const { return usable_radius_ * usable_radius_; }
 
   // Other sources for a normal; computed by the first call, on whichever thread.
   const SourceVariation& source_variation() const;

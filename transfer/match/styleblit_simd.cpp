@@ -195,25 +195,30 @@ class TileMatcher {
     return row_.copy[copy];
   }
 
-  // PreparedExemplar::WithinRim. Only rows that have such a normal are copied.
+  // PreparedExemplar::WithinRim. Only rows that have a normal beyond the rim are copied.
   void KeepWithinRim(int width) {
-    if (!rows_.is_sphere) return;
-    const PreparedExemplar& exemplar = input_.exemplar;
-    const float* const x = row_.normal[0];
-    const float* const y = row_.normal[1];
-    const float* const z = row_.normal[2];
-    int i = 0;
-    while (i < width && exemplar.IsWithinRim(x[i], y[i], z[i])) ++i;
-    if (i == width) return;
+    if (!rows_.is_sphere || !AnyBeyondRim()) return;
     for (int c = 0; c < 3; ++c) {
       if (row_.normal[c] == row_.copy[c]) continue;
       std::copy_n(row_.normal[c], width, row_.copy[c]);
       row_.normal[c] = row_.copy[c];
     }
-    for (; i < width; ++i) {
-      const glm::vec3 normal = exemplar.WithinRim({row_.copy[0][i], row_.copy[1][i], row_.copy[2][i]});
+    for (int i = 0; i < width; ++i) {
+      const glm::vec3 normal = input_.exemplar.WithinRim({row_.copy[0][i], row_.copy[1][i], row_.copy[2][i]});
       for (int c = 0; c < 3; ++c) row_.copy[c][i] = normal[c];
     }
+  }
+
+  bool AnyBeyondRim() const {
+    const auto rim = hn::Set(kFloats, input_.exemplar.squared_rim());
+    const auto zero = hn::Zero(kFloats);
+    auto beyond = hn::Lt(zero, zero);
+    for (int i = 0; i < blocks_ * kBlock; i += static_cast<int>(hn::Lanes(kFloats))) {
+      const auto x = hn::LoadU(kFloats, row_.normal[0] + i), y = hn::LoadU(kFloats, row_.normal[1] + i);
+      const auto squared = hn::Add(hn::Mul(x, x), hn::Mul(y, y));
+      beyond = hn::Or(beyond, hn::Or(hn::Gt(squared, rim), hn::Lt(hn::LoadU(kFloats, row_.normal[2] + i), zero)));
+    }
+    return !hn::AllFalse(kFloats, beyond);
   }
 
   static HWY_INLINE std::uint32_t Nonzero(const std::uint8_t* bytes) {
