@@ -293,6 +293,11 @@ Status CheckScanSize(int width, int height, double dpi, const std::string& name)
                     " million that are read at most: " + remedy);
 }
 
+std::optional<TemplateFit> FindTemplate(Picture picture) {
+  LayOnWhite(picture);
+  return FitTemplate(FindMarks(picture, kCoarsestSearch), picture.width, picture.height);
+}
+
 Expected<Rectified> RectifyScan(Picture scan, const std::string& name, const RectifyOptions& options) {
   SCUMBLE_CHECK(options.size >= 16 && options.size <= 8192);
   SCUMBLE_RETURN_IF_ERROR(CheckScanSize(scan.width, scan.height, options.dpi, name));
