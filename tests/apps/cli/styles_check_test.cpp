@@ -119,6 +119,16 @@ TEST_F(StylesCheck, WhatIsLeftOfTheKitsTemplate) {
   EXPECT_NEAR(patch["faults"][0]["x"].get<int>(), 325, 2);
   EXPECT_NEAR(patch["faults"][0]["y"].get<int>(), 325, 2);
   EXPECT_EQ(patch["exemplars"][0]["margin"], 64);
+  // Moved on its canvas, marks and all.
+  Picture moved(640, 640);
+  std::fill(moved.rgba.begin(), moved.rgba.end(), std::uint16_t{65535});
+  for (int y = 20; y < 640; ++y) std::copy_n(whole.At(0, y), 4 * 610, moved.At(30, y - 20));
+  Write("kit/lit.png", moved);
+  const CommandResult aside = RunOk({"styles", "check", "kit"});
+  EXPECT_TRUE(Contains(aside.err,
+                       "its centre is at x=350, y=300; move the painting 30 pixels to the left and 20 pixels "
+                       "down"))
+      << aside.err;
   // Painted for another light than the template's.
   sphere.azimuth = -60.0;
   Write("kit/lit.png", PaintSphere(sphere));
