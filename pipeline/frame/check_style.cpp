@@ -127,6 +127,7 @@ std::size_t CheckedStyle::Count(PaintFault::Weight weight) const {
 Expected<CheckedStyle> CheckStyle(const StyleRequest& request, const RunContext& context) {
   CheckedStyle checked;
   SCUMBLE_ASSIGN(checked.style, OpenStyle(request, context));
+  if (!checked.style.unpainted.empty()) return checked;  // its exemplar is made up
   FileCache cache(context.cache_folder);
   PrepareOptions options;
   options.cache = &cache;

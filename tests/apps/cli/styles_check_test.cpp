@@ -140,15 +140,31 @@ TEST_F(StylesCheck, WhatIsLeftOfTheKitsTemplate) {
   ExpectError({"styles", "check", "bare"}, 3, {"bare/lit.png is a whole template", "crop"});
 }
 
-// A rim larger than the sphere is the style's business; looking at it does no harm.
-TEST_F(StylesCheck, ARimThatTakesTheWholeSphere) {
+TEST_F(StylesCheck, ARimThatTakesMostOfTheSphere) {
   Write("rim/lit.png", PaintSphere({}));
-  for (const char* rim : {"0", "250", "600", "16000"}) {
-    WriteText("rim/style.toml", std::string("[transfer]\nrim = ") + rim + "\n[[exemplar]]\nimage = \"lit.png\"\n");
-    const CommandResult check = Run({"styles", "check", "rim", "--json"});
-    ASSERT_EQ(check.code, 0) << rim << check.err;
-    EXPECT_LE(check.Json()["exemplars"][0]["fringe_percent"], 0.0) << rim;
+  const auto write = [&](const std::string& rim) {
+    WriteText("rim/style.toml", "[transfer]\nrim = " + rim + "\n[[exemplar]]\nimage = \"lit.png\"\n");
+  };
+  for (const char* rim : {"0", "128"}) {
+    write(rim);
+    EXPECT_LE(RunOk({"styles", "check", "rim", "--json"}).Json()["exemplars"][0]["fringe_percent"], 0.0) << rim;
   }
+  write("300");
+  ExpectError({"styles", "check", "rim"}, 3,
+              {"lit.png is 512×512: transfer.rim = 300 leaves too little of the sphere", "at most 128"});
+}
+
+TEST_F(StylesCheck, AStyleWithoutAPaintingHasNoMistakes) {
+  WriteText("mine/style.toml", "[transfer]\nmethod = \"toon\"\n");
+  const CommandResult check = RunOk({"styles", "check", "toon", "mine", "--strict"});
+  EXPECT_EQ(check.err, "");
+  EXPECT_TRUE(Contains(check.out, "toon: no painting, method toon: usable\nmine: no painting, method toon: usable\n"))
+      << check.out;
+  const nlohmann::json json = RunOk({"styles", "check", "toon", "--json"}).Json();
+  EXPECT_EQ(json["method"], "toon");
+  EXPECT_TRUE(json["exemplars"].empty() && json["faults"].empty()) << json;
+  ExpectError({"tradeoff", Scene("suzanne.glb"), "--style", "toon", "--size", "16x9", "--no-memory"}, 2,
+              {"measures paint, and method toon has none"});
 }
 
 TEST_F(StylesCheck, LightsOfOneStyle) {
