@@ -333,6 +333,10 @@ Expected<Style> ReadStyleFile(const fs::path& path, const StyleReading& reading)
       SCUMBLE_RETURN_IF_ERROR(SetKeyInFile(style, name, node, path));
     }
   }
+  if (style.transfer.guide_weights.Layers().empty()) {
+    return InputError(Where(file, *root["transfer"]["guide_weights"].node()) +
+                      ": transfer.guide_weights are all 0: nothing is left to match by; give a layer a weight above 0");
+  }
   if (style.exemplars.empty() && style.unpainted.empty()) {
     const bool has_guides = Exists(path.parent_path() / "guides.exr");
     return InputError(file + " has no [[exemplar]]; add [[exemplar]]" + (has_guides ? ", " : " and ") +
