@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "core/filter/resample.h"
 #include "core/image/check.h"
@@ -121,7 +122,7 @@ Status CheckSameScene(const Exemplar& first, const Exemplar& other) {
   return Ok();
 }
 
-Status CheckExemplar(const Exemplar& exemplar) {
+Status CheckExemplar(const Exemplar& exemplar, double rim) {
   const auto size = [](int width, int height) { return std::to_string(width) + "×" + std::to_string(height); };
   const Picture& picture = exemplar.picture;
   const std::string is = exemplar.name + " is " + size(picture.width, picture.height);
@@ -134,6 +135,16 @@ Status CheckExemplar(const Exemplar& exemplar) {
   if (std::max(picture.width, picture.height) > kMaxExemplarSize) {
     return InputError(is + ": exemplars have at most " + std::to_string(kMaxExemplarSize) +
                       " pixels a side; shrink it");
+  }
+  // Of a few pixels the default may be more.
+  const double most_rim = std::max(TransferSettings().rim, 0.25 * picture.width);
+  if (exemplar.is_sphere && rim > most_rim) {
+    char text[120];
+    std::snprintf(text, sizeof text,
+                  ": transfer.rim = %g leaves too little of the sphere: expected at most %g, half of "
+                  "its radius",
+                  rim, most_rim);
+    return InputError(is + text);
   }
   SCUMBLE_CHECK(exemplar.is_sphere || exemplar.guides);
   if (!exemplar.guides) return Ok();
@@ -151,7 +162,7 @@ Status CheckExemplars(const Style& style) {
                       " for different light");
   }
   for (const Exemplar& exemplar : style.exemplars) {
-    SCUMBLE_RETURN_IF_ERROR(CheckExemplar(exemplar));
+    SCUMBLE_RETURN_IF_ERROR(CheckExemplar(exemplar, style.transfer.rim));
     SCUMBLE_RETURN_IF_ERROR(CheckSameScene(style.exemplars.front(), exemplar));
   }
   return Ok();

@@ -7,6 +7,7 @@
 #include "core/image/painting/find_sphere.h"
 #include "core/style/kit/sphere_kit.h"
 #include "core/style/kit/sphere_template.h"
+#include "core/style/scan/rectify.h"
 
 namespace scumble {
 namespace {
@@ -80,6 +81,32 @@ Error WholeTemplate(const std::string& name) {
                               "[[exemplar]] in style.toml"));
 }
 
+Error MovedTemplate(const std::string& name) {
+  return InputError(name +
+                    " is a whole template, scanned, moved or turned, margin and marks included: bring the sphere "
+                    "into its place with `scumble sphere --rectify \"" +
+                    name + "\"`, or crop the picture to the sphere");
+}
+
+// Whether the corners, outside the ellipse that fills the picture, are mostly light and partly black, as marks on paper
+// are: a hint that spares most paintings the search for marks.
+bool MayShowMarks(const Picture& picture) {
+  constexpr double kLeastLight = 0.5, kLeastDark = 0.03;
+  constexpr int kDark = 20000, kLight = 45000;
+  std::size_t all = 0, light = 0, dark = 0;
+  for (int y = 0; y < picture.height; ++y) {
+    const double v = 2.0 * (y + 0.5) / picture.height - 1.0;
+    const int width = static_cast<int>(0.5 * picture.width * (1.0 - std::sqrt(1.0 - v * v)));
+    for (int x = 0; x < width; ++x) {
+      for (const int at : {x, picture.width - 1 - x}) {
+        const std::uint16_t* pixel = picture.At(at, y);
+        ++all, light += pixel[1] > kLight || pixel[3] < kDark, dark += pixel[1] < kDark && pixel[3] > kLight;
+      }
+    }
+  }
+  return double(light) >= kLeastLight * double(all) && double(dark) >= kLeastDark * double(all);
+}
+
 }  // namespace
 
 Status PlaceSphere(Exemplar& exemplar) {
@@ -89,7 +116,10 @@ Status PlaceSphere(Exemplar& exemplar) {
   if (LooksLikeTemplate(picture)) return WholeTemplate(exemplar.name);
   const FoundSphere found = FindSphere(picture);
   const bool is_square = picture.width == picture.height;
-  if (is_square && (found.kind == Kind::kFills || found.kind == Kind::kNoGround)) return Ok();
+  const bool is_usable =
+      found.kind == Kind::kInside || (is_square && (found.kind == Kind::kFills || found.kind == Kind::kNoGround));
+  if ((!is_usable || MayShowMarks(picture)) && FindTemplate(picture)) return MovedTemplate(exemplar.name);
+  if (is_usable && found.kind != Kind::kInside) return Ok();
   switch (found.kind) {
     case Kind::kInside:
       CutTo(found.circle, exemplar);

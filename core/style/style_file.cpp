@@ -16,6 +16,7 @@
 #include "core/style/finish_tables.h"
 #include "core/style/kit/sphere_template.h"
 #include "core/style/place_sphere.h"
+#include "core/style/scan/rectify.h"
 #include "core/style/style_keyframes.h"
 #include "core/style/style_keys.h"
 #include "core/style/toml_values.h"
@@ -119,10 +120,12 @@ Status FitToSphere(int size, int margin, const fs::path& guides, Exemplar& exemp
   const int with_margin = size + 2 * margin;
   if (picture.width == size && picture.height == size) return Ok();
   if (picture.width != with_margin || picture.height != with_margin) {
+    const bool is_scan = FindTemplate(picture).has_value();
     return InputError(exemplar.name + " is " + SizeText(picture.width, picture.height) + ", its guides " +
                       guides.string() + " are " + SizeText(size, size) + ": paint at " +
                       SizeText(with_margin, with_margin) + " (the whole template) or " + SizeText(size, size) +
-                      " (the sphere alone)");
+                      " (the sphere alone)" +
+                      (is_scan ? "; a scan gets its size and place from `scumble sphere --rectify`" : ""));
   }
   Picture cut(size, size);
   for (int y = 0; y < size; ++y) std::copy_n(picture.At(margin, y + margin), 4 * size, cut.At(0, y));
@@ -329,6 +332,10 @@ Expected<Style> ReadStyleFile(const fs::path& path, const StyleReading& reading)
     } else {
       SCUMBLE_RETURN_IF_ERROR(SetKeyInFile(style, name, node, path));
     }
+  }
+  if (style.transfer.guide_weights.Layers().empty()) {
+    return InputError(Where(file, *root["transfer"]["guide_weights"].node()) +
+                      ": transfer.guide_weights are all 0: nothing is left to match by; give a layer a weight above 0");
   }
   if (style.exemplars.empty() && style.unpainted.empty()) {
     const bool has_guides = Exists(path.parent_path() / "guides.exr");

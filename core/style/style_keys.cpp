@@ -55,7 +55,11 @@ KeyForm Whole(int TransferSettings::*field, int low, int high) {
   KeyForm form{KeyKind::kWhole, double(low), double(high), false, 1.0, {}, {}};
   form.set = [=](Style& style, const KeyValue& value, const auto&) -> Status {
     const auto* number = std::get_if<std::int64_t>(&value);
-    if (!number || *number < low || *number > high) return UsageError("expected a whole number, " + Range(low, high));
+    if (!number || *number < low || *number > high) {
+      const bool has_point = std::holds_alternative<double>(value);
+      return UsageError(std::string("expected a whole number") + (has_point ? " without a decimal point, " : ", ") +
+                        Range(low, high));
+    }
     style.transfer.*field = static_cast<int>(*number);
     return Ok();
   };

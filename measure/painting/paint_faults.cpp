@@ -16,6 +16,7 @@ constexpr int kSmallest = 256;                         // pixels
 constexpr double kMarginRatio = 0.8;                   // sphere to template: 1 / (1 + 2 · 1/8)
 constexpr double kOffCentre = 0.01;                    // of the diameter
 constexpr double kTooSmall = 0.985;                    // of the radius
+constexpr double kTurned = 1.0;                        // degrees: a rim moves by 0.9% of the diameter
 constexpr double kLeastFringe = 4.0;                   // % of the rim
 constexpr double kLeastTemplate = 0.2;                 // % of the disc
 constexpr double kLeastTranslucent = 0.1;              // % of the disc
@@ -47,6 +48,8 @@ class Faults {
     found_.push_back({code, Weight::kMistake, fmt::format("{}, around x={}, y={}", what, place.first, place.second),
                       std::move(remedy), place});
   }
+  void AddOffCentre(double x, double y, double dx, double dy);
+  void AddSmallSphere(double x, double y, double radius);
   void Remark(const char* code, std::string what, std::string remedy) {
     Add(code, std::move(what), std::move(remedy));
     found_.back().weight = Weight::kRemark;
@@ -56,11 +59,13 @@ class Faults {
   }
 
   void LookAtSize();
+  void LookAtMarks();
   void LookAtDisc();
   void LookAtHoles();
   void LookAtAlpha();
   void LookAtTone();
   void LookAtPattern();
+  bool Misplaced() const { return Has("margin") || Has("off-centre") || Has("small-sphere") || Has("turned"); }
   std::vector<PaintFault> Take() { return std::move(found_); }
 
  private:
@@ -96,6 +101,36 @@ std::string Variant(double dx, double dy) {
   return way;
 }
 
+void Faults::AddOffCentre(double x, double y, double dx, double dy) {
+  Add("off-centre",
+      fmt::format("the painted sphere is {:.1f}% of its diameter off the middle; its centre is at x={:.0f}, y={:.0f}",
+                  100.0 * std::hypot(dx, dy) / traits_.width, x + context_.origin.x, y + context_.origin.y),
+      fmt::format("move the painting {}", Variant(-dx, -dy)));
+}
+
+void Faults::AddSmallSphere(double x, double y, double radius) {
+  const double ratio = 2.0 * radius / traits_.width;
+  Add("small-sphere",
+      fmt::format("the painted sphere fills {:.1f}% of the square's width; its rim takes what lies round it",
+                  100.0 * ratio),
+      fmt::format("enlarge the painting to {:.1f}%, or crop it to the sphere: {:.0f} pixels from x={:.0f}, y={:.0f}",
+                  100.0 / ratio, 2.0 * radius, x - radius + context_.origin.x, y - radius + context_.origin.y));
+}
+
+void Faults::LookAtMarks() {
+  if (!context_.marked) return;
+  const double middle = 0.5 * traits_.width;
+  const MarkedSphere& marked = *context_.marked;
+  const double dx = marked.x - middle, dy = marked.y - middle;
+  if (std::hypot(dx, dy) > kOffCentre * traits_.width) AddOffCentre(marked.x, marked.y, dx, dy);
+  if (marked.radius < kTooSmall * middle) AddSmallSphere(marked.x, marked.y, marked.radius);
+  if (std::fabs(marked.turn) > kTurned) {
+    Add("turned",
+        fmt::format("the painting is turned by {:.1f}°, as the template's marks show", std::fabs(marked.turn)),
+        fmt::format("turn it back {}", marked.turn > 0 ? "counter-clockwise" : "clockwise"));
+  }
+}
+
 void Faults::LookAtDisc() {
   const double size = traits_.width, middle = 0.5 * size;
   const PaintedDisc& disc = traits_.disc;
@@ -115,20 +150,9 @@ void Faults::LookAtDisc() {
   if (!disc.found) return;
   // If paint covers the whole sphere, its own outline does no harm.
   if (shift > kOffCentre * size && disc.radius - shift < 0.995 * middle) {
-    return Add(
-        "off-centre",
-        fmt::format("the painted sphere is {:.1f}% of its diameter off the middle; its centre is at x={:.0f}, y={:.0f}",
-                    100.0 * shift / size, disc.x + context_.origin.x, disc.y + context_.origin.y),
-        fmt::format("move the painting {}", Variant(-dx, -dy)));
+    return AddOffCentre(disc.x, disc.y, dx, dy);
   }
-  if (ratio < kTooSmall) {
-    Add("small-sphere",
-        fmt::format("the painted sphere fills {:.1f}% of the square's width; its rim takes what lies round it",
-                    100.0 * ratio),
-        fmt::format("enlarge the painting to {:.1f}%, or crop it to the sphere: {:.0f} pixels from x={:.0f}, y={:.0f}",
-                    100.0 / ratio, 2.0 * disc.radius, disc.x - disc.radius + context_.origin.x,
-                    disc.y - disc.radius + context_.origin.y));
-  }
+  if (ratio < kTooSmall) AddSmallSphere(disc.x, disc.y, disc.radius);
 }
 
 void Faults::LookAtHoles() {
@@ -146,8 +170,7 @@ void Faults::LookAtHoles() {
         fmt::format("{} of the sphere is still the template's own grey, most of it", Percent(traits_.template_percent)),
         "paint over it, or switch the template's layer off before you export");
   }
-  const bool misplaced = Has("margin") || Has("off-centre") || Has("small-sphere");
-  if (misplaced) return;
+  if (Misplaced()) return;
   if (traits_.fringe_percent >= kLeastFringe) {
     Add("fringe",
         fmt::format(
@@ -244,7 +267,8 @@ std::string DescribeSoftEdge(int pixels) {
 std::vector<PaintFault> FindPaintFaults(const PaintTraits& traits, const PaintFaultContext& context) {
   Faults faults(traits, context);
   faults.LookAtSize();
-  if (traits.is_sphere) faults.LookAtDisc();
+  if (traits.is_sphere) faults.LookAtMarks();
+  if (traits.is_sphere && !faults.Misplaced()) faults.LookAtDisc();
   faults.LookAtHoles();
   faults.LookAtAlpha();
   faults.LookAtTone();

@@ -6,8 +6,10 @@
 #include <span>
 #include <utility>
 
-#include "core/style/kit/sphere_kit.h"
+#include "core/io/picture_file.h"
+#include "core/style/kit/sphere_template.h"
 #include "core/style/place_sphere.h"
+#include "core/style/scan/rectify.h"
 #include "pipeline/file_cache.h"
 #include "pipeline/frame/prepare_frame.h"
 #include "pipeline/style/kit_template.h"
@@ -39,6 +41,16 @@ std::vector<PaintFault> AmbiguityFaults(const AmbiguityReport& report) {
          "paint a rounder shape, or a larger picture of it", std::nullopt}};
   }
   return {};
+}
+
+// Of a painted template, whose margin was cut off when it was read.
+std::optional<MarkedSphere> FindMarkedSphere(const Exemplar& exemplar) {
+  if (exemplar.margin == 0) return std::nullopt;
+  Expected<Picture> file = ReadPicture(exemplar.name);
+  const auto fit = file ? FindTemplate(*std::move(file)) : std::nullopt;
+  if (!fit) return std::nullopt;
+  const glm::dvec2 centre = fit->map.ToPicture({0.5, 0.5}) - double(exemplar.margin);
+  return MarkedSphere{centre.x, centre.y, 0.5 * fit->map.SpherePixels(), fit->map.Turn()};
 }
 
 // Of a sphere that does not fill its file.
@@ -89,6 +101,7 @@ void FindFaults(CheckedStyle& checked) {
     context.knows_guides = !exemplar.guides_file.empty();
     context.shows_marks = exemplar.is_sphere && LooksLikeTemplate(exemplar.picture);
     context.origin = exemplar.Origin();
+    context.marked = FindMarkedSphere(exemplar);
     std::vector<PaintFault> faults = FindPaintFaults(checked.traits[k], context);
     for (PaintFault& fault : PlaceFaults(exemplar)) faults.push_back(std::move(fault));
     if (context.several) {
@@ -114,6 +127,7 @@ std::size_t CheckedStyle::Count(PaintFault::Weight weight) const {
 Expected<CheckedStyle> CheckStyle(const StyleRequest& request, const RunContext& context) {
   CheckedStyle checked;
   SCUMBLE_ASSIGN(checked.style, OpenStyle(request, context));
+  if (!checked.style.unpainted.empty()) return checked;  // its exemplar is made up
   FileCache cache(context.cache_folder);
   PrepareOptions options;
   options.cache = &cache;

@@ -24,6 +24,7 @@ struct FoundFault {
 
 struct CheckedStyle {
   Style style;
+  // The rest stays empty for a style without a painting (Style::unpainted).
   PreparedStyle prepared;
   std::vector<PaintTraits> traits;  // by exemplar
   AmbiguityReport directions;

@@ -70,6 +70,10 @@ Expected<TradeStage> OpenTradeStage(const TradeSetup& setup, const RunContext& c
   SCUMBLE_RETURN_IF_ERROR(CheckSceneRequest(setup.scene));
   TradeStage stage;
   SCUMBLE_ASSIGN(stage.style, OpenStyleWith(setup, {}, context));
+  if (!stage.style.unpainted.empty()) {
+    return UsageError(setup.style.style + ": tradeoff measures paint, and method " + stage.style.unpainted +
+                      " has none: take a style with a painting");
+  }
   stage.has_paper = stage.style.paper.color || stage.style.paper.picture;
   stage.style.paper = {};
   const Size& size = setup.scene.size;

@@ -106,6 +106,21 @@ TEST(PaintFaults, OffCentre) {
   EXPECT_EQ(Codes(Faults(PaintSphere(covered))), "") << "paint covers the whole sphere all the same";
 }
 
+// Paint that runs over the rim hides where the sphere lies; the template's marks show it.
+TEST(PaintFaults, ATemplateByItsMarks) {
+  const Picture picture = PaintSphere({});
+  PaintFaultContext context;
+  const auto faults = [&](const MarkedSphere& marked) {
+    context.marked = marked;
+    return Faults(picture, context);
+  };
+  EXPECT_EQ(Codes(faults({258, 254, 254, 0.9})), "") << "within the limits";
+  ExpectOne(faults({286, 236, 256, 0}), "off-centre",
+            {"7.0% of its diameter", "30 pixels to the left and 20 pixels down"});
+  ExpectOne(faults({256, 256, 230.4, 0}), "small-sphere", {"90.0%", "111.1%"});
+  ExpectOne(faults({256, 256, 256, -3}), "turned", {"by 3.0°", "back clockwise"});
+}
+
 TEST(PaintFaults, SmallSphere) {
   PaintedSphere small = Clean();
   small.radius = 0.45;

@@ -216,6 +216,8 @@ TEST(Refusals, SettingsOutsideTheirRangesAndImpossibleExemplars) {
   EXPECT_TRUE(refuses([&](Style& s) { s.transfer.blend_radius = -1; }));
   EXPECT_TRUE(refuses([&](Style& s) { s.transfer.scale = 0.0; }));
   EXPECT_TRUE(refuses([&](Style& s) { s.transfer.rim = nan; }));
+  EXPECT_FALSE(refuses([&](Style& s) { s.transfer.rim = 2.0; }));
+  EXPECT_TRUE(refuses([&](Style& s) { s.transfer.rim = 2.1; })) << "more than half of a radius of 4";
   EXPECT_TRUE(refuses([&](Style& s) { s.exemplars[0].picture = Picture(300, 300), s.transfer.scale = 64.0; }))
       << "19200 pixels a side";
   EXPECT_TRUE(refuses([&](Style& s) { s.exemplars[0].picture = Picture(8, 9); }));

@@ -3,16 +3,19 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <set>
+#include <span>
 #include <string>
+#include <variant>
 
 #include "apps/cli/app/command.h"
 #include "apps/cli/app/json_text.h"
 #include "apps/cli/app/options.h"
 #include "core/io/guide_file.h"
+#include "core/style/finish_keys.h"
+#include "core/style/style_file.h"
 #include "guidegen/load/load_scene.h"
 #include "guidegen/scene_textures.h"
 #include "pipeline/frame/prepare_frame.h"
@@ -115,16 +118,45 @@ struct InfoVerb {
   BlenderRequest blender;
 };
 
+Json ToJson(const KeyValue& value) {
+  return std::visit([](const auto& held) { return Json(held); }, value);
+}
+
+// The effect, and the keys that differ from its defaults.
+std::string Describe(const FinishPass& pass) {
+  std::string text = EffectOf(pass).name;
+  const FinishPass plain{"", EffectOf(pass).defaults, FinishPass::Stage::kPaint, 1.0, {}, {}};
+  for (const auto keys : {CommonFinishKeys(), std::span<const FinishKey>(EffectOf(pass).keys)}) {
+    for (const FinishKey& key : keys) {
+      const KeyValue value = key.get(pass);
+      if (value != key.get(plain)) text += fmt::format(" {}={}", key.name, ToText(value));
+    }
+  }
+  return text;
+}
+
 Expected<Json> DescribeStyle(const std::string& path, const Globals& globals) {
   SCUMBLE_ASSIGN(const Style style, OpenStyle({path, {}, {}}, globals));
   constexpr const char* kMethods[] = {"litsphere", "styleblit", "bruteforce"};
+  SCUMBLE_ASSIGN(const std::filesystem::path file, FindStyle(path, globals));
+  SCUMBLE_ASSIGN(const auto values, StyleValues(file));
+  const bool is_painted = style.unpainted.empty();
   Json json{{"kind", "style"}, {"name", style.name}, {"licence", style.licence}};
-  json["method"] = kMethods[static_cast<int>(style.transfer.method)];
-  // The shortest number that is this float: as a double 0.09 would be 0.09000000357627869.
-  json["threshold"] = std::strtod(fmt::format("{}", style.transfer.threshold).c_str(), nullptr);
-  json["levels"] = style.transfer.levels;
-  json["blend_radius"] = style.transfer.blend_radius;
-  json["scale"] = style.transfer.scale;
+  json["method"] = is_painted ? kMethods[static_cast<int>(style.transfer.method)] : style.unpainted;
+  json["settings"] = Json::object();
+  for (const StyleKey& key : StyleKeys()) {
+    const KeyValue& value = values.at(key.name);
+    if (key.name.starts_with("transfer.") && key.name != "transfer.method" && value != key.Default())
+      json["settings"][key.name] = ToJson(value);
+  }
+  for (const StyleTrack& track : style.tracks) {
+    Json& keys = json["settings"][track.name] = Json::array();
+    for (const StyleTrack::Key& key : track.keys) keys.push_back({key.frame, ToJson(key.value)});
+  }
+  json["finish"] = Json::array();
+  for (const FinishPass& pass : style.finish) json["finish"].push_back(Describe(pass));
+  json["exemplars"] = Json::array();
+  if (!is_painted) return json;
   for (const Exemplar& exemplar : style.exemplars) {
     std::string text = fmt::format("{} {}×{}", exemplar.name, exemplar.picture.width, exemplar.picture.height);
     if (style.exemplars.size() > 1) text += ", " + DescribeLuminance(exemplar, style.transfer.rim);
@@ -150,7 +182,7 @@ std::string ToText(const Json& json) {
   std::string text;
   for (const auto& [key, value] : json.items()) {
     std::string shown;
-    if (key == "exemplars" || key == "warnings") {  // sentences, one a line
+    if (key == "exemplars" || key == "finish" || key == "warnings") {  // sentences, one a line
       const std::string between = "\n" + std::string(widest + 2, ' ');
       for (const Json& item : value) shown += (shown.empty() ? "" : between) + item.get<std::string>();
       if (shown.empty()) shown = "none";
@@ -160,6 +192,7 @@ std::string ToText(const Json& json) {
       for (const auto& [name, item] : value.items()) {
         shown += (shown.empty() ? "" : ", ") + name + ": " + (item.is_string() ? item.get<std::string>() : item.dump());
       }
+      if (shown.empty()) shown = "the defaults";
     } else {
       shown = value.is_string() ? value.get<std::string>() : value.dump();
     }

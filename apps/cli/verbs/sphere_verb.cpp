@@ -158,7 +158,10 @@ void PrintNextStep(const SphereVerb& verb, const KitOptions& options, const std:
   if (options.png) files += std::string(files.empty() ? "" : " or ") + stem + ".png";
   if (!files.empty())
     globals.Note("paint over " + files + ", save it as " + painting + " in the same folder; HOWTO.txt says how");
-  if (page) {
+  if (page && !FiducialsFit(verb.size)) {
+    globals.Note(fmt::format("{}.pdf is for looking at: only spheres of {} pixels or more have marks to scan by", stem,
+                             kSmallestPrinted));
+  } else if (page) {
     globals.Note(
         fmt::format("print {}.pdf at 100%: a sphere of {:.1f} mm on {}", stem, MillimetresOf(verb.size, verb.dpi),
                     page->name == "fit" ? fmt::format("a page of {:.0f} x {:.0f} mm", page->width_mm, page->height_mm)

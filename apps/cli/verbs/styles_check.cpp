@@ -51,6 +51,13 @@ std::string SpaceToText(const GuideSpace& space, const SpaceAmbiguity& report) {
 
 nlohmann::ordered_json ToJson(const CheckedStyle& checked) {
   const Style& style = checked.style;
+  if (!style.unpainted.empty()) {
+    return {{"name", style.name},
+            {"licence", style.licence},
+            {"method", style.unpainted},
+            {"exemplars", nlohmann::ordered_json::array()},
+            {"faults", nlohmann::ordered_json::array()}};
+  }
   const PaintTraits& first = checked.traits.front();
   const bool several = style.exemplars.size() > 1;
   nlohmann::ordered_json json{{"name", style.name},
@@ -95,6 +102,9 @@ std::string VerdictOf(const CheckedStyle& checked) {
 
 std::string ToText(const CheckedStyle& checked) {
   const Style& style = checked.style;
+  if (!style.unpainted.empty()) {
+    return fmt::format("{}: no painting, method {}: usable\n", style.name, style.unpainted);
+  }
   const PaintTraits& first = checked.traits.front();
   const AmbiguityReport& report = checked.directions;
   std::string text = fmt::format("{}: {} pixels, tonal range {:.0f}%, transparent {:.2f}%: {}\n", style.name,

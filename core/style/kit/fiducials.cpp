@@ -125,7 +125,7 @@ void DrawFiducials(Picture& picture, int size, int margin) {
 }
 
 // `size` and `margin` need not be whole; all marks lie within the picture.
-static int CountFiducials(const Picture& picture, double size, double margin) {
+static int CountFiducials(const Picture& picture, double size, double margin, bool mirrored = false) {
   constexpr int kDark = 20000, kLight = 45000;  // of 65535: JPEG's noise stays on the right side
   int found = 0;
   for (const Fiducial& mark : kFiducials) {
@@ -137,7 +137,7 @@ static int CountFiducials(const Picture& picture, double size, double margin) {
         const bool black = inside && FiducialIsBlack(mark.id, column, row);
         const int x = int(margin + (mark.left + (column + 0.5) * kFiducialModule) * size);
         const int y = int(margin + (mark.top + (row + 0.5) * kFiducialModule) * size);
-        const std::uint16_t green = picture.At(x, y)[1];
+        const std::uint16_t green = picture.At(mirrored ? picture.width - 1 - x : x, y)[1];
         right = black ? green < kDark : green > kLight;
       }
     }
@@ -156,7 +156,8 @@ int FiducialsInPlace(const Picture& picture, int size, int margin) {
 int FiducialsInProportion(const Picture& picture) {
   const double size = 0.8 * picture.width;
   if (picture.width != picture.height || !FiducialsFit(int(size))) return 0;
-  return CountFiducials(picture, size, 0.5 * (picture.width - size));
+  const double margin = 0.5 * (picture.width - size);
+  return std::max(CountFiducials(picture, size, margin), CountFiducials(picture, size, margin, true));
 }
 
 }  // namespace scumble

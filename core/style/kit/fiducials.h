@@ -60,8 +60,8 @@ void DrawFiducials(Picture& picture, int size, int margin);
 // after saving as JPEG; none where the picture has another size than (size + 2 · margin)².
 int FiducialsInPlace(const Picture& picture, int size, int margin);
 
-// The number of markers in a square picture that was scaled as a whole, whose margin is an eighth of the sphere. All
-// twelve in a template that was exported at another size, down to modules of two pixels.
+// The number of markers in a square picture that was scaled as a whole, mirrored or not, whose margin is an eighth of
+// the sphere. All twelve in a template that was exported at another size, down to modules of two pixels.
 int FiducialsInProportion(const Picture& picture);
 
 // Fewest pixels across the sphere in the scan.

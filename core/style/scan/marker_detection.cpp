@@ -70,7 +70,7 @@ void SearchAt(const Picture& picture, int factor, apriltag_detector_t* detector,
 
 }  // namespace
 
-std::vector<FoundMark> FindMarks(const Picture& picture) {
+std::vector<FoundMark> FindMarks(const Picture& picture, int finest) {
   constexpr int kLeastSide = 32;  // the library thresholds in tiles
   const Family family(tag16h5_create());
   const Detector detector(apriltag_detector_create());
@@ -82,7 +82,7 @@ std::vector<FoundMark> FindMarks(const Picture& picture) {
   int last_factor = 0;
   // From small to large: most marks are found in a small picture, where noise is averaged out; small marks need more
   // pixels.
-  for (const int longest : {900, 1800, 3600, 7200}) {
+  for (int longest = kCoarsestSearch; longest <= finest; longest *= 2) {
     const int factor = (std::max(picture.width, picture.height) + longest - 1) / longest;
     if (factor == last_factor || std::min(picture.width, picture.height) < kLeastSide * factor) continue;
     last_factor = factor;

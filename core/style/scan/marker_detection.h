@@ -20,8 +20,11 @@ struct FoundMark {
   double blur_pixels = 0;    // standard deviation of the blur across its sides
 };
 
+// The scales of the picture that are searched, by the pixels of its longer side. The coarsest alone takes some 30 ms.
+inline constexpr int kCoarsestSearch = 900, kFinestSearch = 7200;
+
 // The marks by place from the top; an id may occur twice if two sheets are in the picture. `picture` is opaque: alpha
-// is ignored. Never fails: a picture without marks, or a mirrored one, gives none. Deterministic.
-std::vector<FoundMark> FindMarks(const Picture& picture);
+// is ignored. `finest` is the last scale that is searched. Never fails: a picture without marks, or a mirrored one, gives none. Deterministic.
+std::vector<FoundMark> FindMarks(const Picture& picture, int finest = kFinestSearch);
 
 }  // namespace scumble

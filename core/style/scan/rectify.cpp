@@ -113,8 +113,7 @@ bool HasSecondTemplate(const std::vector<FoundMark>& marks, const TemplateFit& f
 // The sheet's pose: from the map's slopes in the template's middle, and from how they change across it.
 void MeasurePose(const TemplateMap& map, RectifyReport& report) {
   const double degrees = 180.0 / std::acos(-1.0);
-  const glm::dvec2 x = map.ToPicture({0.51, 0.5}) - map.ToPicture({0.49, 0.5});
-  report.rotation = std::atan2(x.y, x.x) * degrees;
+  report.rotation = map.Turn();
   // Cameras see the picture's longer side at about 67 degrees: the focal length is 0.75 of it.
   const double focal = 0.75 * 2 * std::max(map.middle.x, map.middle.y);
   const glm::dmat3 camera(focal, 0, 0, 0, focal, 0, map.middle.x, map.middle.y, 1);
@@ -291,6 +290,11 @@ Status CheckScanSize(int width, int height, double dpi, const std::string& name)
   }
   return InputError(name + " is " + Pixels(width, height) + ", more than the " + Number("%.0f", kMaxScanPixels / 1e6) +
                     " million that are read at most: " + remedy);
+}
+
+std::optional<TemplateFit> FindTemplate(Picture picture) {
+  LayOnWhite(picture);
+  return FitTemplate(FindMarks(picture, kCoarsestSearch), picture.width, picture.height);
 }
 
 Expected<Rectified> RectifyScan(Picture scan, const std::string& name, const RectifyOptions& options) {

@@ -1,6 +1,7 @@
 // Turns a scan or photograph of the painted template back into the template's own pixels: the exemplar.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -69,5 +70,9 @@ Status CheckScanSize(int width, int height, double dpi, const std::string& name)
 // few pixels. Deterministic and single-threaded. Memory: the scan, its grey and smaller copies for the marks, and three
 // floats for each pixel of the output.
 Expected<Rectified> RectifyScan(Picture scan, const std::string& name, const RectifyOptions& options = {});
+
+// Where the template lies in a picture: in any place, size and turn, if a coarse search finds four of its marks there.
+// Nothing for a mirrored one. Alpha is laid on white.
+std::optional<TemplateFit> FindTemplate(Picture picture);
 
 }  // namespace scumble

@@ -263,6 +263,11 @@ double TemplateMap::SpherePixels() const {
          2;
 }
 
+double TemplateMap::Turn() const {
+  const glm::dvec2 x = ToPicture({0.51, 0.5}) - ToPicture({0.49, 0.5});
+  return glm::degrees(std::atan2(x.y, x.x));
+}
+
 glm::dvec2 PrintedCorner(int id, int corner) {
   const Fiducial& mark = Fiducials()[std::size_t(id)];
   const bool right = corner == 1 || corner == 2, low = corner >= 2;

@@ -23,6 +23,8 @@ struct TemplateMap {
   glm::dvec2 ToPicture(glm::dvec2 on_template) const;
   // Pixels across the sphere, the mean of both directions.
   double SpherePixels() const;
+  // Degrees clockwise that the template is turned in the picture, -180 … 180.
+  double Turn() const;
 };
 
 struct TemplateFit {

@@ -34,6 +34,12 @@ TEST_F(CliSphere, SaysWhatEachFileIsFor) {
   }
 }
 
+TEST_F(CliSphere, APageWithoutMarksIsForLookingAt) {
+  const CommandResult kit = RunOk({"sphere", "--size", "64", "-o", "kit"});
+  EXPECT_TRUE(Contains(kit.err, "template.pdf is for looking at: only spheres of 128 pixels or more")) << kit.err;
+  EXPECT_FALSE(Contains(kit.err, "at 100%")) << kit.err;
+}
+
 TEST_F(CliSphere, SizeOnPaper) {
   EXPECT_EQ(SizeOf({"--print-size", "10mm", "--dpi", "254"}), 100);
   EXPECT_EQ(SizeOf({"--print-size", "1cm", "--dpi", "254"}), 100);

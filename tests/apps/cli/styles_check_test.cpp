@@ -119,6 +119,16 @@ TEST_F(StylesCheck, WhatIsLeftOfTheKitsTemplate) {
   EXPECT_NEAR(patch["faults"][0]["x"].get<int>(), 325, 2);
   EXPECT_NEAR(patch["faults"][0]["y"].get<int>(), 325, 2);
   EXPECT_EQ(patch["exemplars"][0]["margin"], 64);
+  // Moved on its canvas, marks and all.
+  Picture moved(640, 640);
+  std::fill(moved.rgba.begin(), moved.rgba.end(), std::uint16_t{65535});
+  for (int y = 20; y < 640; ++y) std::copy_n(whole.At(0, y), 4 * 610, moved.At(30, y - 20));
+  Write("kit/lit.png", moved);
+  const CommandResult aside = RunOk({"styles", "check", "kit"});
+  EXPECT_TRUE(Contains(aside.err,
+                       "its centre is at x=350, y=300; move the painting 30 pixels to the left and 20 pixels "
+                       "down"))
+      << aside.err;
   // Painted for another light than the template's.
   sphere.azimuth = -60.0;
   Write("kit/lit.png", PaintSphere(sphere));
@@ -130,15 +140,31 @@ TEST_F(StylesCheck, WhatIsLeftOfTheKitsTemplate) {
   ExpectError({"styles", "check", "bare"}, 3, {"bare/lit.png is a whole template", "crop"});
 }
 
-// A rim larger than the sphere is the style's business; looking at it does no harm.
-TEST_F(StylesCheck, ARimThatTakesTheWholeSphere) {
+TEST_F(StylesCheck, ARimThatTakesMostOfTheSphere) {
   Write("rim/lit.png", PaintSphere({}));
-  for (const char* rim : {"0", "250", "600", "16000"}) {
-    WriteText("rim/style.toml", std::string("[transfer]\nrim = ") + rim + "\n[[exemplar]]\nimage = \"lit.png\"\n");
-    const CommandResult check = Run({"styles", "check", "rim", "--json"});
-    ASSERT_EQ(check.code, 0) << rim << check.err;
-    EXPECT_LE(check.Json()["exemplars"][0]["fringe_percent"], 0.0) << rim;
+  const auto write = [&](const std::string& rim) {
+    WriteText("rim/style.toml", "[transfer]\nrim = " + rim + "\n[[exemplar]]\nimage = \"lit.png\"\n");
+  };
+  for (const char* rim : {"0", "128"}) {
+    write(rim);
+    EXPECT_LE(RunOk({"styles", "check", "rim", "--json"}).Json()["exemplars"][0]["fringe_percent"], 0.0) << rim;
   }
+  write("300");
+  ExpectError({"styles", "check", "rim"}, 3,
+              {"lit.png is 512×512: transfer.rim = 300 leaves too little of the sphere", "at most 128"});
+}
+
+TEST_F(StylesCheck, AStyleWithoutAPaintingHasNoMistakes) {
+  WriteText("mine/style.toml", "[transfer]\nmethod = \"toon\"\n");
+  const CommandResult check = RunOk({"styles", "check", "toon", "mine", "--strict"});
+  EXPECT_EQ(check.err, "");
+  EXPECT_TRUE(Contains(check.out, "toon: no painting, method toon: usable\nmine: no painting, method toon: usable\n"))
+      << check.out;
+  const nlohmann::json json = RunOk({"styles", "check", "toon", "--json"}).Json();
+  EXPECT_EQ(json["method"], "toon");
+  EXPECT_TRUE(json["exemplars"].empty() && json["faults"].empty()) << json;
+  ExpectError({"tradeoff", Scene("suzanne.glb"), "--style", "toon", "--size", "16x9", "--no-memory"}, 2,
+              {"measures paint, and method toon has none"});
 }
 
 TEST_F(StylesCheck, LightsOfOneStyle) {

@@ -238,6 +238,24 @@ TEST_F(CliVerbs, PlanOfAStyleOfNormalsKnowsNoLight) {
   EXPECT_EQ(RunOk(With(stylize, {"--json"})).Json()["plan"], json["plan"]);
 }
 
+TEST_F(CliVerbs, InfoShowsWhatAStyleChanges) {
+  WriteStyle("style");
+  WriteText(
+      "style/style.toml",
+      "[transfer]\nhybrid = 16\nthreshold = [[1, 0.1], [24, 0.3]]\nblend_radius = 1\nguide_weights.luminance = 2\n"
+      "[[exemplar]]\nimage = \"lit.png\"\nguides = \"guides.exr\"\n[[finish]]\neffect = \"outline\"\nwidth = 3.5\n");
+  ASSERT_EQ(Run({"sphere", "--size", "64", "--only", "png", "-o", "kit", "-q"}).code, 0);
+  std::filesystem::copy_file(At("kit/guides.exr"), At("style/guides.exr"));
+  WritePainted("style/lit.png", 64, 64);
+  const nlohmann::json info = RunOk({"info", "style", "--json"}).Json();
+  EXPECT_EQ(info["settings"],
+            nlohmann::json::parse(R"({"transfer.hybrid": 16.0, "transfer.guide_weights.luminance": 2.0,
+                                                        "transfer.threshold": [[1, 0.1], [24, 0.3]]})"));
+  EXPECT_EQ(info["finish"], nlohmann::json::parse(R"(["outline width=3.5"])"));
+  const std::string toon = RunOk({"info", "toon"}).out;
+  EXPECT_TRUE(Contains(toon, "method     toon\nsettings   the defaults\nfinish     toon\nexemplars  none\n")) << toon;
+}
+
 TEST_F(CliVerbs, EveryVerbSpeaksJson) {
   WriteStyle("style");
   const std::string scene = Scene("suzanne.glb");

@@ -8,8 +8,11 @@
 
 #include "core/io/picture_file.h"
 #include "core/style/kit/sphere_kit.h"
+#include "core/style/kit/sphere_template.h"
 #include "core/style/style_file.h"
 #include "tests/support/painted_spheres.h"
+#include "tests/support/refusal.h"
+#include "tests/support/sphere_guides.h"
 #include "tests/support/temporary_folder.h"
 
 namespace scumble {
@@ -69,6 +72,37 @@ TEST_F(PlaceSphereTest, TakesTheSphereAsItLies) {
     EXPECT_NE(said.find("around x=2"), std::string::npos) << said;
     EXPECT_NE(said.find("radius of 1"), std::string::npos) << said;
   }
+}
+
+// A scan that was cropped by hand, a template that slipped on its canvas or was turned, a whole page.
+TEST_F(PlaceSphereTest, ATemplateIsRefusedWhereverItLies) {
+  const Picture sheet = DrawTemplate({-40, 40, SphereGuides(256)});
+  const int side = sheet.width;
+  ASSERT_EQ(side, 320);
+  struct Place {
+    int width, height, left, top;
+    double degrees;
+  };
+  for (const Place& place : {Place{side, side, 12, -8, 0}, {side, side, 0, 0, 3}, {360, 400, 20, 30, 0}}) {
+    Picture moved(place.width, place.height);
+    std::fill(moved.rgba.begin(), moved.rgba.end(), std::uint16_t{65535});
+    const double turn = glm::radians(place.degrees), half = 0.5 * side;
+    for (int y = 0; y < place.height; ++y) {
+      for (int x = 0; x < place.width; ++x) {
+        const double u = x + 0.5 - place.left - half, v = y + 0.5 - place.top - half;
+        const double from_x = std::cos(turn) * u + std::sin(turn) * v + half;
+        const double from_y = std::cos(turn) * v - std::sin(turn) * u + half;
+        if (from_x < 0 || from_y < 0 || from_x >= side || from_y >= side) continue;
+        std::copy_n(sheet.At(int(from_x), int(from_y)), 4, moved.At(x, y));
+      }
+    }
+    const std::string file = Write("moved.png", moved);
+    ExpectRefusal(LoadStyle(file), {"moved.png is a whole template, scanned, moved or turned",
+                                    "`scumble sphere --rectify \"" + file + "\"`", "crop"});
+  }
+  ASSERT_TRUE(WriteSphereKit(folder_.path(), {KitLight{-40, 40, SphereGuides(64)}}));
+  Write("lit.png", sheet);
+  ExpectRefusal(LoadStyle(folder_.path()), {"lit.png is 320×320", "are 64×64", "a scan", "`scumble sphere --rectify`"});
 }
 
 TEST_F(PlaceSphereTest, WhatFillsItsSquareStaysByteForByte) {

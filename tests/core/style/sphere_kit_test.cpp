@@ -229,6 +229,11 @@ TEST(SphereKit, ATemplateIsRecognisedAtEverySizeAndOtherPicturesAreNot) {
     }
     EXPECT_EQ(FiducialsInProportion(scaled), kFiducialCount) << side;
     EXPECT_TRUE(LooksLikeTemplate(scaled)) << side;
+    Picture mirrored = scaled;
+    for (int y = 0; y < side; ++y) {
+      for (int x = 0; x < side; ++x) std::copy_n(scaled.At(x, y), 4, mirrored.At(side - 1 - x, y));
+    }
+    EXPECT_TRUE(LooksLikeTemplate(mirrored)) << side;
     EXPECT_EQ(FiducialsInProportion(InnerSquare(scaled, side / 10)), 0) << side;
   }
   // Paint that runs over some marks leaves the others.

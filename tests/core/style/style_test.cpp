@@ -246,6 +246,8 @@ TEST_F(StyleFile, ValuesBeyondThemAreRefusedWithTheRange) {
                                                                   {"reference_height = 32769", "32768"},
                                                                   {"method = 'magic'", "\"litsphere\""},
                                                                   {"method = 3", "\"bruteforce\""},
+                                                                  {"levels = 7.0", "without a decimal point, 1 to 16"},
+                                                                  {"guide_weights.normal = 0", "nothing is left"},
                                                                   {"levels = [7]", "plain value"},
                                                                   {"levels = {a = 1}", "plain value"},
                                                                   {"levels = 2024-01-01", "plain value"}};

@@ -279,7 +279,6 @@ TEST(ExtremeSizes, AnExemplarOfOnePixelPaintsAllInItsColour) {
       {"step 8", [](Style& s) { s.transfer.match_step = 8; }},
       {"window of 129", [](Style& s) { s.transfer.blend_radius = 64; }},
       {"threshold 0", [](Style& s) { s.transfer.threshold = 0.0f; }},
-      {"all of it rim", [](Style& s) { s.transfer.rim = 1e4; }},
       {"four lights", [](Style& s) { s.exemplars.resize(4, s.exemplars[0]), s.exemplars[1].luminance = 0.5; }},
       {"weighed light",
        [](Style& s) {
