@@ -161,7 +161,7 @@ def export_start(arguments):
     if arguments.fps_file:
         fps, base = scene.render.fps, scene.render.fps_base
         rate = f"{fps}/{base:.6g}" if base > 1 else f"{fps / base:.6g}"
-        arguments.fps_file.write_text(f"{rate} {scene.frame_start} {scene.frame_end}")
+        arguments.fps_file.write_text(f"{rate} {scene.frame_start} {scene.frame_end} {scene.frame_current}")
     if arguments.files_file:
         files = bpy.utils.blend_paths(absolute=True, packed=False, local=False)
         arguments.files_file.write_bytes(b"\n".join(os.fsencode(file) for file in files))
@@ -197,7 +197,7 @@ def main():
     parser.add_argument("--ahead", type=int, default=0,
                         help="with --frames: wait while so many files are there; a reader deletes them. 0: never wait")
     parser.add_argument("--fps-file", type=Path,
-                        help="write there the frames a second, the first frame and the last, as text")
+                        help="write there the frames a second, the first frame, the last, and the one it was saved at")
     parser.add_argument("--files-file", type=Path,
                         help="write the libraries, pictures and other files there that the .blend reads, one a line")
     parser.add_argument("--start-file", type=Path,

@@ -161,8 +161,9 @@ struct Workspace::State {
 
   // The scene: loaded, then posed and seen.
   std::string scene_key;
-  std::optional<AnimatedScene> animation;  // none: the scene is Blender's
-  std::string seen_key, pose_key;          // when and from where it is seen; the same with its light
+  std::optional<AnimatedScene> animation;     // none: the scene is Blender's
+  std::string seen_key, pose_key;             // when and from where it is seen; the same with its light
+  std::vector<std::string> texture_warnings;  // since the scene was loaded
   std::optional<StaticScene> posed;
   std::optional<RayScene> rays;                                // of `posed`, which it borrows
   OwnLights own_lights;                                        // of `posed`, before others were added
@@ -268,6 +269,7 @@ Status Workspace::State::LoadScene(const SceneRequest& request, std::optional<in
   if (text + (blender && posed ? StampsOf(posed->animation.files) : "") == scene_key) return Ok();
   scene_key.clear(), pose_key.clear(), guides_key.clear();
   rays.reset(), animation.reset(), posed.reset(), sphere_at_rest.reset(), sphere_at_start.reset();
+  texture_warnings.clear();
   if (!blender) {
     SCUMBLE_ASSIGN(animation, AnimatedScene::Load(request.scene, {request.animation, LoadOptionsOf(request)}));
     PassOnNotes(animation->rest(), request.scene, context);
@@ -364,6 +366,8 @@ Status Workspace::State::Cast(SceneRequest request, std::optional<int> frame, co
                                              posed->layers, context, progress, &rays));
   ++counters.guides_cast;
   counters.structures_built += std::size_t(made.builds);
+  const std::vector<std::string>& told = made.cost.texture_warnings;
+  texture_warnings.insert(texture_warnings.end(), told.begin(), told.end());
   StoreFrameRate(request, posed->animation, made.guides);
   SCUMBLE_RETURN_IF_ERROR(made.guides.Validate(request.scene));
   guides = std::make_shared<const SceneGuides>(std::move(made));
@@ -466,10 +470,12 @@ Expected<SceneDescription> Workspace::State::Describe(const SceneRequest& scene,
   FrameRate rate = scene.fps.value_or(FrameRate());
   if (const auto told = ParseFrameRate(blender.fps); told && !scene.fps) rate = *told;
   const double fps = double(rate.numerator) / double(rate.denominator);
-  if (!animation && blender.last > blender.first) description.animation = FrameSpan{blender.first, blender.last, fps};
+  if (!animation && blender.last > blender.first) {
+    description.animation = FrameSpan{blender.first, blender.last, fps, blender.saved};
+  }
   if (animation && animation->moves()) {
     const double last = std::ceil(animation->duration_seconds() * fps - 1e-6);
-    description.animation = FrameSpan{0, int(std::clamp(last, 0.0, double(kMaxFrame))), fps};
+    description.animation = FrameSpan{0, int(std::clamp(last, 0.0, double(kMaxFrame))), fps, std::nullopt};
   }
   SCUMBLE_ASSIGN(const SceneSphere sphere, SphereSeen(frame));
   description.eye = OrbitOf(sphere, posed->view.camera, double(scene.size.width) / scene.size.height);
@@ -477,6 +483,9 @@ Expected<SceneDescription> Workspace::State::Describe(const SceneRequest& scene,
   description.files.insert(description.files.end(), blender.files.begin(), blender.files.end());
   description.style_requests = SceneStyleRequestsOf(animation ? animation->objects() : names.instances, names);
   for (const auto& [path, stamp] : style_stamps) description.style_files.push_back(path);
+  for (const auto* warnings : {&names.warnings, &std::as_const(texture_warnings)}) {
+    for (const std::string& warning : *warnings) description.warnings.push_back(scene.scene + ": " + warning);
+  }
   return description;
 }
 

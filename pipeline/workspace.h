@@ -62,6 +62,7 @@ struct FrameSpan {
   int first = 0;
   int last = 0;
   double fps = 24.0;
+  std::optional<int> saved;  // of a .blend: the frame that it was saved at, which a request without a frame shows
 };
 
 struct SceneDescription {
@@ -72,6 +73,8 @@ struct SceneDescription {
   std::vector<std::string> files;                        // that the scene is read from
   std::vector<std::string> style_files;                  // that the styles of the last Paint were read from
   SceneStyleRequests style_requests;                     // of the file
+  std::vector<std::string>
+      warnings;  // of the file, and of its textures that were decoded so far, as they were passed on
 };
 
 class Workspace {

@@ -116,7 +116,7 @@ void RequestBlenderAnimation(const ScratchFolder& scratch, const BlenderRequest&
 }
 
 Status LoadBlenderAnimation(const ScratchFolder& scratch, const std::string& path, BlenderAnimation& animation) {
-  std::ifstream(In(scratch, kRateFile)) >> animation.fps >> animation.first >> animation.last;
+  std::ifstream(In(scratch, kRateFile)) >> animation.fps >> animation.first >> animation.last >> animation.saved;
   std::ifstream files(In(scratch, kFilesFile));
   for (std::string file; std::getline(files, file);) animation.files.push_back(file);
   std::error_code failed;

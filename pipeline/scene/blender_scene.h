@@ -25,6 +25,7 @@ bool IsBlenderScene(const std::string& path);
 struct BlenderAnimation {
   std::string fps;                 // frames a second, as ParseFrameRate takes them; empty: unknown
   int first = 0, last = 0;         // of the frames that are rendered
+  int saved = 0;                   // the frame that it was saved at
   std::vector<std::string> files;  // that it reads besides itself: linked libraries, pictures, caches
   std::optional<Scene> start;  // the scene at its first frame, where that decides how a frame with a number is seen: it
                                // has no camera, perhaps no lamp, or it was asked for

@@ -28,6 +28,7 @@ Expected<SceneCost> DecodeNeededTextures(Scene& scene, const SceneRequest& optio
   cost.textures_decoded = decoded.count;
   cost.texture_bytes = decoded.bytes;
   cost.textures_left_out = decoded.left_out;
+  cost.texture_warnings = decoded.warnings;
   return cost;
 }
 

@@ -27,8 +27,9 @@ struct SceneCost {
   RayCounts rays;
   WorkCounts work;
   int textures_decoded = 0;
-  std::size_t texture_bytes = 0;  // of those
-  int textures_left_out = 0;      // that cannot be read
+  std::size_t texture_bytes = 0;                   // of those
+  int textures_left_out = 0;                       // that cannot be read
+  std::vector<std::string> texture_warnings = {};  // why
 };
 
 struct SceneGuides {

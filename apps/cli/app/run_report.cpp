@@ -10,7 +10,7 @@
 namespace scumble {
 
 void CostToJson(const SceneCost& cost, nlohmann::ordered_json& json) {
-  const auto& [rays, work, textures_decoded, texture_bytes, textures_left_out] = cost;
+  const auto& [rays, work, textures_decoded, texture_bytes, textures_left_out, warned] = cost;
   json["rays"] = {
       {"primary", rays.primary}, {"coverage", rays.coverage}, {"shadow", rays.shadow}, {"bounce", rays.bounce}};
   json["work"]["light_samples"] = work.light_samples;

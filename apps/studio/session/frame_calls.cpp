@@ -95,7 +95,7 @@ HttpResponse Session::State::Frame(const Moment& moment, const HttpRequest& requ
   if (moment.state.style.empty()) return ErrorAnswer(InputError("there is no style yet: choose one"), kCannotPaint);
   PictureJob job = JobAt(moment, show);
   if (draft) {
-    if (&lane == &drafts) finals.CancelUnless(job.key);
+    if (&lane == &drafts) finals.CancelUnless(job.state);
     job.budget.quality = Quality::kDraft, job.budget.budget_ms = 0;
     job.picture.leave_small = *format == FrameFormat::kJpeg;  // browsers scale it as they draw it
     job.key += job.picture.leave_small ? " small draft" : " draft";
@@ -104,7 +104,8 @@ HttpResponse Session::State::Frame(const Moment& moment, const HttpRequest& requ
   const std::vector<std::pair<std::string, std::string>> known = {
       {"ETag", etag}, {"X-Scumble-Revision", std::to_string(moment.revision)}};
   if (request.if_none_match == etag) return {304, "", "", known};
-  const Expected<Lane::Painted> painted = LaneOf(lane, job).Paint(job);
+  const auto tab = request.query.find("tab");
+  const Expected<Lane::Painted> painted = LaneOf(lane, job).Paint(job, tab == request.query.end() ? "" : tab->second);
   // A file that is being written is no mistake: the page asks again.
   if (!painted && painted.error().kind == ErrorKind::kInput && watch->SeesChanges()) {
     return ErrorAnswer(CancelledError(), kCannotPaint);

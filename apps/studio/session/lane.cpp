@@ -1,52 +1,60 @@
 #include "apps/studio/session/lane.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace scumble {
 
 Lane::Lane(RunContext context)
     : workspace_([&] {
-        context.is_cancelled = [this, outer = context.is_cancelled] { return IsOutdated() || (outer && outer()); };
+        context.is_cancelled = [this, outer = context.is_cancelled] {
+          return stopped_ || outdated_ || (outer && outer());
+        };
         return std::move(context);
       }()) {}
 
-Expected<Lane::Painted> Lane::Paint(const PictureJob& job) {
-  std::uint64_t ticket = 0;
+bool Lane::IsWanted(const std::string& key) const {
+  return std::any_of(wanted_.begin(), wanted_.end(), [&](const auto& one) { return one.second == key; });
+}
+
+Expected<Lane::Painted> Lane::Paint(const PictureJob& job, const std::string& client) {
   {
     const std::lock_guard lock(mutex_);
     if (kept_ && kept_key_ == job.key) return kept_;
-    if (wanted_ != job.key) wanted_ = job.key, ++newest_;
-    ticket = newest_;
+    if (state_ != job.state) state_ = job.state, wanted_.clear();
+    wanted_[client] = job.key;
+    LookForOutdated();
   }
   const std::lock_guard working(work_);
   {
     const std::lock_guard lock(mutex_);
     if (kept_ && kept_key_ == job.key) return kept_;
-    if (stopped_ || ticket != newest_) return CancelledError();
-    running_ = ticket;
+    if (stopped_ || !IsWanted(job.key)) return CancelledError();
+    running_ = job.key;
+    LookForOutdated();
   }
   Expected<PaintedFrame> painted = workspace_.Paint(job.scene, job.style, job.picture, job.budget);
   const std::lock_guard lock(mutex_);
-  if (!painted && painted.error().kind == ErrorKind::kCancelled) {
-    if (wanted_ == job.key) wanted_.clear();
-    return painted.error();
-  }
+  running_.clear();
   if (!painted) return painted.error();  // not kept: a file may be whole the next time
   kept_key_ = job.key;
   kept_ = std::make_shared<const PaintedFrame>(std::move(*painted));
   return kept_;
 }
 
-void Lane::CancelUnless(const std::string& key) {
+void Lane::CancelUnless(const std::string& state) {
   const std::lock_guard lock(mutex_);
-  if (wanted_ == key) return;
+  if (state_ == state) return;
   wanted_.clear();
-  ++newest_;
+  LookForOutdated();
 }
 
 Expected<SceneDescription> Lane::Describe(const SceneRequest& scene, std::optional<int> frame) {
   const std::lock_guard working(work_);
-  running_ = newest_.load();  // what was wanted before does not cancel this
+  {
+    const std::lock_guard lock(mutex_);
+    LookForOutdated();  // what was cancelled before does not cancel this
+  }
   return workspace_.Describe(scene, frame);
 }
 

@@ -3,8 +3,7 @@
 #pragma once
 
 #include <atomic>
-#include <cstdint>
-#include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -18,7 +17,8 @@ namespace scumble {
 
 // All that a picture depends on.
 struct PictureJob {
-  std::string key;  // equal keys, equal pictures: the settings and the generation of the files as text
+  std::string state;  // the settings and the generation of the files as text
+  std::string key;    // equal keys, equal pictures: the state, and what is shown of it
   SceneRequest scene;
   StyleRequest style;
   PictureRequest picture;
@@ -32,24 +32,28 @@ class Lane {
   explicit Lane(RunContext context);
 
   // The picture of the job: the kept one where its key is the same, the one that is being painted likewise; otherwise
-  // it is painted, and whatever this lane was painting ends as kCancelled. From any thread.
-  Expected<Painted> Paint(const PictureJob& job);
+  // it is painted. What this lane was painting ends as kCancelled if it is of another state, or if the same client
+  // asked for it; another client's picture of this state comes first. From any thread.
+  Expected<Painted> Paint(const PictureJob& job, const std::string& client = "");
 
-  // Cancels what runs or waits, unless it has this key.
-  void CancelUnless(const std::string& key);
+  // Cancels what runs or waits, unless it is of this state.
+  void CancelUnless(const std::string& state);
 
-  // What Workspace::Describe says, once nothing is painted.
+  // What Workspace::Describe says, once nothing is painted. A newer picture, which needs the scene too, waits for it.
   Expected<SceneDescription> Describe(const SceneRequest& scene, std::optional<int> frame);
 
   void Stop();  // cancels, now and from now on
 
  private:
-  bool IsOutdated() const { return stopped_ || running_ != newest_; }
+  bool IsWanted(const std::string& key) const;
+  void LookForOutdated() { outdated_ = !running_.empty() && !IsWanted(running_); }
 
   std::atomic<bool> stopped_ = false;
-  std::atomic<std::uint64_t> newest_ = 0, running_ = 0;  // tickets
-  std::mutex mutex_;                                     // of what follows
-  std::string wanted_;                                   // the key of the newest ticket; empty: of none
+  std::atomic<bool> outdated_ = false;         // nobody wants what runs any more
+  std::mutex mutex_;                           // of what follows
+  std::string state_;                          // of the newest request
+  std::map<std::string, std::string> wanted_;  // by client the key of its newest request, all of that state
+  std::string running_;                        // the key of what is painted now; empty: nothing
   std::string kept_key_;
   Painted kept_;
   std::mutex work_;  // of the workspace

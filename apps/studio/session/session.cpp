@@ -11,9 +11,12 @@
 #include "apps/studio/session/session_state.h"
 #include "core/image/hash.h"
 #include "core/io/picture_file.h"
+#include "core/style/finish_chain.h"
 #include "core/style/style_file.h"
+#include "core/style/style_keyframes.h"
 #include "pipeline/file_stamp.h"
 #include "pipeline/scene/blender_scene.h"
+#include "pipeline/scene/run_inputs.h"
 #include "pipeline/style/style_locations.h"
 
 namespace scumble {
@@ -63,12 +66,29 @@ Expected<std::shared_ptr<const StyleFacts>> ReadFacts(const StyleEntry& style) {
   SCUMBLE_ASSIGN(facts.values, StyleValues(style.path));
   SCUMBLE_ASSIGN(Style read, LoadStyle(style.path));
   if (!read.unpainted.empty()) read.exemplars.clear();  // a made-up one
+  facts.tracks = std::move(read.tracks);
   for (const Exemplar& one : read.exemplars) {
     const int width = one.cut ? one.cut->file_width : one.picture.width + 2 * one.margin;
     const int height = one.cut ? one.cut->file_height : one.picture.height + 2 * one.margin;
     facts.exemplars.push_back({one.name, width, height, one.luminance});
   }
   return std::make_shared<const StyleFacts>(std::move(facts));
+}
+
+// What the style's file says of each key at a frame, and those that change over time as their text.
+void AddFileKeys(const StyleFacts& of, int frame, nlohmann::json& json) {
+  const auto in_json = [](const KeyValue& value) {
+    return std::visit([](const auto& held) { return nlohmann::json(held); }, value);
+  };
+  for (const StyleKey& key : StyleKeys()) {
+    const auto value = of.values.find(key.name);
+    if (value != of.values.end()) json["file_keys"][key.name] = in_json(value->second);
+  }
+  for (const StyleTrack& track : of.tracks) {
+    if (!of.values.count(track.name)) continue;  // of a finishing pass
+    json["file_keys"][track.name] = in_json(ValueAt(track, frame));
+    json["key_frames"][track.name] = ToText(track);
+  }
 }
 
 std::string HashOf(const StudioState& state) { return fmt::format("{:016x}", HashText(ToJson(state).dump())); }
@@ -95,9 +115,10 @@ Catalogue Session::State::KnownCatalogue() {
   return catalogue;
 }
 
-PictureJob Session::State::JobAt(const Moment& moment, std::optional<Explanation> show, bool is_alone) {
+PictureJob Session::State::JobAt(Moment moment, std::optional<Explanation> show, bool is_alone) {
+  moment.state.frame = FrameOf(moment, drafts);
   PictureJob job = JobOf(moment.state, KnownCatalogue(), options.scene, is_alone);
-  job.key += fmt::format(" generation {}", moment.generation);
+  job.key = job.state += fmt::format(" generation {}", moment.generation);
   if (show) job.key += fmt::format(" show {}", int(*show));
   job.picture.show = show;
   return job;
@@ -105,6 +126,34 @@ PictureJob Session::State::JobAt(const Moment& moment, std::optional<Explanation
 
 Lane& Session::State::LaneOf(Lane& wanted, const PictureJob& job) {
   return IsBlenderScene(job.scene.scene) ? finals : wanted;
+}
+
+std::optional<int> Session::State::FrameOf(const Moment& moment, Lane& lane) {
+  const Catalogue known = KnownCatalogue();
+  const SceneEntry* const scene = known.FindScene(moment.state.scene);
+  if (moment.state.frame || !scene || IsBlenderScene(scene->file)) return moment.state.frame;
+  const std::string key = scene->file + "\n" + StampOf(scene->file);
+  {
+    const std::lock_guard lock(mutex);
+    const auto found = first_frames.find(key);
+    if (found != first_frames.end()) return found->second;
+  }
+  SceneRequest request = options.scene;
+  request.scene = scene->file, request.camera.clear(), request.view.reset();
+  const Expected<SceneDescription> described = lane.Describe(request, std::nullopt);
+  if (!described) return std::nullopt;  // the picture's error says why
+  const std::optional<int> start = described->animation ? std::optional(described->animation->first) : std::nullopt;
+  const std::lock_guard lock(mutex);
+  constexpr std::size_t kMostFrames = 64;
+  if (first_frames.size() >= kMostFrames) first_frames.clear();
+  return first_frames[key] = start;
+}
+
+std::optional<SceneDescription> Session::State::LastDescription(const StudioState& of) {
+  const std::lock_guard lock(mutex);
+  const SceneEntry* const scene = catalogue.FindScene(of.scene);
+  const auto known = scene ? last_descriptions.find(scene->file) : last_descriptions.end();
+  return known != last_descriptions.end() ? std::optional(known->second) : std::nullopt;
 }
 
 Expected<SceneDescription> Session::State::Describe(const Moment& moment) {
@@ -126,6 +175,7 @@ Expected<SceneDescription> Session::State::Describe(const Moment& moment) {
   constexpr std::size_t kMostDescriptions = 64;
   if (descriptions.size() >= kMostDescriptions) descriptions.clear();
   descriptions.emplace(key, *described);
+  last_descriptions[job.scene.scene] = *described;
   return Seen(described, moment.state);
 }
 
@@ -169,7 +219,8 @@ std::vector<StyleEntry> Session::State::ChosenStyles(const StudioState& of) {
 std::vector<StyleEntry> Session::State::StylesOf(const Moment& moment) {
   std::vector<StyleEntry> styles = ChosenStyles(moment.state);
   if (moment.state.scene.empty()) return styles;
-  const Expected<SceneDescription> described = Describe(moment);
+  const Expected<SceneDescription> now = Describe(moment);
+  const std::optional<SceneDescription> described = now ? std::optional(*now) : LastDescription(moment.state);
   if (!described) return styles;
   std::vector<std::string> patterns;
   for (const StudioAssignment& one : moment.state.assignments) patterns.push_back(one.name);
@@ -186,11 +237,12 @@ std::vector<StyleEntry> Session::State::StylesOf(const Moment& moment) {
 }
 
 nlohmann::json Session::State::StateJson() {
-  const Moment moment = Now();
+  Moment moment = Now();
+  const std::string hash = HashOf(moment.state);
+  moment.state.frame = FrameOf(moment, drafts);
   nlohmann::json json = ToJson(moment.state);
   json["revision"] = moment.revision;
-  json["run"] = run_id, json["first"] = first,
-  json["as_started"] = first["options"].get<std::string>() == HashOf(moment.state);
+  json["run"] = run_id, json["first"] = first, json["as_started"] = first["options"].get<std::string>() == hash;
   const std::vector<StyleEntry> styles = StylesOf(moment);  // first: the scene's come into the catalogue
   const Catalogue known = KnownCatalogue();
   json["scenes"] = json["styles"] = json["finishes"] = json["exemplars"] = nlohmann::json::array();
@@ -208,7 +260,7 @@ nlohmann::json Session::State::StateJson() {
     json["finishes"].push_back({{"name", finish.name}, {"help", finish.help}});
   std::optional<Error> found;
   int index = 0;
-  json["file_keys"] = nlohmann::json::object();
+  json["file_keys"] = json["key_frames"] = nlohmann::json::object();
   for (const StyleEntry& style : styles) {
     const auto of = FactsOf(style);
     if (!of) found = of.error();
@@ -222,31 +274,27 @@ nlohmann::json Session::State::StateJson() {
                                    {"height", one.height},
                                    {"luminance", one.luminance ? nlohmann::json(*one.luminance) : nullptr}});
     }
-    for (const StyleKey& key : StyleKeys()) {
-      if (index > 0 || !of) break;
-      const auto value = (*of)->values.find(key.name);
-      if (value != (*of)->values.end()) {
-        json["file_keys"][key.name] = std::visit([](const auto& held) { return nlohmann::json(held); }, value->second);
-      }
-    }
+    if (index == 0 && of) AddFileKeys(**of, moment.state.frame.value_or(0), json);
     ++index;
   }
   SceneDescription scene;
   if (!moment.state.scene.empty()) {
-    if (const auto described = Describe(moment)) {
-      scene = *described;
-    } else if (described.error().kind != ErrorKind::kCancelled) {
-      found = described.error();
-    }
+    const Expected<SceneDescription> described = Describe(moment);
+    scene = described ? *described : LastDescription(moment.state).value_or(scene);
+    if (!described && described.error().kind != ErrorKind::kCancelled) found = described.error();
   }
   json["cameras"] = scene.cameras, json["objects"] = scene.objects, json["materials"] = scene.materials;
   json["lights"] = scene.lights, json["eye"] = ToJson(scene.eye);
   json["animation"] = nullptr;
   if (scene.animation) {
-    json["animation"] = {
-        {"first", scene.animation->first}, {"last", scene.animation->last}, {"fps", scene.animation->fps}};
+    const FrameSpan& span = *scene.animation;
+    json["animation"] = {{"first", span.first},
+                         {"last", span.last},
+                         {"fps", span.fps},
+                         {"saved", span.saved ? nlohmann::json(*span.saved) : nullptr}};
   }
   const std::lock_guard lock(mutex);
+  json["warnings"] = scene_warnings;
   if (problem) found = problem;
   json["problem"] = found ? ToJson(*found) : nlohmann::json();
   return json;
@@ -285,8 +333,9 @@ void Session::State::Tell(const std::string& why) {
 // After a picture: what it was made of.
 void Session::State::WatchFilesOf(const Moment& moment, std::chrono::system_clock::time_point begun, bool is_painted) {
   const PictureJob job = JobAt(moment, std::nullopt);
-  std::string belongs = fmt::format("{}\n{}\n{}\n{} {}", job.scene.scene, job.style.style,
-                                    fmt::join(job.style.assigned, "\n"), moment.generation, is_painted);
+  const std::string of =
+      fmt::format("{}\n{}\n{}", job.scene.scene, job.style.style, fmt::join(job.style.assigned, "\n"));
+  std::string belongs = fmt::format("{}\n{} {}", of, moment.generation, is_painted);
   std::vector<StyleEntry> styles = ChosenStyles(moment.state);
   {
     const std::lock_guard lock(mutex);
@@ -295,15 +344,33 @@ void Session::State::WatchFilesOf(const Moment& moment, std::chrono::system_cloc
     watched = belongs;
   }
   const Expected<SceneDescription> described = LaneOf(finals, job).Describe(job.scene, job.picture.frame);
-  std::vector<std::string> files = {job.scene.scene};
+  std::vector<std::string> files;
   if (described) {
     files = described->files;
     files.insert(files.end(), described->style_files.begin(), described->style_files.end());
-    // The names in a folder count only where a file may be missing.
-    std::erase_if(files, [](const std::string& file) {
-      std::error_code failed;
-      return std::filesystem::is_directory(file, failed);
-    });
+    SetWarnings(described->warnings);
+  } else {
+    RunInputs inputs;
+    inputs.ReadsScene(job.scene.scene);
+    files = inputs.Inputs();
+    files.push_back(job.scene.scene);
+  }
+  // The names in a folder count only where a file may be missing.
+  std::erase_if(files, [](const std::string& file) {
+    std::error_code failed;
+    return std::filesystem::is_directory(file, failed);
+  });
+  {
+    const std::lock_guard lock(mutex);
+    if (known_of != of) known_of = of, known_files.clear();
+    // Of a scene that cannot be read, what it was read from; otherwise files that are away, which may come back.
+    std::error_code failed;
+    for (const std::string& file : known_files) {
+      if (!described || !std::filesystem::exists(file, failed)) files.push_back(file);
+    }
+    std::sort(files.begin(), files.end());
+    files.erase(std::unique(files.begin(), files.end()), files.end());
+    known_files = files;
   }
   for (const StyleEntry& style : styles) AddFilesAround(style, !is_painted, files);
   watch->Watch(files, begun);
@@ -320,6 +387,15 @@ void Session::State::SetProblem(std::optional<Error> now) {
   events.Publish("problem", text.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
+void Session::State::SetWarnings(std::vector<std::string> now) {
+  {
+    const std::lock_guard lock(mutex);
+    if (scene_warnings == now) return;
+    scene_warnings = now;
+  }
+  events.Publish("warnings", nlohmann::json(now).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
 // The picture is painted before the page is told: it finds it ready. A file that cannot be read may be half written: it
 // is tried for two seconds before the page is told of that.
 void Session::State::FilesHaveChanged() {
@@ -333,6 +409,7 @@ void Session::State::FilesHaveChanged() {
       moment = {state, revision, generation};
     }
     if (moment.state.scene.empty() || moment.state.style.empty()) return;
+    moment.state.frame = FrameOf(moment, finals);  // which reads the scene for the picture, too
     const PictureJob job = JobAt(moment, std::nullopt);
     const Expected<Lane::Painted> painted = LaneOf(finals, job).Paint(job);
     if (painted || painted.error().kind == ErrorKind::kCancelled) {

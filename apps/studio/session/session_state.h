@@ -38,6 +38,7 @@ struct ExemplarFile {
 struct StyleFacts {
   std::string stamp;  // of the style.toml and the exemplars
   std::map<std::string, KeyValue> values;
+  std::vector<StyleTrack> tracks;  // of the keys that change over time
   std::vector<ExemplarFile> exemplars;
 };
 
@@ -58,10 +59,15 @@ struct Session::State {
   std::uint64_t revision = 1;
   std::uint64_t generation = 1;  // raised when a file has changed
   std::optional<Error> problem;
-  std::string watched;               // what the files that are watched belong to
-  std::vector<StyleEntry> compared;  // styles of the last pictures that were asked for beside the main one
+  std::string watched;                   // what the files that are watched belong to
+  std::string known_of;                  // the scene and the styles of `known_files`
+  std::vector<std::string> known_files;  // that they were read from
+  std::vector<StyleEntry> compared;      // styles of the last pictures that were asked for beside the main one
   std::map<std::string, std::shared_ptr<const StyleFacts>> facts;  // by style id
   std::map<std::string, SceneDescription> descriptions;            // by what they depend on
+  std::map<std::string, SceneDescription> last_descriptions;       // by scene file, the newest of each
+  std::map<std::string, std::optional<int>> first_frames;          // by scene file and its stamp
+  std::vector<std::string> scene_warnings;                         // of the scene that was painted last
   std::map<std::string, std::string> thumbnails;                   // by kind and id
   std::map<std::string, std::string> checks;                       // JSON, by the style's settings and generation
 
@@ -71,10 +77,15 @@ struct Session::State {
 
   Moment Now();
   Catalogue KnownCatalogue();
-  PictureJob JobAt(const Moment& moment, std::optional<Explanation> show, bool is_alone = false);
+  PictureJob JobAt(Moment moment, std::optional<Explanation> show, bool is_alone = false);
+  // The frame that is shown: of a glTF scene that moves the first one, where none is chosen. A .blend is shown at the
+  // frame that it was saved at.
+  std::optional<int> FrameOf(const Moment& moment, Lane& lane);
   // A .blend is exported for each workspace: it has one.
   Lane& LaneOf(Lane& wanted, const PictureJob& job);
   Expected<SceneDescription> Describe(const Moment& moment);
+  // Of a scene that cannot be read at this moment, as it was when it could; none where it never could.
+  std::optional<SceneDescription> LastDescription(const StudioState& of);
   Expected<std::shared_ptr<const StyleFacts>> FactsOf(const StyleEntry& style);
   // The styles of a picture in the order of their indices, each once: the first one, those of assignments, and those
   // that the scene asks for. ChosenStyles leaves these out and reads no scene.
@@ -89,6 +100,7 @@ struct Session::State {
   void WatchFilesOf(const Moment& moment, std::chrono::system_clock::time_point begun, bool is_painted);
   void FilesHaveChanged();
   void SetProblem(std::optional<Error> now);
+  void SetWarnings(std::vector<std::string> now);
 
   HttpResponse Frame(const Moment& moment, const HttpRequest& request, const std::string& quality,
                      const std::string& format, const std::string& show, Lane& lane);

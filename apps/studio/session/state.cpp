@@ -285,7 +285,7 @@ json ToJson(const StudioState& state) {
 
 PictureJob JobOf(const StudioState& state, const Catalogue& catalogue, const SceneRequest& scene, bool is_alone) {
   PictureJob job;
-  job.key = ToJson(state).dump(-1, ' ', false, json::error_handler_t::replace);  // a file's name may be no UTF-8
+  job.state = ToJson(state).dump(-1, ' ', false, json::error_handler_t::replace);  // a file's name may be no UTF-8
   job.scene = scene;
   if (const SceneEntry* entry = catalogue.FindScene(state.scene)) job.scene.scene = entry->file;
   job.scene.camera = state.view ? "" : state.camera;  // the pipeline refuses both

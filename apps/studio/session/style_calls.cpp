@@ -7,6 +7,7 @@
 #include "apps/studio/session/style_files.h"
 #include "core/io/file/atomic_file.h"
 #include "core/io/picture_file.h"
+#include "core/style/finish_chain.h"
 #include "pipeline/frame/check_style.h"
 
 namespace scumble {
@@ -103,6 +104,16 @@ HttpResponse Session::State::Save(const HttpRequest&) {
   const Catalogue known = KnownCatalogue();
   const StyleEntry* const style = known.FindStyle(moment.state.style);
   if (!style) return ErrorAnswer(InputError("there is no style yet: choose one"), kUnreadable);
+  if (const auto of = FactsOf(*style)) {
+    for (const StyleTrack& track : (*of)->tracks) {
+      if (!moment.state.keys.count(track.name)) continue;
+      return ErrorAnswer(
+          UsageError(fmt::format("{} gives {} a value for each of several frames, {}, which a save would "
+                                 "replace: save the style as a new one, or reset this key first",
+                                 style->toml().string(), track.name, ToText(track))),
+          kRefused);
+    }
+  }
   const Status saved = SaveStyle(*style, moment.state.keys);
   if (!saved) return ErrorAnswer(saved.error(), saved.error().kind == ErrorKind::kUsage ? kRefused : kUnreadable);
   Change(

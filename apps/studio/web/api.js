@@ -16,12 +16,14 @@
  *   scenes: {id: string, name: string, bundled: boolean}[],
  *   styles: {id: string, name: string, bundled: boolean, writable: boolean, save_as: boolean}[],
  *   cameras: string[], objects: string[], materials: string[],
- *   animation: {first: number, last: number, fps: number} | null, lights: number, exemplars: Exemplar[],
- *   run: string, as_started: boolean, first: {scene: string, style: string, options: string},
- *   keys: Record<string, KeyValue>, file_keys: Record<string, KeyValue>, assignments: Assignment[],
+ *   animation: {first: number, last: number, fps: number, saved: number | null} | null, lights: number,
+ *   exemplars: Exemplar[], run: string, as_started: boolean, first: {scene: string, style: string, options: string},
+ *   keys: Record<string, KeyValue>, file_keys: Record<string, KeyValue>, key_frames: Record<string, string>,
+ *   assignments: Assignment[],
  *   camera: string, view: Orbit | null, light: Light | null, finish: Finish | null,
  *   finishes: {name: string, help: string}[], eye: Orbit, frame: number | null,
- *   size: [number, number], seed: number, quality: string, budget_ms: number, problem: Problem | null}} State
+ *   size: [number, number], seed: number, quality: string, budget_ms: number, problem: Problem | null,
+ *   warnings: string[]}} State
  * @typedef {{scene?: string, style?: string, keys?: Record<string, KeyValue | null>, assignments?: Assignment[],
  *   camera?: string, view?: Orbit | null, light?: Light | null, finish?: Finish | null,
  *   frame?: number | null, size?: [number, number],
@@ -129,7 +131,7 @@ export function listen(to) {
     }
     if (source || document.hidden) return;
     const stream = source = new EventSource('/api/events');
-    for (const name of ['state', 'problem', 'busy']) {
+    for (const name of ['state', 'problem', 'warnings', 'busy']) {
       stream.addEventListener(name, (event) => to.event(name, JSON.parse(/** @type {MessageEvent} */ (event).data)));
     }
     const end = () => {

@@ -166,6 +166,7 @@ export class BrushPanel {
   undo() {
     const done = this.strokes.undo();
     this.showUndo();
+    if (done && !this.hasUnsaved) void this.follow();  // the file may be another one by now
     return done;
   }
 
@@ -271,19 +272,34 @@ export class BrushPanel {
   /** @param {CallError} error */
   conflict(error) {
     byId('conflict-text', HTMLElement).textContent = error.message;
+    byId('conflict-reload', HTMLButtonElement).disabled = false;
     byId('conflict-dialog', HTMLDialogElement).showModal();
   }
 
   /** The strokes stay; the file as it is now lies below them. */
   async reloadBelow() {
-    byId('conflict-dialog', HTMLDialogElement).close();
+    const dialog = byId('conflict-dialog', HTMLDialogElement), {canvas} = this.strokes;
     const exemplar = this.exemplar.current;
-    if (!exemplar) return;
+    if (!exemplar) {
+      dialog.close();
+      return;
+    }
     try {
-      this.paintable = this.own = await getJson('/api/paintable', {exemplar: exemplar.index});
+      /** @type {Paintable} */
+      const now = await getJson('/api/paintable', {exemplar: exemplar.index});
+      if (now.ok && (now.width !== canvas.width || now.height !== canvas.height)) {
+        byId('conflict-text', HTMLElement).textContent =
+            `${now.file} is ${now.width}×${now.height} pixels now, your strokes are ${canvas.width}×${
+                canvas.height}, so they cannot lie over it: download the layer, then undo the strokes.`;
+        byId('conflict-reload', HTMLButtonElement).disabled = true;
+        return;
+      }
+      dialog.close();
+      this.paintable = this.own = now;
       await this.exemplar.renew();
       this.page.announce('the file was read anew; your strokes lie over it');
     } catch (error) {
+      dialog.close();
       this.page.error(error);
     }
   }

@@ -101,6 +101,17 @@ export function fillTrack(slider) {
 }
 
 /**
+ * Shows a number, but leaves one that is being typed until the value changes.
+ * @param {HTMLInputElement} input
+ * @param {number} value
+ */
+export function showNumber(input, value) {
+  const text = String(value);
+  if (document.activeElement !== input || input.dataset.value !== text) input.value = text;
+  input.dataset.value = text;
+}
+
+/**
  * Whether keys that are typed here belong to the element.
  * @param {EventTarget | null} target
  */

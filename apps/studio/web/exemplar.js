@@ -57,7 +57,10 @@ export class ExemplarPanel {
     byId('exemplar-choice', HTMLElement).hidden = options.length < 2;
     const now = this.current;
     this.box.hidden = !now;
+    const isRead = Object.keys(state.file_keys).length > 0;
     byId('exemplar-none', HTMLElement).hidden = !!now;
+    byId('exemplar-none', HTMLElement).textContent =
+        isRead ? 'This style has no painting.' : 'This style cannot be read.';
     byId('paint', HTMLButtonElement).disabled = !now;
     const key = now ? `${now.style_id} ${now.file} ${this.chosen}` : '';
     if (key !== this.shown) {

@@ -8,6 +8,8 @@ import {call, CallError, isAbort, withQuery} from './api.js';
  *   show: string, stages: {name: string, ms: number}[], ms: number}} Picture */
 
 const kRestMs = 150;
+// Tells pages of one studio apart.
+const kTab = Math.random().toString(36).slice(2);
 
 /** @param {string | null} text "guides;dur=12.5, match;dur=3" */
 export function parseTimes(text) {
@@ -167,7 +169,8 @@ export class Frames {
     this.onBegin(quality);
     try {
       const format = quality === 'draft' ? 'jpeg' : 'rgba';
-      const response = await call('GET', withQuery('/api/frame', {quality, format, show}), {signal: abort.signal});
+      const query = {quality, format, show, tab: kTab};
+      const response = await call('GET', withQuery('/api/frame', query), {signal: abort.signal});
       const body = await response.blob();
       if (abort.signal.aborted) return;
       await this.drawing;

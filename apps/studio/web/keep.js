@@ -91,12 +91,15 @@ export class Keeper {
   async saveAs() {
     const error = byId('save-as-error', HTMLElement);
     error.textContent = '';
-    const {keys, file_keys: before} = this.store.state;
+    const {style, keys, file_keys: before, key_frames: frames} = this.store.state;
     try {
       const {saved} = await (await call('POST', '/api/save-as', {json: {name: this.name.value}})).json();
       this.dialog.close();
       this.page.announce(`saved ${saved ?? 'the style'}`);
-      this.store.moveTo((await this.store.refresh()).style, keys, before);
+      const copy = (await this.store.refresh()).style;
+      // One value cannot bring a key's frames back: undo goes back to the style that has them.
+      if (Object.keys(keys).some((name) => name in frames)) this.store.wentTo(copy, style, keys);
+      else this.store.moveTo(copy, keys, before);
     } catch (failed) {
       error.textContent = failed instanceof Error ? failed.message : String(failed);
     }

@@ -19,13 +19,23 @@ export function labelOf(name) {
 }
 
 /**
- * What the style's file says, or the default.
+ * What the style's file says of this frame, or the default.
  * @param {StyleKey} key
  * @param {State} state
  * @returns {KeyValue}
  */
 function fileValue(key, state) {
   return state.file_keys[key.name] ?? key.default ?? (key.kind === 'flag' ? false : key.kind === 'text' ? '' : 0);
+}
+
+/**
+ * A number as a field shows it: of key frames a line's values between them have many digits.
+ * @param {StyleKey} key @param {State} state
+ * @returns {KeyValue}
+ */
+function shownValue(key, state) {
+  const value = state.keys[key.name] ?? fileValue(key, state);
+  return typeof value === 'number' && key.name in state.key_frames ? Number(value.toPrecision(4)) : value;
 }
 
 /**
@@ -121,7 +131,7 @@ export class KeysPanel {
       if (isLinear || !direction) return;
       event.preventDefault();
       // The number beside it follows a little later, while keys repeat.
-      const {state} = this.store, now = Number(state.keys[key.name] ?? fileValue(key, state)) + direction * step;
+      const now = Number(shownValue(key, this.store.state)) + direction * step;
       this.change(key, clamp(Number(now.toFixed(6)), key.least ?? 0, key.most ?? 1), true);
     });
     number.addEventListener('change', () => {
@@ -173,7 +183,8 @@ export class KeysPanel {
 
   /** @param {StyleKey} key @param {KeyValue | null} value null: the file's @param {boolean} moving */
   change(key, value, moving) {
-    const isFile = value === fileValue(key, this.store.state);
+    const {state} = this.store;  // a key that changes over time is held by one value, whichever it is
+    const isFile = !(key.name in state.key_frames) && value === fileValue(key, state);
     void this.store.patch(
         {keys: {[key.name]: isFile ? null : value}}, {moving, gesture: moving ? `key ${key.name}` : ''});
   }
@@ -188,11 +199,12 @@ export class KeysPanel {
     /** @type {Record<string, number>} */
     const counts = {};
     for (const {key, row, reset, show} of this.controls.values()) {
-      const changed = key.name in state.keys;
+      const changed = key.name in state.keys, frames = state.key_frames[key.name];
       row.classList.toggle('changed', changed);
+      row.classList.toggle('moves', !!frames && !changed);
       reset.disabled = !changed;
-      reset.title = `Back to the file's: ${fileValue(key, state)}`;
-      show(state.keys[key.name] ?? fileValue(key, state));
+      reset.title = `Back to the file's: ${frames ?? fileValue(key, state)}`;
+      show(shownValue(key, state));
       if (changed) counts[key.group] = (counts[key.group] ?? 0) + 1;
     }
     for (const details of this.box.querySelectorAll('details')) {
@@ -222,6 +234,8 @@ export class KeysPanel {
 
   /** @param {StyleKey} key */
   explain(key) {
-    this.help.replaceChildren(make('b', {textContent: key.name}), ` ${key.help}`);
+    const frames = this.store.state.key_frames[key.name];
+    const moves = frames ? `; the file changes it over time: ${frames}` : '';
+    this.help.replaceChildren(make('b', {textContent: key.name}), ` ${key.help}${moves}`);
   }
 }

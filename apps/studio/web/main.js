@@ -5,7 +5,7 @@
 //                 data-gone while the server does not answer; data-compare (off | wipe | side | difference | flip);
 //                 data-command: the command line that was copied last
 //   #picture      the canvas with the picture, in its own pixels; #overlay: masks over it; #stage: takes the pointer
-//   #pick #status #problem #problem-text #gone #timing #busy: what the page says
+//   #pick #status #problem #problem-text #scene-warnings #gone #timing #busy: what the page says
 //   [data-key="transfer.threshold"]: a key's row, .changed where it differs; in it #key-transfer.threshold, the slider
 //                 [data-slider], and button.icon, its reset; #keys-reset resets all, #keys-find finds
 //   [data-style="oil"] input, [data-scene="snail"] input: choices; #camera #show #compare #beside: selects
@@ -29,7 +29,7 @@ import {Library} from './library.js';
 import {FinishPanel} from './finish.js';
 import {LightPanel} from './light.js';
 import {keepSteps, keepUnsent, keptSteps, keptUnsent} from './memory.js';
-import {announce, announceSoon, showBusy, showError, showGone, showProblem} from './messages.js';
+import {announce, announceSoon, showBusy, showError, showGone, showProblem, showWarnings} from './messages.js';
 import {OrbitControl} from './orbit.js';
 import {OutputPanel} from './output.js';
 import {Picker} from './pick.js';
@@ -161,6 +161,7 @@ function update(state) {
 /** @param {string} name @param {any} data */
 async function onEvent(name, data) {
   if (name === 'busy') showBusy(data);
+  if (name === 'warnings') showWarnings(data);
   if (name === 'problem') {
     showProblem(data);
     if (!data) frames.renew();
@@ -192,6 +193,7 @@ async function onFound() {
   const state = await store.refresh();
   showGone(null);
   showProblem(state.problem);
+  showWarnings(state.warnings);
   if (!hasStarted) await start();
   const lost = known && lostSettings(state, known);
   // The page was reloaded before the server had answered.
@@ -219,6 +221,9 @@ async function start() {
   byId('undo', HTMLElement).addEventListener('click', () => step(true));
   byId('redo', HTMLElement).addEventListener('click', () => step(false));
   byId('problem-close', HTMLElement).addEventListener('click', () => showProblem(null));
+  byId('scene-warnings-close', HTMLElement).addEventListener('click', () => {
+    byId('scene-warnings', HTMLElement).hidden = true;
+  });
   listenToKeys(
       shortcutTable({view, orbit, compare, timeline, keeper, brush, assigner, picker, shows: kShows, setShow, step}));
   const run = JSON.stringify(store.state.first), steps = keptSteps(run);

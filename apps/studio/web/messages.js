@@ -32,6 +32,14 @@ export function showProblem(problem) {
   banner.hidden = !problem;
 }
 
+/** @param {string[]} warnings of the scene, as the command line says them; those that were hidden stay so */
+export function showWarnings(warnings) {
+  const banner = byId('scene-warnings', HTMLElement), text = warnings.join('\n');
+  if (byId('scene-warnings-text', HTMLElement).textContent === text) return;
+  byId('scene-warnings-text', HTMLElement).textContent = text;
+  banner.hidden = !text;
+}
+
 /** @param {unknown} error */
 export function showError(error) {
   if (isAbort(error)) return;

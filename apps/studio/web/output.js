@@ -1,5 +1,5 @@
 // Size, quality, and the random seed of the picture.
-import {byId, fillSelect} from './dom.js';
+import {byId, fillSelect, showNumber} from './dom.js';
 
 /** @typedef {import('./api.js').State} State */
 
@@ -51,18 +51,13 @@ export class OutputPanel {
   /** @param {State} state */
   update(state) {
     const [width, height] = state.size, own = `${width}×${height}`;
-    setUnlessTyped(this.width, width);
-    setUnlessTyped(this.height, height);
-    setUnlessTyped(this.seed, state.seed);
-    if (state.budget_ms) setUnlessTyped(this.budget, state.budget_ms);
+    showNumber(this.width, width);
+    showNumber(this.height, height);
+    showNumber(this.seed, state.seed);
+    if (state.budget_ms) showNumber(this.budget, state.budget_ms);
     const sizes = kSizes.includes(own) ? kSizes : [...kSizes, own];
     fillSelect(this.preset, sizes.map((size) => ({value: size, text: size})), own);
     this.quality.value = state.budget_ms ? 'budget' : state.quality;
     byId('budget-field', HTMLElement).hidden = !state.budget_ms;
   }
-}
-
-/** @param {HTMLInputElement} input @param {number} value */
-function setUnlessTyped(input, value) {
-  if (document.activeElement !== input) input.value = String(value);
 }

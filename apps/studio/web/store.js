@@ -232,6 +232,17 @@ export class Store {
     }
   }
 
+  /**
+   * The style was saved under another name, which is chosen now: undo chooses the one before, with its changed keys.
+   * @param {string} copy @param {string} style @param {Record<string, any>} keys
+   */
+  wentTo(copy, style, keys) {
+    const before = {style, keys: {...keys}}, after = {style: copy};
+    this.undoSteps.push({before, after, style, gesture: '', time: performance.now()});
+    this.redoSteps = [];
+    this.set(this.state);
+  }
+
   /** @returns {Changes | undefined} what the server has not answered: if the page goes now, it may be lost */
   get unsent() {
     const waiting = [this.onItsWay ?? {}, ...this.queue.map(({changes}) => changes)];

@@ -151,7 +151,7 @@ export class Strokes {
     if (!step) return false;
     context(this.canvas).putImageData(step.before, step.x, step.y);
     this.undone.push(step);
-    this.isSaved = false;
+    this.isSaved = this.isEmpty;
     return true;
   }
 

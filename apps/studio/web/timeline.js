@@ -1,7 +1,13 @@
 // Frames of an animation: scrub, play, loop.
-import {byId, clamp, fillTrack} from './dom.js';
+import {byId, clamp, fillTrack, showNumber} from './dom.js';
 
 /** @typedef {import('./api.js').State} State */
+
+/**
+ * Where no frame is chosen, a .blend is shown at the one that it was saved at.
+ * @param {State} state
+ */
+function shownFrame({animation, frame}) { return frame ?? animation?.saved ?? animation?.first ?? 0; }
 
 export class Timeline {
   /** @param {import('./store.js').Store} store */
@@ -30,19 +36,19 @@ export class Timeline {
   }
 
   toggle() {
-    const {animation, frame} = this.store.state;
+    const {animation} = this.store.state;
     if (!animation) return;
     this.playing = !this.playing;
     this.show();
     if (!this.playing) return;
-    const isAtEnd = frame === animation.last;
-    this.from = {frame: isAtEnd ? animation.first : frame ?? animation.first, time: performance.now()};
+    const now = shownFrame(this.store.state), isAtEnd = now >= animation.last;
+    this.from = {frame: isAtEnd ? animation.first : now, time: performance.now()};
     requestAnimationFrame(() => this.tick());
   }
 
   /** Time leads: pictures that come late are left out. */
   tick() {
-    const {animation, frame: shown} = this.store.state;
+    const {animation} = this.store.state;
     if (!this.playing) return;
     if (!animation) {
       this.playing = false;
@@ -52,18 +58,18 @@ export class Timeline {
     const count = animation.last - animation.first + 1;
     const passed = Math.floor((performance.now() - this.from.time) / 1000 * animation.fps);
     let frame = this.from.frame + passed;
-    if (frame > animation.last) {
-      if (!this.loop.checked) {
+    const isPast = frame > animation.last && !this.loop.checked;
+    if (isPast) frame = animation.last;
+    else if (frame > animation.last) frame = animation.first + (frame - animation.first) % count;
+    // One change at a time: the next is sent when the server has taken the last.
+    if (!this.store.sending) {
+      if (frame !== shownFrame(this.store.state)) {
+        void this.store.patch({frame}, {moving: true, gesture: 'play', undoable: false});
+      }
+      if (isPast) {
         this.playing = false;
         this.show();
-        frame = animation.last;
-      } else {
-        frame = animation.first + (frame - animation.first) % count;
       }
-    }
-    // One change at a time: the next is sent when the server has taken the last.
-    if (frame !== shown && !this.store.sending) {
-      void this.store.patch({frame}, {moving: true, gesture: 'play', undoable: false});
     }
     if (this.playing) requestAnimationFrame(() => this.tick());
   }
@@ -77,7 +83,7 @@ export class Timeline {
 
   /** @param {State} state */
   update(state) {
-    const {animation, frame} = state;
+    const {animation} = state;
     byId('timeline', HTMLElement).hidden = !animation;
     if (!animation) {
       this.playing = false;
@@ -88,10 +94,10 @@ export class Timeline {
       input.min = String(animation.first);
       input.max = String(animation.last);
     }
-    const now = String(frame ?? animation.first);
-    this.slider.value = now;
+    const now = shownFrame(state);
+    this.slider.value = String(now);
     fillTrack(this.slider);
-    if (document.activeElement !== this.number) this.number.value = now;
+    if (!this.playing || document.activeElement !== this.number) showNumber(this.number, now);
     byId('frame-last', HTMLElement).textContent = `of ${animation.last} · ${Number(animation.fps.toFixed(3))} fps`;
   }
 }

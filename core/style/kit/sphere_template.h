@@ -53,8 +53,8 @@ double PaleGrey(const std::uint16_t* lit);
 Picture DrawTemplate(const KitLight& light);
 
 // Whether a picture still shows the template's marks, margin included: most of its fiducials, also of a template that
-// was scaled or mirrored as a whole, or the four crosses of small templates and of those that were drawn before there were
-// fiducials. Templates of spheres smaller than 63 pixels are not recognised.
+// was scaled or mirrored as a whole, or the four crosses of small templates and of those that were drawn before there
+// were fiducials. Templates of spheres smaller than 63 pixels are not recognised.
 bool LooksLikeTemplate(const Picture& picture);
 
 // The template with crosses instead of fiducials, of earlier versions: a picture equal to it holds no paint.

@@ -24,7 +24,8 @@ struct FoundMark {
 inline constexpr int kCoarsestSearch = 900, kFinestSearch = 7200;
 
 // The marks by place from the top; an id may occur twice if two sheets are in the picture. `picture` is opaque: alpha
-// is ignored. `finest` is the last scale that is searched. Never fails: a picture without marks, or a mirrored one, gives none. Deterministic.
+// is ignored. `finest` is the last scale that is searched. Never fails: a picture without marks, or a mirrored one,
+// gives none. Deterministic.
 std::vector<FoundMark> FindMarks(const Picture& picture, int finest = kFinestSearch);
 
 }  // namespace scumble

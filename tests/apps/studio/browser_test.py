@@ -105,6 +105,13 @@ class Pictures(Page):
         self.settled()
         comic = self.pixels()
         self.assertNotEqual(comic, before)
+        size = self.browser.get_window_size()
+        self.browser.set_window_size(1290, size["height"])
+        self.until(lambda: self.js("return innerWidth") == 1290, "a narrow window")
+        edges = self.js("return ['status', 'middle'].map((id) => "
+                        "document.getElementById(id).getBoundingClientRect().right)")
+        self.browser.set_window_size(size["width"], size["height"])
+        self.assertLess(edges[0], edges[1], "the line below the picture ends before the right column")
         self.find("#dial-lines").send_keys(Keys.HOME)
         self.until(lambda: self.state()["finish"]["lines"] == 0, "no lines")
         self.settled()
@@ -189,6 +196,30 @@ class Changing(Page):
         self.find("#redo").click()
         self.until(lambda: self.threshold() is None, "the saved value")
 
+    def test_key_frames_stay_when_their_key_is_changed(self):
+        file = self.folder / "my" / "style.toml"
+        lines = ["threshold = [[1, 0.02], [24, 0.6]]" if line.startswith("threshold =") else line
+                 for line in file.read_text().splitlines()]
+        file.write_text("\n".join(lines))
+        row = self.find("[data-key='transfer.threshold']")
+        self.until(lambda: "moves" in row.get_attribute("class"), "a key that changes over time")
+        self.settled()
+        self.assertEqual(self.find("#key-transfer\\.threshold").get_attribute("value"), "0.02")
+        before = self.pixels()
+        self.set_threshold(0.3)
+        self.find("#save").click()
+        self.until(lambda: "[[1, 0.02], [24, 0.6]]" in self.find("#save-as-error").text, "why it is not saved")
+        name = self.find("#save-as-name")
+        name.send_keys(Keys.CONTROL + "a")
+        name.send_keys("still", Keys.ENTER)
+        self.until(lambda: self.state()["style"] == "still", "the copy")
+        self.find("#undo").click()
+        self.until(lambda: (self.state()["style"], self.threshold()) == ("my", 0.3), "the style with the changed key")
+        self.find("#undo").click()
+        self.until(lambda: self.threshold() is None, "the key frames")
+        self.settled()
+        self.assertEqual(self.pixels(), before)
+
     def test_a_save_leaves_the_undo_of_other_styles_alone(self):
         self.choose("style", "ink")
         self.set_threshold(0.5)
@@ -243,6 +274,12 @@ class Changing(Page):
         self.assertEqual(typed("#size-width", "0"), "320")
         self.assertEqual(typed("#seed", "-5"), "0")
         self.assertEqual(self.state()["size"], [320, 180])
+        width = self.find("#size-width")
+        width.send_keys(Keys.CONTROL + "a")
+        width.send_keys("400", Keys.ENTER)
+        self.until(lambda: self.state()["size"] == [400, 180], "another size")
+        width.send_keys(Keys.CONTROL + "z")
+        self.until(lambda: width.get_attribute("value") == "320", "the size from before in the field that was typed in")
         Select(self.find("#quality")).select_by_value("budget")
         self.until(lambda: self.state()["budget_ms"] == 50, "a budget")
         self.assertEqual(typed("#budget", "30"), "30")
@@ -348,9 +385,10 @@ class Lasting(Page):
 
     def test_the_timeline(self):
         before = self.pixels()
+        self.assertEqual(self.state()["frame"], 0)
         slider = self.find("#frame-slider")
         slider.send_keys(Keys.ARROW_RIGHT * 6)
-        self.until(lambda: self.state()["frame"] is not None, "a frame")
+        self.until(lambda: self.state()["frame"] > 0, "a frame")
         self.settled()
         self.assertNotEqual(self.pixels(), before)
         frame = self.state()["frame"]
@@ -358,11 +396,11 @@ class Lasting(Page):
         self.until(lambda: self.state()["frame"] != frame, "another frame")
         self.find("#play").click()
         for _ in range(20):
-            if self.state()["frame"] is None:
+            if self.state()["frame"] == 0:
                 break
             self.find("#undo").click()
             self.settled()
-        self.assertIsNone(self.state()["frame"])
+        self.assertEqual(self.state()["frame"], 0)
         self.assertEqual(self.pixels(), before)
 
     def test_a_reload_loses_nothing_also_of_a_new_server(self):
@@ -418,6 +456,10 @@ class Lasting(Page):
         before, bytes_before = self.pixels(), file.read_bytes()
         self.find("#paint").click()
         self.until(lambda: self.js("return document.body.hasAttribute('data-paint')"), "the brush")
+        self.drag(self.find("#exemplar"), 60, 40)
+        self.until(lambda: self.find("#paint-save").is_enabled(), "a stroke")
+        self.find("#brush-undo").click()
+        self.assertFalse(self.find("#paint-save").is_enabled(), "there is nothing to save")
         self.drag(self.find("#exemplar"), 60, 40)
         self.until(lambda: self.find("#paint-save").is_enabled(), "a stroke")
         self.find("#paint-save").click()

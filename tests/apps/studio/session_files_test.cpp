@@ -1,6 +1,8 @@
 // The calls of apps/studio/api.md that write files, and files that others write.
 #include <gmock/gmock.h>
 
+#include <atomic>
+
 #include "apps/studio/session/lane.h"
 #include "core/io/file/zip_archive.h"
 #include "core/io/picture/open_raster.h"
@@ -62,6 +64,28 @@ TEST_F(SessionTest, SaveChangesOneLine) {
   EXPECT_EQ(State()["file_keys"]["transfer.threshold"], 0.5);
   ASSERT_EQ(Call("PATCH", "/api/state", {{"style", "oil"}}).status, 200);
   EXPECT_EQ(Call("POST", "/api/save", json::object()).status, 403);
+}
+
+// One value would take the place of all.
+TEST_F(SessionTest, SaveKeepsKeyFrames) {
+  const fs::path toml = folder / "mine" / "style.toml";
+  const std::string text = "[transfer]\nthreshold = [[1, 0.25], [5, 0.75]]\n\n[[exemplar]]\nimage = \"art/lit.png\"\n";
+  Write(toml, text);
+  Open({(folder / "mine").string()}, kSource + "/scenes/toys.glb");
+  const auto in_file = [&](int frame) {
+    EXPECT_EQ(Call("PATCH", "/api/state", {{"frame", frame}}).status, 200);
+    return State()["file_keys"]["transfer.threshold"].get<double>();
+  };
+  EXPECT_EQ(in_file(0), 0.25);
+  EXPECT_EQ(in_file(3), 0.5);
+  EXPECT_EQ(State()["key_frames"], json({{"transfer.threshold", "[[1, 0.25], [5, 0.75]]"}}));
+  ASSERT_EQ(Call("PATCH", "/api/state", {{"keys", {{"transfer.threshold", 0.25}}}}).status, 200);
+  const HttpResponse refused = Call("POST", "/api/save", json::object());
+  EXPECT_EQ(refused.status, 403);
+  EXPECT_THAT(refused.body, testing::AllOf(HasSubstr("[[1, 0.25], [5, 0.75]]"), HasSubstr("as a new one")));
+  EXPECT_EQ(TextOf(toml), text);
+  EXPECT_EQ(Call("POST", "/api/save-as", {{"name", "other"}}).status, 200);
+  EXPECT_EQ(State()["key_frames"], json::object());
 }
 
 TEST_F(SessionTest, SaveAsMakesAWholeStyle) {
@@ -256,6 +280,29 @@ TEST_F(SessionTest, ALaneKeepsNoError) {
   const auto painted = lane.Paint(job);
   ASSERT_TRUE(painted.ok()) << painted.error().message;
   EXPECT_EQ(*lane.Paint(job), *painted) << "a picture is kept";
+}
+
+// Two pages that show different pictures of one state would otherwise cancel each other for ever.
+TEST_F(SessionTest, ALaneLetsOtherClientsPicturesEnd) {
+  for (const std::string second : {"another page", "this page"}) {
+    std::atomic<int> begun = 0;
+    context.on_progress = [&](const std::string&) -> Progress {
+      // While the first one is painted, the second one is asked for.
+      if (begun++ == 0) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      return [](double) { return true; };
+    };
+    Lane lane(context);
+    PictureJob job;
+    job.key = "picture", job.scene = options.scene, job.style.style = (folder / "mine").string();
+    PictureJob other = job;
+    other.key = "chunks", other.picture.show = FindExplanation("chunks");
+    bool first_is_painted = false;
+    std::thread first([&] { first_is_painted = lane.Paint(job, "this page").ok(); });
+    EXPECT_TRUE(Comes([&] { return begun > 0; }));
+    EXPECT_TRUE(lane.Paint(other, second).ok());
+    first.join();
+    EXPECT_EQ(first_is_painted, second == "another page");
+  }
 }
 
 }  // namespace

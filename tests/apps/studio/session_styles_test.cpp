@@ -131,6 +131,12 @@ TEST_F(SessionTest, AScenesOwnStylesAreListedAndKeepTheirKeys) {
   ASSERT_EQ(Call("PATCH", "/api/state", {{"keys", {{"transfer.scale", 2.0}}}}).status, 200);
   EXPECT_EQ(PictureOf(Frame().body).rgba, PictureOf(before).rgba) << "the key is of the other style";
   EXPECT_THAT(Call("POST", "/api/export", {{"what", "command"}}).body, HasSubstr("mine:transfer.scale=2"));
+  const std::string whole = TextOf(scene);
+  Write(scene, "half");
+  EXPECT_TRUE(Comes([&] { return !State()["problem"].is_null(); }));
+  EXPECT_THAT(Call("POST", "/api/export", {{"what", "command"}}).body, HasSubstr("mine:transfer.scale=2"));
+  Write(scene, whole);
+  EXPECT_TRUE(Comes([&] { return State()["problem"].is_null(); }));
   // What is assigned wins over what the scene asks for.
   ASSERT_EQ(Call("PATCH", "/api/state", {{"assignments", json::array({{{"name", "Tile"}, {"style", "mine"}}})}}).status,
             200);

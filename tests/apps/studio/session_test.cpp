@@ -179,6 +179,17 @@ TEST_F(SessionTest, ShowPicturesAreTheProgramsOwn) {
   EXPECT_EQ(Call("GET", "/api/frame", nullptr, {{"show", "nothing"}}).status, 400);
 }
 
+TEST_F(SessionTest, AnAnimationBeginsAtItsFirstFrame) {
+  EXPECT_EQ(State()["frame"], nullptr) << "nothing moves";
+  ASSERT_EQ(Call("PATCH", "/api/state", {{"scene", "toys"}}).status, 200);
+  EXPECT_EQ(State()["frame"], 0);
+  const std::string command = json::parse(Call("POST", "/api/export", {{"what", "command"}}).body)["command"];
+  EXPECT_NE(command.find("--frame 0"), command.npos) << command;
+  const std::string begun = Frame().body;
+  ASSERT_EQ(Call("PATCH", "/api/state", {{"frame", 0}}).status, 200);
+  EXPECT_EQ(Frame().body, begun);
+}
+
 TEST_F(SessionTest, AFrameOfAnAnimationIsTheCommandLines) {
   ASSERT_EQ(Call("PATCH", "/api/state", {{"scene", "toys"}, {"frame", 13}}).status, 200) << State();
   const HttpResponse exported = Call("POST", "/api/export", {{"what", "picture"}, {"format", "png"}});
