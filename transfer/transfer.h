@@ -63,8 +63,8 @@ struct PrepareOptions {
 
 // Resizes exemplars and paper for outputs of `output_height` pixels; several exemplars become one size, the first's.
 // Fails if an exemplar is empty; if a sphere's picture is not square; if guides do not fit their picture, or those of
-// one style's exemplars are not of one scene; if one lacks a layer that has a weight; if the rim takes more than half of
-// a sphere's radius; or if a setting is outside its range in core/image/style.h.
+// one style's exemplars are not of one scene; if one lacks a layer that has a weight; if the rim takes more than half
+// of a sphere's radius; or if a setting is outside its range in core/image/style.h.
 Expected<PreparedStyle> Prepare(const Style& style, int output_height, const PrepareOptions& options = {});
 
 // The luminance of the light that an exemplar is painted for. The style's value, else the mean of the luminance layer
