@@ -14,8 +14,8 @@ namespace scumble {
 // does one of which the style says so (`fills`).
 //
 // kInput for a whole template, in its place (LooksLikeTemplate) or elsewhere (FindTemplate), for an ellipse, for
-// several spheres, and for paint that clearly does not fill the picture and shows no clear sphere; the message says why, as
-// far as it can be told, and what to do.
+// several spheres, and for paint that clearly does not fill the picture and shows no clear sphere; the message says
+// why, as far as it can be told, and what to do.
 Status PlaceSphere(Exemplar& exemplar);
 
 // What `cut` says, without the file's name.
