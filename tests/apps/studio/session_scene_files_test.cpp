@@ -46,6 +46,7 @@ TEST_F(SessionTest, ABufferThatIsAwayIsSeenWhenItIsBack) {
   Open({(folder / "mine").string()}, folder / "a.gltf");
   const HttpResponse first = Frame();
   ASSERT_EQ(first.status, 200) << first.body;
+  EXPECT_THAT(State()["objects"], ElementsAre("Tile"));
   fs::rename(folder / "a.bin", folder / "away");
   EXPECT_THAT(Await("problem")["message"].get<std::string>(), HasSubstr("a.bin"));
   EXPECT_THAT(State()["objects"], ElementsAre("Tile")) << "as long as the page still shows it";
