@@ -145,7 +145,7 @@ Status CheckFiles(RunInputs& files, const PictureRequest& picture, const std::op
 FilesCheck CheckOfSceneStyles(RunInputs& files, const PictureRequest& picture, const std::optional<Sequence>& sequence,
                               const StyleSet& styles) {
   return [&]() -> Status {
-    if (!files.KnowsStyles(styles)) SCUMBLE_RETURN_IF_ERROR(CheckFiles(files, picture, sequence, styles));
+    if (!files.IsChecked(&styles)) SCUMBLE_RETURN_IF_ERROR(CheckFiles(files, picture, sequence, styles));
     return CheckLayersWanted({picture.show_finish, !picture.layers_out.empty()}, AllPasses(styles));
   };
 }

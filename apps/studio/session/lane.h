@@ -9,6 +9,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "pipeline/quality/budget_choice.h"
 #include "pipeline/requests.h"
@@ -40,6 +41,9 @@ class Lane {
 
   // What Workspace::Describe says, once nothing is painted.
   Expected<SceneDescription> Describe(const SceneRequest& scene, std::optional<int> frame);
+
+  // What Workspace::SceneFiles says.
+  std::vector<std::string> SceneFiles();
 
   void Stop();  // cancels, now and from now on
 

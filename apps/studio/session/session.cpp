@@ -294,10 +294,11 @@ void Session::State::WatchFilesOf(const Moment& moment, std::chrono::system_cloc
     if (watched == belongs) return;
     watched = belongs;
   }
-  const Expected<SceneDescription> described = LaneOf(finals, job).Describe(job.scene, job.picture.frame);
-  std::vector<std::string> files = {job.scene.scene};
+  Lane& lane = LaneOf(finals, job);
+  const Expected<SceneDescription> described = lane.Describe(job.scene, job.picture.frame);
+  std::vector<std::string> files = lane.SceneFiles();
+  files.push_back(job.scene.scene);
   if (described) {
-    files = described->files;
     files.insert(files.end(), described->style_files.begin(), described->style_files.end());
     // The names in a folder count only where a file may be missing.
     std::erase_if(files, [](const std::string& file) {
