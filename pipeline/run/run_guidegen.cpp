@@ -75,7 +75,7 @@ Status CheckFiles(RunInputs& files, const GuidegenRequest& request, const std::o
                   const std::optional<StyleSet>& styles) {
   if (styles) files.ReadsStyles(*styles);
   SCUMBLE_ASSIGN(const auto outputs, NamesOf(request.output, sequence));
-  return files.CheckOutputs(outputs);
+  return files.CheckOutputs(outputs, "-o", sequence && sequence->resume);
 }
 
 }  // namespace

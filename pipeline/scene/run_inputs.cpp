@@ -91,7 +91,7 @@ void RunInputs::ReadsStyles(const StyleSet& styles) {
   }
 }
 
-Status RunInputs::CheckOutputs(std::span<const std::string> outputs, const std::string& option) {
+Status RunInputs::CheckOutputs(std::span<const std::string> outputs, const std::string& option, bool resumes) {
   checked_ = inputs_.size();
   for (const std::string& output : outputs) {
     const auto identity = IdentityOf(output);
@@ -102,9 +102,14 @@ Status RunInputs::CheckOutputs(std::span<const std::string> outputs, const std::
     return UsageError(option + " " + output + " would overwrite " + input.what + also + ": give another name");
   }
   std::error_code failed;
-  for (std::size_t i = 0; i < outputs.size(); ++i) {
-    const bool look = i == 0 || fs::is_symlink(outputs[i], failed) || fs::is_directory(outputs[i], failed);
-    if (look) SCUMBLE_RETURN_IF_ERROR(CheckWritable(outputs[i]));
+  bool knows_folder = false;
+  for (const std::string& output : outputs) {
+    const bool is_protected = IsWriteProtected(output);
+    if (is_protected && resumes) continue;
+    const bool look =
+        !knows_folder || is_protected || fs::is_symlink(output, failed) || fs::is_directory(output, failed);
+    if (look) SCUMBLE_RETURN_IF_ERROR(CheckWritable(output));
+    knows_folder = true;
   }
   return Ok();
 }

@@ -19,8 +19,8 @@ class RunInputs {
   // A file that the run reads; `what` is for the message: "the guides". Empty names and files that are not there
   // are passed over; reading them is an error later.
   void Reads(const std::string& what, const std::string& path);
-  // A scene's file. What else the scene consists of is known when it is loaded: the listener, for SceneRequest::on_file,
-  // adds that. It refers to this.
+  // A scene's file. What else the scene consists of is known when it is loaded: the listener, for
+  // SceneRequest::on_file, adds that. It refers to this.
   [[nodiscard]] FileListener ReadsScene(const std::string& scene);
   // Style files, exemplars, their guides, paper: of every style in the set.
   void ReadsStyles(const StyleSet& styles);
@@ -33,8 +33,8 @@ class RunInputs {
 
   // kUsage where an output is one of these files, under whatever name or link; kOutput where it cannot be written, its
   // folder is missing, or it is a folder. The outputs of a range are in one folder. Nothing is left behind.
-  // `option` is for the message.
-  Status CheckOutputs(std::span<const std::string> outputs, const std::string& option = "-o");
+  // `option` is for the message. With `resumes`, write-protected outputs pass: they may be kept.
+  Status CheckOutputs(std::span<const std::string> outputs, const std::string& option = "-o", bool resumes = false);
   Status CheckOutput(const std::string& output) { return CheckOutputs(std::span(&output, 1)); }
 
  private:
