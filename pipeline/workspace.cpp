@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/filter/more_workers.h"
 #include "core/io/library.h"
 #include "pipeline/file_stamp.h"
 #include "pipeline/frame/paint_picture.h"
@@ -104,6 +105,7 @@ std::string TextOf(const StyleRequest& request) {
 
 Status CheckArguments(const SceneRequest& scene, std::optional<int> frame, bool motion = false) {
   SCUMBLE_RETURN_IF_ERROR(CheckSceneRequest(scene));
+  SCUMBLE_RETURN_IF_ERROR(CheckFrame(frame));
   return frame ? Ok() : CheckAtRest(scene, motion);
 }
 
@@ -140,12 +142,13 @@ struct Workspace::State {
   enum class Call { kNone, kRuns, kCancelled };
   std::atomic<Call> call = Call::kNone;
   struct Running {  // while it lives, a call runs
-    explicit Running(State& of) : state(of) {
+    explicit Running(State& of) : state(of), workers(of.context.threads) {
       SetIoThreads(state.context.threads);
       state.call = Call::kRuns;
     }
     ~Running() { state.call = Call::kNone; }
     State& state;
+    const MoreWorkers workers;
   };
   WorkspaceCounters counters;
 
