@@ -29,7 +29,7 @@ MissingNormals MissingNormalsOf(const LoadOptions& options) {
   return MissingNormals(degrees);
 }
 
-// on_file, if only one that does nothing; it is told of the scene's file.
+// options.on_file, or a listener that does nothing. The scene's own file is told of first.
 FileListener ListenerOf(const std::filesystem::path& path, const LoadOptions& options) {
   if (!options.on_file) return [](const std::filesystem::path&) {};
   options.on_file(path);

@@ -93,6 +93,7 @@ void PassOnNotes(const Scene& scene, const std::string& file, const RunContext& 
 
 Status CheckSceneRequest(const SceneRequest& request) {
   SCUMBLE_RETURN_IF_ERROR(CheckScene(request.scene));
+  SCUMBLE_RETURN_IF_ERROR(CheckFrame(request.blender.frame));
   if (IsBlenderScene(request.scene)) {
     if (request.auto_smooth_degrees) {
       return UsageError("--auto-smooth is for files that lack normals; Blender gives those of " + request.scene +
