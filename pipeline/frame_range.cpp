@@ -75,6 +75,11 @@ Expected<Part> ParsePart(const std::string& text, const std::string& part) {
 
 }  // namespace
 
+Status CheckFrame(std::optional<int> frame) {
+  if (!frame || (*frame >= -kMaxFrame && *frame <= kMaxFrame)) return Ok();
+  return UsageError(fmt::format("frame {}: frames go from {} to {}", *frame, -kMaxFrame, kMaxFrame));
+}
+
 Expected<std::vector<int>> ParseFrames(const std::string& text) {
   std::vector<int> frames;
   std::unordered_set<int> seen;

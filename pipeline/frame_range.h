@@ -13,6 +13,9 @@ namespace scumble {
 inline constexpr int kMaxFrame = 999'999'999;         // frame numbers are -kMaxFrame … kMaxFrame
 inline constexpr std::size_t kMaxFrames = 1'000'000;  // that may be named, those that come again too
 
+// Ok, or a kUsage error where there is a number out of range.
+Status CheckFrame(std::optional<int> frame);
+
 // "7", "1-24", "3,5-10", "12-24x2" (every second), "10-1" or "10-1x-1" (backwards), "-5--1" (negative numbers), as
 // oiiotool, Nuke and fileseq write them. In the order given; a frame that comes again counts once. A usage error says
 // what is wrong: fileseq's y and : and Blender's .. are refused by name.

@@ -8,6 +8,7 @@
 
 #include "core/image/guides.h"
 #include "core/io/picture_file.h"
+#include "pipeline/frame_range.h"
 #include "transfer/upsample_guides.h"
 
 namespace scumble {
@@ -47,6 +48,7 @@ bool HasEnding(const std::string& path, std::initializer_list<const char*> endin
 }
 
 Status CheckPictureRequest(const PictureRequest& request) {
+  SCUMBLE_RETURN_IF_ERROR(CheckFrame(request.frame));
   if (!request.layers_out.empty() && request.output.empty()) {
     return UsageError("--layers-out " + request.layers_out + ": it goes with a picture, give -o FILE too");
   }

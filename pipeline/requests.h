@@ -14,6 +14,7 @@
 #include "core/style/style_file.h"
 #include "finish/finish.h"
 #include "guidegen/guidegen.h"
+#include "guidegen/load/file_listener.h"
 #include "guidegen/scene/framing.h"
 #include "measure/mosaic/explain.h"
 #include "pipeline/frame_rate.h"
@@ -67,6 +68,7 @@ struct SceneRequest {
   BlenderRequest blender;                     // for .blend scenes
   std::optional<double> auto_smooth_degrees;  // of normals that the file lacks, as LoadOptions has it
   std::string animation;                      // of a glTF file with several, as AnimationOptions has it
+  FileListener on_file = nullptr;             // what a .blend names is told when it has been exported; null: nobody
   std::optional<FrameRate> fps;               // empty: a .blend's own, otherwise FrameRate()
   // Light-path layers, as in GuidegenOptions.
   int samples = GuidegenOptions().samples;

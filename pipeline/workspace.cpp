@@ -6,12 +6,14 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <set>
 #include <utility>
 #include <vector>
 
+#include "core/filter/more_workers.h"
 #include "core/io/library.h"
 #include "pipeline/file_stamp.h"
 #include "pipeline/frame/paint_picture.h"
@@ -28,11 +30,8 @@
 namespace scumble {
 namespace {
 
-std::string StampsOf(const std::vector<std::string>& paths) {
-  std::string text;
-  for (const std::string& path : paths) text += StampOf(path) + "\n";
-  return text;
-}
+// Stamps of files, by path.
+using FileStamps = std::map<std::string, std::string>;
 
 // Each name once, in their order.
 class NameList {
@@ -47,16 +46,9 @@ class NameList {
   std::vector<std::string> names_;
 };
 
-std::vector<std::string> SceneFiles(const std::string& scene) {
-  RunInputs files;
-  files.ReadsScene(scene);
-  return files.Inputs();
-}
-
-std::string SceneStamps(const std::string& scene) { return StampsOf(SceneFiles(scene)); }
-
 // What the choice of a step depends on, besides the styles. The view and the frame are taken not to matter.
-std::string ChoiceText(const BudgetRequest& budget, const SceneRequest& scene, const PictureRequest& picture) {
+std::string ChoiceText(const BudgetRequest& budget, const SceneRequest& scene, const PictureRequest& picture,
+                       const FileStamps& scene_stamps) {
   if (!budget.chooses()) return "";
   std::string text = fmt::format("{} {} {}; {}; {} {}; {} {} {} {}", budget.quality ? int(*budget.quality) : -1,
                                  budget.budget_ms, budget.guides_are_fixed, SizeToText(scene.size), scene.samples,
@@ -68,35 +60,34 @@ std::string ChoiceText(const BudgetRequest& budget, const SceneRequest& scene, c
   SceneRequest seen = scene;
   seen.camera.clear(), seen.view.reset(), seen.seed = 0;
   if (seen.light) seen.light = LightAngles();  // its direction does not matter, that it is one sun does
-  return text + fmt::format("; {}; isa {}; half {}; field {}\n{}", GuideSettings(seen), scene.isa, scene.half,
-                            picture.KeepsField(), SceneStamps(scene.scene));
+  text +=
+      fmt::format("; {}; isa {}; half {}; field {}", GuideSettings(seen), scene.isa, scene.half, picture.KeepsField());
+  for (const auto& [path, stamp] : scene_stamps) text += "\n" + stamp;
+  return text;
 }
 
-// By path.
-std::map<std::string, std::string> StyleStamps(const StyleSet& styles) {
+FileStamps StyleStamps(const StyleSet& styles) {
   RunInputs files;
   files.ReadsStyles(styles);
   std::vector<std::string> paths = files.Inputs();
   for (const std::string& one : styles.options.assigned) {
     if (one.size() > 1 && one.front() == '@') paths.push_back(one.substr(1));
   }
-  std::map<std::string, std::string> stamps;
+  FileStamps stamps;
   for (const std::string& path : paths) stamps[path] = StampOf(path);
   return stamps;
 }
 
-std::map<std::string, std::string> StampsNow(const std::map<std::string, std::string>& of) {
-  std::map<std::string, std::string> now;
+FileStamps StampsNow(const FileStamps& of) {
+  FileStamps now;
   for (const auto& [path, stamp] : of) now[path] = StampOf(path);
   return now;
 }
 
 // Of styles that were read since `begun`, when their files had the stamps `before`, as far as they were known. A file
 // that changed while it was read counts as another one: it is read again.
-std::map<std::string, std::string> StampsAsRead(const StyleSet& styles,
-                                                const std::map<std::string, std::string>& before,
-                                                std::chrono::system_clock::time_point begun) {
-  std::map<std::string, std::string> stamps = StyleStamps(styles);
+FileStamps StampsAsRead(const StyleSet& styles, const FileStamps& before, std::chrono::system_clock::time_point begun) {
+  FileStamps stamps = StyleStamps(styles);
   for (auto& [path, stamp] : stamps) {
     if (const auto known = before.find(path); known != before.end()) {
       stamp = known->second;
@@ -114,6 +105,7 @@ std::string TextOf(const StyleRequest& request) {
 
 Status CheckArguments(const SceneRequest& scene, std::optional<int> frame, bool motion = false) {
   SCUMBLE_RETURN_IF_ERROR(CheckSceneRequest(scene));
+  SCUMBLE_RETURN_IF_ERROR(CheckFrame(frame));
   return frame ? Ok() : CheckAtRest(scene, motion);
 }
 
@@ -150,17 +142,19 @@ struct Workspace::State {
   enum class Call { kNone, kRuns, kCancelled };
   std::atomic<Call> call = Call::kNone;
   struct Running {  // while it lives, a call runs
-    explicit Running(State& of) : state(of) {
+    explicit Running(State& of) : state(of), workers(of.context.threads) {
       SetIoThreads(state.context.threads);
       state.call = Call::kRuns;
     }
     ~Running() { state.call = Call::kNone; }
     State& state;
+    const MoreWorkers workers;
   };
   WorkspaceCounters counters;
 
   // The scene: loaded, then posed and seen.
   std::string scene_key;
+  FileStamps scene_stamps;                    // of all that it consists of, also where it could not be loaded
   std::optional<AnimatedScene> animation;     // none: the scene is Blender's
   std::string seen_key, pose_key;             // when and from where it is seen; the same with its light
   std::vector<std::string> texture_warnings;  // since the scene was loaded
@@ -175,7 +169,7 @@ struct Workspace::State {
   // The styles, and what was prepared of them.
   KeptPictures pictures;
   std::string style_text;
-  std::map<std::string, std::string> style_stamps;
+  FileStamps style_stamps;
   std::optional<StyleSet> styles, replaced;  // `replaced`: those that picture.prepared is of, where it is not `styles`
   PictureState picture;
   std::string over_stamp;       // of picture.over
@@ -196,7 +190,7 @@ struct Workspace::State {
   Expected<Choice> ChooseStep(const BudgetRequest& budget, SceneRequest scene, PictureRequest asked, StyleSet& set);
   void KeepPrepared();
   void CloseStylesOfScene();
-  Status LoadScene(const SceneRequest& request, std::optional<int> frame);
+  Status LoadScene(SceneRequest request, std::optional<int> frame);
   Status Pose(const SceneRequest& request, std::optional<int> frame, const LayersFor& layers_for);
   Expected<StaticScene> PoseNext(const SceneRequest& request, int frame) const;
   Status Cast(SceneRequest request, std::optional<int> frame, const LayersFor& layers_for, const Progress& progress);
@@ -217,7 +211,7 @@ Status Workspace::State::LoadStyles(StyleRequest request, const std::string& cho
                        return decoded;
                      }};
   const auto begun = std::chrono::system_clock::now();
-  const std::map<std::string, std::string> before = StampsNow(style_stamps);
+  const FileStamps before = StampsNow(style_stamps);
   SCUMBLE_ASSIGN(StyleSet loaded, OpenStyles(request, context));
   pictures.ForgetUnread();
   ++counters.styles_loaded;
@@ -256,7 +250,7 @@ void Workspace::State::KeepPrepared() {
   replaced.reset();
 }
 
-Status Workspace::State::LoadScene(const SceneRequest& request, std::optional<int> frame) {
+Status Workspace::State::LoadScene(SceneRequest request, std::optional<int> frame) {
   const bool blender = IsBlenderScene(request.scene);
   std::string text = request.scene + "\n" + request.animation + "\n";
   if (blender) {
@@ -265,11 +259,14 @@ Status Workspace::State::LoadScene(const SceneRequest& request, std::optional<in
   } else if (request.auto_smooth_degrees) {
     text += fmt::format("auto smooth {}\n", *request.auto_smooth_degrees);
   }
-  text += SceneStamps(request.scene);
-  if (text + (blender && posed ? StampsOf(posed->animation.files) : "") == scene_key) return Ok();
+  if (text == scene_key && scene_stamps == StampsNow(scene_stamps)) return Ok();
   scene_key.clear(), pose_key.clear(), guides_key.clear();
   rays.reset(), animation.reset(), posed.reset(), sphere_at_rest.reset(), sphere_at_start.reset();
-  texture_warnings.clear();
+  texture_warnings.clear(), scene_stamps.clear();
+  // Before a file is read: one that changes meanwhile is read again. Blender has read what it tells of.
+  request.on_file = [this](const std::filesystem::path& file) {
+    scene_stamps.try_emplace(file.string(), StampOf(file.string()));
+  };
   if (!blender) {
     SCUMBLE_ASSIGN(animation, AnimatedScene::Load(request.scene, {request.animation, LoadOptionsOf(request)}));
     PassOnNotes(animation->rest(), request.scene, context);
@@ -278,7 +275,6 @@ Status Workspace::State::LoadScene(const SceneRequest& request, std::optional<in
     const LayersFor none = [](const SceneStyleRequests&) -> Expected<LayerSet> { return LayerSet(); };
     SCUMBLE_ASSIGN(posed, OpenSceneAt(frame, request, none, context));
     own_lights = OwnLights::Of(posed->scene);
-    text += StampsOf(posed->animation.files);
   }
   ++counters.scenes_loaded;
   scene_key = text;
@@ -290,7 +286,7 @@ void Workspace::State::CloseStylesOfScene() {
   if (!styles || styles->wanted.empty()) return;
   CloseSceneStyles(*styles);
   styles->options.reading.room = RoomForStyles(context);
-  const std::map<std::string, std::string> left = StyleStamps(*styles);
+  const FileStamps left = StyleStamps(*styles);
   std::erase_if(style_stamps, [&](const auto& one) { return !left.count(one.first); });
   if (!replaced) picture.prepared.resize(std::min(picture.prepared.size(), styles->styles.size()));
   picture.hashes.clear(), picture.warned = false;
@@ -384,7 +380,8 @@ Expected<PaintedFrame> Workspace::State::Paint(SceneRequest scene, const StyleRe
   const Progress progress = context.StartProgress("stylize");
   SCUMBLE_RETURN_IF_ERROR(CheckArguments(scene, request.frame));
   budget.guides_are_fixed = budget.guides_are_fixed || request.upsample > 1;
-  SCUMBLE_RETURN_IF_ERROR(LoadStyles(style, ChoiceText(budget, scene, request),
+  if (budget.chooses() && !budget.quality) SCUMBLE_RETURN_IF_ERROR(LoadScene(scene, request.frame));
+  SCUMBLE_RETURN_IF_ERROR(LoadStyles(style, ChoiceText(budget, scene, request, scene_stamps),
                                      [&](StyleSet& set) { return ChooseStep(budget, scene, request, set); }));
   if (choice.made) {
     scene.samples = choice.samples, scene.samples_given = choice.samples_given;
@@ -479,8 +476,6 @@ Expected<SceneDescription> Workspace::State::Describe(const SceneRequest& scene,
   }
   SCUMBLE_ASSIGN(const SceneSphere sphere, SphereSeen(frame));
   description.eye = OrbitOf(sphere, posed->view.camera, double(scene.size.width) / scene.size.height);
-  description.files = SceneFiles(scene.scene);
-  description.files.insert(description.files.end(), blender.files.begin(), blender.files.end());
   description.style_requests = SceneStyleRequestsOf(animation ? animation->objects() : names.instances, names);
   for (const auto& [path, stamp] : style_stamps) description.style_files.push_back(path);
   for (const auto* warnings : {&names.warnings, &std::as_const(texture_warnings)}) {
@@ -517,6 +512,12 @@ Expected<std::shared_ptr<const GuideSet>> Workspace::Guides(const SceneRequest& 
 void Workspace::Cancel() {
   State::Call runs = State::Call::kRuns;
   state_->call.compare_exchange_strong(runs, State::Call::kCancelled);
+}
+
+std::vector<std::string> Workspace::SceneFiles() const {
+  std::vector<std::string> files;
+  for (const auto& [path, stamp] : state_->scene_stamps) files.push_back(path);
+  return files;
 }
 
 WorkspaceCounters Workspace::counters() const {

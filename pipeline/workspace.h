@@ -70,7 +70,6 @@ struct SceneDescription {
   std::optional<FrameSpan> animation;                    // none: nothing moves
   std::size_t lights = 0;                                // of the file's own
   ViewAngles eye;                                        // OrbitOf the camera that the request is seen by
-  std::vector<std::string> files;                        // that the scene is read from
   std::vector<std::string> style_files;                  // that the styles of the last Paint were read from
   SceneStyleRequests style_requests;                     // of the file
   std::vector<std::string>
@@ -95,6 +94,9 @@ class Workspace {
 
   // Loads and poses the scene if it is stale; casts no ray.
   Expected<SceneDescription> Describe(const SceneRequest& scene, std::optional<int> frame);
+
+  // The files of the scene that was loaded last, or that could not be: all that FileListener is told of.
+  std::vector<std::string> SceneFiles() const;
 
   // The guides of a scene: the layers that every guide set holds, and these; motion needs a frame's number.
   Expected<std::shared_ptr<const GuideSet>> Guides(const SceneRequest& scene, std::optional<int> frame,

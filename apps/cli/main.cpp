@@ -1,7 +1,6 @@
 // scumble: paint a sphere, stylise a scene. One program, one command a task; `scumble help` prints commands and exit
 // codes.
 #include <fcntl.h>
-#include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
 #include <CLI/CLI.hpp>
@@ -18,6 +17,7 @@
 #include "apps/cli/app/help_format.h"
 #include "apps/cli/app/signal_cleanup.h"
 #include "apps/cli/app/verbs.h"
+#include "core/filter/more_workers.h"
 #include "core/image/check.h"
 #include "core/io/library.h"
 
@@ -65,9 +65,7 @@ int Run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return Fail(UsageError(ExplainUsage(app, error)));
   }
-  // Allows more threads than cores, if the user requests them: the library would refuse them with its own message.
-  const tbb::global_control workers(tbb::global_control::max_allowed_parallelism,
-                                    std::size_t(std::max(globals.threads, tbb::this_task_arena::max_concurrency())));
+  const MoreWorkers workers(globals.threads);
   // oneTBB 2022 hangs if it finds no memory for its first arena: that is made now, and kept, if there is enough for it.
   ::operator delete(::operator new(std::size_t(4) << 20));
   tbb::task_arena first_arena(1, 1);

@@ -2,7 +2,6 @@
 
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/enumerable_thread_specific.h>
-#include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 
@@ -14,6 +13,7 @@
 #include <span>
 #include <string>
 
+#include "core/filter/more_workers.h"
 #include "core/filter/outline_distance.h"
 #include "core/image/stopwatch.h"
 #include "guidegen/cast/tile_caster.h"
@@ -227,11 +227,7 @@ Status CheckOptions(const GuidegenOptions& options, bool has_next_frame) {
 }
 
 Expected<GuidegenResult> CastGuides(LazyScene& objects, const View& view, const GuidegenOptions& options) {
-  // oneTBB has no workers beyond the machine's cores unless the limit is raised.
-  std::optional<tbb::global_control> more_workers;
-  if (options.threads > tbb::this_task_arena::max_concurrency()) {
-    more_workers.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(options.threads));
-  }
+  const MoreWorkers workers(options.threads);
   tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
   std::optional<Expected<GuidegenResult>> result;
   arena.execute([&] { result.emplace(CastInArena(objects, view, options)); });

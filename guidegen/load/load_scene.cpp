@@ -29,12 +29,20 @@ MissingNormals MissingNormalsOf(const LoadOptions& options) {
   return MissingNormals(degrees);
 }
 
+// options.on_file, or a listener that does nothing. The scene's own file is told of first.
+FileListener ListenerOf(const std::filesystem::path& path, const LoadOptions& options) {
+  if (!options.on_file) return [](const std::filesystem::path&) {};
+  options.on_file(path);
+  return options.on_file;
+}
+
 Expected<Scene> LoadByEnding(const std::filesystem::path& path, const LoadOptions& options) {
   const std::string ending = LowerEnding(path);
   const MissingNormals missing = MissingNormalsOf(options);
-  if (ending == ".glb" || ending == ".gltf") return LoadGltfScene(path, missing);
-  if (ending == ".obj") return LoadObjScene(path, missing);
-  if (ending == ".ply") return LoadPlyScene(path, missing);
+  const FileListener on_file = ListenerOf(path, options);
+  if (ending == ".glb" || ending == ".gltf") return LoadGltfScene(path, missing, on_file);
+  if (ending == ".obj") return LoadObjScene(path, missing, on_file);
+  if (ending == ".ply") return LoadPlyScene(path, missing, on_file);
   if (ending == ".blend") {
     return UnavailableError(path.string() +
                             ": .blend files cannot be read directly: scumble guidegen and stylize have " +
@@ -101,7 +109,8 @@ Expected<AnimatedScene> AnimatedScene::Load(const std::filesystem::path& path, c
       return UsageError(path.string() + " has no animation \"" + Excerpt(options.animation, 80) +
                         "\": only .glb and .gltf files have any");
     }
-    SCUMBLE_ASSIGN(MovingScene loaded, LoadMovingGltfScene(path, options.animation, MissingNormalsOf(options.load)));
+    SCUMBLE_ASSIGN(MovingScene loaded, LoadMovingGltfScene(path, options.animation, MissingNormalsOf(options.load),
+                                                           ListenerOf(path, options.load)));
     animated.rest_ = std::move(loaded.scene);
     animated.animations_ = std::move(loaded.animations);
     SCUMBLE_RETURN_IF_ERROR(Finish(path, !loaded.rig.instances.empty(), options.load.textures, animated.rest_));

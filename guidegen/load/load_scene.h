@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/image/status.h"
+#include "guidegen/load/file_listener.h"
 #include "guidegen/scene/scene.h"
 
 namespace scumble {
@@ -22,6 +23,7 @@ struct LoadOptions {
   // Of normals that the file lacks (guidegen/load/auto_smooth.h): 0 … 180 degrees, 0: flat. Empty: glTF is flat, OBJ as
   // its smoothing groups say, other OBJ and PLY smooth up to kDefaultAutoSmooth. The scene's notes say what was done.
   std::optional<double> auto_smooth_degrees;
+  FileListener on_file = nullptr;  // also where loading fails; null: nobody
 };
 
 // Loads by the file's ending. A scene without geometry is legal, with a warning. Errors name the file and the defect:

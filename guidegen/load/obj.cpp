@@ -91,11 +91,11 @@ struct ObjTriangle {
 
 class ObjLoader {
  public:
-  ObjLoader(const std::filesystem::path& path, MissingNormals missing)
-      : path_(path), file_(path.string()), missing_(missing) {}
+  ObjLoader(const std::filesystem::path& path, MissingNormals missing, const FileListener& on_file)
+      : path_(path), file_(path.string()), missing_(missing), on_file_(on_file) {}
 
   Expected<Scene> Load() {
-    SCUMBLE_RETURN_IF_ERROR(ParseObj(path_, warnings_, contents_));
+    SCUMBLE_RETURN_IF_ERROR(ParseObj(path_, on_file_, warnings_, contents_));
     SCUMBLE_RETURN_IF_ERROR(CheckAttributes());
     DropNormalsOfNone();
     for (std::size_t s = 0; s < shapes_.size(); ++s) SCUMBLE_RETURN_IF_ERROR(CheckShape(s));
@@ -589,6 +589,7 @@ class ObjLoader {
   std::vector<std::shared_ptr<std::vector<std::size_t>>> users_;  // of each texture: materials
   std::vector<ObjTriangle> triangles_;
   MissingNormals missing_;
+  const FileListener& on_file_;
   std::size_t without_normals_ = 0;  // triangles with a corner without a normal
   std::vector<glm::vec3> made_normals_;
   std::vector<std::vector<std::uint32_t>> corner_counts_;  // of the faces of each shape
@@ -598,8 +599,8 @@ class ObjLoader {
 
 }  // namespace
 
-Expected<Scene> LoadObjScene(const std::filesystem::path& path, MissingNormals missing) {
-  return ObjLoader(path, missing).Load();
+Expected<Scene> LoadObjScene(const std::filesystem::path& path, MissingNormals missing, const FileListener& on_file) {
+  return ObjLoader(path, missing, on_file).Load();
 }
 
 }  // namespace scumble

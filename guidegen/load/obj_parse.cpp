@@ -57,12 +57,23 @@ std::filesystem::path Beside(const std::filesystem::path& file, std::string name
 
 // Textures are named relative to their library; many exporters mean the scene.
 std::string FindTexture(const std::filesystem::path& scene, const std::filesystem::path& library,
-                        const std::string& name) {
+                        const std::string& name, const FileListener& on_file) {
   if (name.empty()) return name;
   const std::filesystem::path near = Beside(library, name), other = Beside(scene, name);
   std::error_code ignored;
-  const bool is_other = near != other && !std::filesystem::exists(near, ignored) && exists(other, ignored);
+  const bool looks_further = near != other && !std::filesystem::exists(near, ignored);
+  on_file(near);
+  if (looks_further) on_file(other);
+  const bool is_other = looks_further && exists(other, ignored);
   return (is_other ? other : near).string();
+}
+
+// Those that are not read, too: they are the scene's all the same.
+std::vector<std::string*> TextureNames(tinyobj::material_t& of) {
+  return {&of.ambient_texname,   &of.diffuse_texname,      &of.specular_texname, &of.specular_highlight_texname,
+          &of.bump_texname,      &of.displacement_texname, &of.alpha_texname,    &of.reflection_texname,
+          &of.roughness_texname, &of.metallic_texname,     &of.sheen_texname,    &of.emissive_texname,
+          &of.normal_texname};
 }
 
 // tinyobjloader ends names at blanks. In names of materials and libraries blanks are this until they have been read.
@@ -192,7 +203,8 @@ void DropWholeTransparency(std::string& library, WarningCounter& warnings) {
 // name has blanks, or several.
 class LibraryReader : public tinyobj::MaterialReader {
  public:
-  LibraryReader(const std::filesystem::path& scene, WarningCounter& warnings) : scene_(scene), warnings_(warnings) {}
+  LibraryReader(const std::filesystem::path& scene, const FileListener& on_file, WarningCounter& warnings)
+      : scene_(scene), on_file_(on_file), warnings_(warnings) {}
 
   bool operator()(const std::string& names, std::vector<tinyobj::material_t>* materials,
                   std::map<std::string, int>* indices, std::string* warning, std::string* error) override {
@@ -230,6 +242,7 @@ class LibraryReader : public tinyobj::MaterialReader {
   // False: there is no such file. Of one that cannot be used, `fault_` tells.
   bool Read(const std::string& name, const Target& target) {
     const std::filesystem::path path = Beside(scene_, name);
+    on_file_(path);
     std::error_code missing;
     const std::filesystem::path library = std::filesystem::canonical(path, missing);
     if (!missing && read_.count(library) > 0) return true;
@@ -247,10 +260,7 @@ class LibraryReader : public tinyobj::MaterialReader {
     tinyobj::LoadMtl(target.indices, target.materials, &stream, target.warning, target.error);
     for (std::size_t i = first; i < target.materials->size(); ++i) {
       tinyobj::material_t& material = (*target.materials)[i];
-      for (std::string* texture :
-           {&material.diffuse_texname, &material.alpha_texname, &material.normal_texname, &material.emissive_texname}) {
-        *texture = FindTexture(scene_, path, *texture);
-      }
+      for (std::string* texture : TextureNames(material)) *texture = FindTexture(scene_, path, *texture, on_file_);
     }
     const std::map<std::string, int> by_name = *target.indices;
     for (const auto& [material, index] : by_name) target.indices->insert({WithoutBlanks(material), index});
@@ -258,6 +268,7 @@ class LibraryReader : public tinyobj::MaterialReader {
   }
 
   const std::filesystem::path& scene_;
+  const FileListener& on_file_;
   WarningCounter& warnings_;
   Status fault_ = Ok();
   std::set<std::filesystem::path> read_;
@@ -295,7 +306,8 @@ void WarnOfUnknown(const std::set<std::string>& used, const std::vector<tinyobj:
 
 }  // namespace
 
-Status ParseObj(const std::filesystem::path& path, WarningCounter& warnings, ObjContents& contents) {
+Status ParseObj(const std::filesystem::path& path, const FileListener& on_file, WarningCounter& warnings,
+                ObjContents& contents) {
   const std::string file = path.string();
   SCUMBLE_ASSIGN(const std::vector<std::byte> bytes, ReadRegularFile(path));
   if (bytes.empty()) return InputError(file + " is empty; expected a Wavefront OBJ scene");
@@ -307,7 +319,7 @@ Status ParseObj(const std::filesystem::path& path, WarningCounter& warnings, Obj
   contents.has_smoothing = PrepareText(text, faces, contents.sections, used);
   contents.corner_counts = faces.Take();
   std::istringstream stream(std::move(text));
-  LibraryReader library(path, warnings);
+  LibraryReader library(path, on_file, warnings);
   std::string warning, error;
   bool ok = false;
   try {

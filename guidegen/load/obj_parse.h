@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/image/status.h"
+#include "guidegen/load/file_listener.h"
 #include "guidegen/load/loader_util.h"
 
 namespace scumble {
@@ -33,7 +34,8 @@ struct ObjContents {
 
 // Fills `contents` from a file. A missing library becomes a warning; tinyobjloader's refusals and exceptions become
 // kInput errors that name the file. Only regular files are read. Textures are beside their library, or else beside the
-// scene.
-Status ParseObj(const std::filesystem::path& path, WarningCounter& warnings, ObjContents& contents);
+// scene. `on_file` is told of all that the libraries name.
+Status ParseObj(const std::filesystem::path& path, const FileListener& on_file, WarningCounter& warnings,
+                ObjContents& contents);
 
 }  // namespace scumble

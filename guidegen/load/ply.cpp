@@ -62,8 +62,8 @@ Role RoleOf(const std::string& name) {
 
 class PlyLoader {
  public:
-  PlyLoader(const std::filesystem::path& path, MissingNormals missing)
-      : path_(path), file_(path.string()), missing_(missing) {}
+  PlyLoader(const std::filesystem::path& path, MissingNormals missing, const FileListener& on_file)
+      : path_(path), file_(path.string()), missing_(missing), on_file_(on_file) {}
 
   Expected<Scene> Load() {
     SCUMBLE_ASSIGN(const std::vector<std::byte> whole, ReadRegularFile(path_));
@@ -98,6 +98,7 @@ class PlyLoader {
     std::string name = header_.textures[0];
     std::replace(name.begin(), name.end(), '\\', '/');
     texture_ = path_.parent_path() / name;
+    on_file_(texture_);
     if (header_.textures.size() > 1) {
       warnings_.Add("of several textures only the first is read", "'" + Excerpt(name, 80) + "'");
     }
@@ -492,12 +493,13 @@ class PlyLoader {
   GeometryBudget budget_;
   WarningCounter warnings_;
   MissingNormals missing_;
+  const FileListener& on_file_;
 };
 
 }  // namespace
 
-Expected<Scene> LoadPlyScene(const std::filesystem::path& path, MissingNormals missing) {
-  return PlyLoader(path, missing).Load();
+Expected<Scene> LoadPlyScene(const std::filesystem::path& path, MissingNormals missing, const FileListener& on_file) {
+  return PlyLoader(path, missing, on_file).Load();
 }
 
 }  // namespace scumble

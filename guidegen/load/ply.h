@@ -17,10 +17,11 @@
 
 #include "core/image/status.h"
 #include "guidegen/load/auto_smooth.h"
+#include "guidegen/load/file_listener.h"
 #include "guidegen/scene/scene.h"
 
 namespace scumble {
 
-Expected<Scene> LoadPlyScene(const std::filesystem::path& path, MissingNormals missing);
+Expected<Scene> LoadPlyScene(const std::filesystem::path& path, MissingNormals missing, const FileListener& on_file);
 
 }  // namespace scumble

@@ -46,6 +46,7 @@ SceneRequest OurRequest(const CrosscheckRequest& request, const std::string& pat
   options.size = request.size;
   options.camera = request.camera;
   options.key_light = false;  // Blender would not let one shine
+  options.on_file = request.on_file;
   if (IsBlenderScene(path)) {
     options.blender = {request.blender, request.frame, false, request.blender_scene, request.view_layer};
   }
@@ -87,7 +88,8 @@ Expected<BothSides> MakeBothSides(const CrosscheckRequest& request, const std::s
   BothSides sides;
   const Progress progress = context.StartProgress("crosscheck");
   const SceneRequest ours = OurRequest(request, path);
-  SCUMBLE_ASSIGN(Scene scene, OpenScene(ours, context));
+  BlenderAnimation named;  // whose files are told of
+  SCUMBLE_ASSIGN(Scene scene, OpenScene(ours, context, &named));
   for (Camera& camera : scene.cameras) camera.border.reset();
   sides.unsupported = scene.warnings;
   SCUMBLE_RETURN_IF_ERROR(MakeOurData(scene, ours, context, Within(progress, 0.0, 0.02), sides));

@@ -23,6 +23,7 @@ struct CrosscheckRequest {
   std::string keep;                 // folder for the guides of both sides; empty: they are not kept
   bool fast_io = false;             // of those
   bool heat_maps = false;           // pictures of the differences in the report
+  FileListener on_file = nullptr;   // as SceneRequest::on_file
 };
 
 // Renders the scene with Cycles and with guidegen, and compares layer by layer, in the whole frame: a render border is

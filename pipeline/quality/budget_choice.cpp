@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <span>
+#include <string_view>
 #include <utility>
 
 #include "core/image/hash.h"
@@ -18,7 +20,6 @@
 #include "pipeline/memory/memory_estimate.h"
 #include "pipeline/quality/calibration.h"
 #include "pipeline/scene/needed_textures.h"
-#include "pipeline/scene/run_inputs.h"
 #include "pipeline/scene/scene_sequence.h"
 #include "pipeline/stage_clock.h"
 #include "pipeline/variant/quality_ladder.h"
@@ -148,15 +149,13 @@ std::string CommonCircumstances(StyleSet& styles, const PictureRequest& picture,
       tracks != 0 ? fmt::format("; over time {:016x}", tracks) : "", picture.KeepsField() ? "; keeps the field" : "");
 }
 
-// Of the scene's file and of those that it names. What cannot be read counts for nothing; the run that needs it reports
+// Of what is in files, whose names end in zeros. What cannot be read counts for nothing; the run that needs it reports
 // it.
-std::uint64_t HashOfFiles(const std::string& scene) {
-  RunInputs files;
-  files.ReadsScene(scene);
+std::uint64_t HashOfFiles(std::string_view names) {
   std::uint64_t hash = 0;
   std::vector<char> piece(std::size_t(1) << 20);
-  for (const std::string& path : files.Inputs()) {
-    std::ifstream stream(path, std::ios::binary);
+  for (; !names.empty(); names.remove_prefix(names.find('\0') + 1)) {
+    std::ifstream stream(std::string(names.substr(0, names.find('\0'))), std::ios::binary);
     while (stream.read(piece.data(), std::streamsize(piece.size())) || stream.gcount() > 0) {
       hash = Hash(hash, HashBytes(std::span<const char>(piece).first(std::size_t(stream.gcount()))));
     }
@@ -164,15 +163,17 @@ std::uint64_t HashOfFiles(const std::string& scene) {
   return hash;
 }
 
+std::string KeyOf(const std::string& question) { return fmt::format("answer-{:016x}", HashText(question)); }
+
 // An answer that takes reading the scene; it is kept beside the times. With `anew` the kept one does not count.
 Expected<bool> KeptAnswer(const std::string& question, bool anew, const RunContext& context,
                           const std::function<Expected<bool>()>& find) {
   FileCache cache = TimesCache(context);
-  const auto bytes = anew ? std::nullopt : cache.Load(question);
+  const auto bytes = anew ? std::nullopt : cache.Load(KeyOf(question));
   if (bytes && bytes->size() == 1) return bytes->front() != std::byte(0);
   SCUMBLE_ASSIGN(const bool answer, find());
   const std::byte byte{static_cast<unsigned char>(answer)};
-  cache.Store(question, std::span(&byte, 1));
+  cache.Store(KeyOf(question), std::span(&byte, 1));
   return answer;
 }
 
@@ -206,12 +207,22 @@ class SceneTrials {
         frame_(frame),
         styles_(styles),
         silent_(context.WithoutNotes()),
+        files_key_(KeyOf("files of " + std::filesystem::absolute(scene.scene).string())),
         painter_(styles, picture, frame, scene.scene, over, context) {}
 
   using Needs = bool(const Scene&, const LayerSet&, const SceneRequest&);
   Expected<bool> Asks(Needs* needs) {
     SCUMBLE_RETURN_IF_ERROR(Open());
     return needs(opened_->scene, opened_->layers, request_);
+  }
+
+  // Of all files that the scene consists of. They are known when it has been opened; their names are kept beside the
+  // times. Where one of them changes, what is kept is not found again, and the scene is opened.
+  Expected<std::uint64_t> FilesHash() {
+    const auto kept = TimesCache(silent_).Load(files_key_);
+    if (kept) return HashOfFiles({reinterpret_cast<const char*>(kept->data()), kept->size()});
+    SCUMBLE_RETURN_IF_ERROR(Open());
+    return HashOfFiles(files_);
   }
 
   // Milliseconds of casting and painting.
@@ -225,7 +236,13 @@ class SceneTrials {
  private:
   Status Open() {
     if (opened_) return Ok();
-    SCUMBLE_ASSIGN(opened_, OpenToMeasure(request_, frame_, styles_, silent_));
+    SceneRequest request = request_;
+    request.on_file = [&](const std::filesystem::path& file) {
+      files_ += std::filesystem::absolute(file).string() + '\0';
+      if (request_.on_file) request_.on_file(file);
+    };
+    SCUMBLE_ASSIGN(opened_, OpenToMeasure(request, frame_, styles_, silent_));
+    TimesCache(silent_).Store(files_key_, std::as_bytes(std::span(files_)));
     return Ok();
   }
 
@@ -245,6 +262,8 @@ class SceneTrials {
   std::optional<int> frame_;
   StyleSet& styles_;
   RunContext silent_;
+  const std::string files_key_;
+  std::string files_;  // names of what `opened_` consists of, each with a zero behind it
   std::optional<StaticScene> opened_;
   TrialPainter painter_;
 };
@@ -310,10 +329,11 @@ Expected<std::optional<BudgetChoice>> ChooseForScene(const BudgetRequest& option
     SCUMBLE_RETURN_IF_ERROR(take(NamedVariant(*options.quality, ladder, styles, context, choice)));
     return std::optional(std::move(choice));
   }
-  const std::string circumstances = fmt::format("stylize; scene {:016x}; {}; {}; isa {}; half {}; {}",
-                                                HashOfFiles(scene.scene), SizeToText(scene.size), GuideSettings(scene),
-                                                scene.isa, scene.half, CommonCircumstances(styles, picture, context));
   SceneTrials trials(scene, frame, over, styles, picture, context);
+  SCUMBLE_ASSIGN(const std::uint64_t files, trials.FilesHash());
+  const std::string circumstances =
+      fmt::format("stylize; scene {:016x}; {}; {}; isa {}; half {}; {}", files, SizeToText(scene.size),
+                  GuideSettings(scene), scene.isa, scene.half, CommonCircumstances(styles, picture, context));
   if (ladder.samples > 0) {
     const auto kept = [&](const char* question, SceneTrials::Needs* needs) {
       return KeptAnswer(question + circumstances, options.recalibrate, context, [&] { return trials.Asks(needs); });

@@ -136,16 +136,17 @@ Status CheckFiles(RunInputs& files, const PictureRequest& picture, const std::op
   for (const std::string& file : FilesOf(AllPasses(styles))) files.Reads("a file of a finish", file);
   for (const std::string& file : MaskFilesOf(AllPasses(styles))) files.Reads("the mask of a finishing effect", file);
   files.ReadsStyles(styles);
+  const bool resumes = sequence && sequence->resume;
   SCUMBLE_ASSIGN(const auto outputs, NamesOf(picture.output, sequence));
-  SCUMBLE_RETURN_IF_ERROR(files.CheckOutputs(outputs));
+  SCUMBLE_RETURN_IF_ERROR(files.CheckOutputs(outputs, "-o", resumes));
   SCUMBLE_ASSIGN(const auto layers, LayerNamesOf(picture.layers_out, sequence));
-  return files.CheckOutputs(layers, "--layers-out");
+  return files.CheckOutputs(layers, "--layers-out", resumes);
 }
 
 FilesCheck CheckOfSceneStyles(RunInputs& files, const PictureRequest& picture, const std::optional<Sequence>& sequence,
                               const StyleSet& styles) {
   return [&]() -> Status {
-    if (!files.KnowsStyles(styles)) SCUMBLE_RETURN_IF_ERROR(CheckFiles(files, picture, sequence, styles));
+    if (!files.IsChecked(&styles)) SCUMBLE_RETURN_IF_ERROR(CheckFiles(files, picture, sequence, styles));
     return CheckLayersWanted({picture.show_finish, !picture.layers_out.empty()}, AllPasses(styles));
   };
 }

@@ -69,8 +69,8 @@ PictureWork WorkOf(const StyleSet& styles, const PictureRequest& picture, const 
 Status CheckFiles(RunInputs& files, const PictureRequest& picture, const std::optional<Sequence>& sequence,
                   const StyleSet& styles);
 
-// CheckFiles once more, where scene or guides have asked for styles that were not open then; and whether there are the
-// passes whose layers are wanted. All are borrowed.
+// CheckFiles once more, where the scene has named files since, or scene or guides have asked for styles; and
+// whether there are the passes whose layers are wanted. All are borrowed.
 using FilesCheck = std::function<Status()>;
 FilesCheck CheckOfSceneStyles(RunInputs& files, const PictureRequest& picture, const std::optional<Sequence>& sequence,
                               const StyleSet& styles);

@@ -224,10 +224,11 @@ Expected<RunReport> RunFinish(FinishRequest request, const SequenceListener& lis
     SCUMBLE_ASSIGN(request.output, NameOfOne(request.output, request.frame));
     SCUMBLE_ASSIGN(request.layers_out, NameOfOne(request.layers_out, request.frame));
   }
+  const bool resumes = sequence && sequence->resume;
   SCUMBLE_ASSIGN(const auto outputs, NamesOf(request.output, sequence));
-  SCUMBLE_RETURN_IF_ERROR(inputs.CheckOutputs(outputs));
+  SCUMBLE_RETURN_IF_ERROR(inputs.CheckOutputs(outputs, "-o", resumes));
   SCUMBLE_ASSIGN(const auto layer_outputs, LayerNamesOf(request.layers_out, sequence));
-  SCUMBLE_RETURN_IF_ERROR(inputs.CheckOutputs(layer_outputs, "--layers-out"));
+  SCUMBLE_RETURN_IF_ERROR(inputs.CheckOutputs(layer_outputs, "--layers-out", resumes));
   RunReport report;
   report.paints = true;
   if (!sequence) {

@@ -73,10 +73,9 @@ Expected<RunReport> GuidegenSequence(const GuidegenRequest& request, const Seque
 
 Status CheckFiles(RunInputs& files, const GuidegenRequest& request, const std::optional<Sequence>& sequence,
                   const std::optional<StyleSet>& styles) {
-  files.ReadsScene(request.scene.scene);
   if (styles) files.ReadsStyles(*styles);
   SCUMBLE_ASSIGN(const auto outputs, NamesOf(request.output, sequence));
-  return files.CheckOutputs(outputs);
+  return files.CheckOutputs(outputs, "-o", sequence && sequence->resume);
 }
 
 }  // namespace
@@ -88,14 +87,17 @@ Expected<RunReport> RunGuidegen(GuidegenRequest request, const SequenceListener&
   SCUMBLE_ASSIGN(const auto sequence, PlanSequence(request.sequence, request.scene.blender.frame, request.output));
   const bool plan_only = request.output.empty();
   RunInputs files;
+  request.scene.on_file = files.ReadsScene(request.scene.scene);
   const LayersFor layers_for = [&](const SceneStyleRequests& of_scene) -> Expected<LayerSet> {
     LayerSet layers = asked;
-    if (!styles) return layers;
-    SCUMBLE_ASSIGN(const LayerSet read, RequiredLayers(*styles, of_scene, request.scene.scene));
-    // Once more, where the scene has asked for styles.
-    if (!plan_only && !files.KnowsStyles(*styles))
+    if (styles) {
+      SCUMBLE_ASSIGN(const LayerSet read, RequiredLayers(*styles, of_scene, request.scene.scene));
+      layers.Add(read);
+    }
+    // Once more, where the scene has named files or asked for styles.
+    if (!plan_only && !files.IsChecked(styles ? &*styles : nullptr))
       SCUMBLE_RETURN_IF_ERROR(CheckFiles(files, request, sequence, styles));
-    return layers.Add(read);
+    return layers;
   };
   const std::optional<int> frame = request.scene.blender.frame;
   if (plan_only && !request.explain)

@@ -159,7 +159,7 @@ Expected<RunReport> RunStylize(StylizeRequest request, const SequenceListener& l
   const double style_ms = watch.Lap();
   context.EndStage("style");
   RunInputs files;
-  files.ReadsScene(request.scene.scene);
+  request.scene.on_file = files.ReadsScene(request.scene.scene);
   SCUMBLE_RETURN_IF_ERROR(CheckFiles(files, request.picture, sequence, styles));
   const FilesCheck check_files = CheckOfSceneStyles(files, request.picture, sequence, styles);
   SCUMBLE_ASSIGN(auto choice, ChooseForStylize(request, sequence, styles, context));

@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "core/image/stopwatch.h"
+#include "core/io/file/atomic_file.h"
 #include "pipeline/stage_clock.h"
 
 namespace scumble {
@@ -110,6 +111,7 @@ class FrameCounters {
     ++totals_.kept;
     if (listener_.kept) listener_.kept(frame, sequence_.output.At(frame));
   }
+  bool HasAny() const { return totals_.made + totals_.kept > 0; }
   // The error that ends the sequence, unless the other frames may go better.
   Status Fail(int frame, const Error& error) {
     if (error.kind != ErrorKind::kInput) return Error{error.kind, fmt::format("frame {}: {}", frame, error.message)};
@@ -181,6 +183,24 @@ class FramesBeingWritten {
   std::future<Expected<FrameReport>> report_;  // waits at its end, so that no thread outlives what it uses
 };
 
+Status MakeFrames(std::span<const int> frames, const Sequence& sequence, const SequenceWork& work,
+                  FrameCounters& counters, const RunContext& context, const Progress& progress) {
+  FramesBeingWritten writing(counters, context);
+  const double steps = static_cast<double>(frames.size() + 1);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const double done = static_cast<double>(i + 1);
+    Expected<FrameWrite> made =
+        work.make(frames[i], sequence.output.At(frames[i]), Within(progress, done / steps, (done + 1.0) / steps));
+    SCUMBLE_RETURN_IF_ERROR(writing.Finish());  // the report of a frame comes before the next one's
+    if (made) {
+      SCUMBLE_RETURN_IF_ERROR(writing.Begin(frames[i], *made));
+    } else {
+      SCUMBLE_RETURN_IF_ERROR(counters.Fail(frames[i], made.error()));
+    }
+  }
+  return writing.Finish();
+}
+
 }  // namespace
 
 Expected<SequenceTotals> RunSequence(const Sequence& sequence, const SequenceWork& work,
@@ -197,28 +217,22 @@ Expected<SequenceTotals> RunSequence(const Sequence& sequence, const SequenceWor
     if (keep) {
       counters.Kept(frame);
     } else {
+      const std::string output = sequence.output.At(frame);
+      if (IsWriteProtected(output)) SCUMBLE_RETURN_IF_ERROR(CheckWritable(output));  // which says so
       frames.push_back(frame);
     }
   }
-  FramesBeingWritten writing(counters, context);
-  const double steps = static_cast<double>(frames.size() + 1);
-  if (!frames.empty()) SCUMBLE_RETURN_IF_ERROR(work.begin(frames, Within(progress, 0.0, 1.0 / steps)));
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    const double done = static_cast<double>(i + 1);
-    Expected<FrameWrite> made =
-        work.make(frames[i], sequence.output.At(frames[i]), Within(progress, done / steps, (done + 1.0) / steps));
-    SCUMBLE_RETURN_IF_ERROR(writing.Finish());  // the report of a frame comes before the next one's
-    if (made) {
-      SCUMBLE_RETURN_IF_ERROR(writing.Begin(frames[i], *made));
-    } else {
-      SCUMBLE_RETURN_IF_ERROR(counters.Fail(frames[i], made.error()));
-    }
-  }
-  SCUMBLE_RETURN_IF_ERROR(writing.Finish());
-  return counters.Totals(watch.Lap());
+  if (!frames.empty())
+    SCUMBLE_RETURN_IF_ERROR(work.begin(frames, Within(progress, 0.0, 1.0 / static_cast<double>(frames.size() + 1))));
+  const Status made = MakeFrames(frames, sequence, work, counters, context, progress);
+  if (!made && !counters.HasAny()) return made.error();
+  SequenceTotals totals = counters.Totals(watch.Lap());
+  if (!made) totals.ended_by = made.error();
+  return totals;
 }
 
 Status StatusOf(const SequenceTotals& totals) {
+  if (totals.ended_by) return *totals.ended_by;
   if (totals.failed.empty()) return Ok();
   return InputError(fmt::format("{} of {} frames were not made: {}; the first: {}", totals.failed.size(),
                                 totals.frames(), FramesToText(totals.failed), totals.first_reason));

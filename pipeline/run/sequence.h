@@ -62,21 +62,22 @@ struct SequenceTotals {
   std::vector<int> failed;
   std::string first_reason;  // why the first of them failed
   double total_ms = 0;
+  std::optional<Error> ended_by;  // before its last frame, after some were made or kept
 
   std::size_t frames() const { return made + kept + failed.size(); }
 };
 
 // Makes the frames one after the other. With `resume` those that `check` accepts are left as they are. A frame whose
 // input is missing or broken (kInput) does not stop the others: the totals name all of them. Any other error would come
-// again in every frame, and ends the sequence. A frame is encoded and written by another thread while the next one is
-// made: two frames are in memory, never three, and where one cannot be written, the next has been made in vain. With
-// one thread, or where no other can be started, it is written before the next one is begun. The reports and their order
-// are the same.
+// again in every frame, and ends the sequence: the totals tell of the frames until then, where there are any. A frame
+// is encoded and written by another thread while the next one is made: two frames are in memory, never three, and where
+// one cannot be written, the next has been made in vain. With one thread, or where no other can be started, it is
+// written before the next one is begun. The reports and their order are the same.
 Expected<SequenceTotals> RunSequence(const Sequence& sequence, const SequenceWork& work,
                                      const SequenceListener& listener, const RunContext& context,
                                      const Progress& progress);
 
-// Ok, or the kInput error of a sequence in which frames failed.
+// Ok, or the error that ended the sequence, or the kInput error of one in which frames failed.
 Status StatusOf(const SequenceTotals& totals);
 
 }  // namespace scumble

@@ -17,6 +17,7 @@
 #include <thread>
 #include <utility>
 
+#include "core/io/file/stale_temporaries.h"
 #include "pipeline/process_guard.h"
 #include "pipeline/scene/blender_file.h"
 
@@ -151,15 +152,16 @@ std::string ByHand(const BlenderTask& task) {
 
 ScratchFolder::ScratchFolder(const RunContext& context) : guard_(context.process_guard) {
   if (guard_) guard_->Begin();
-  std::string name = (context.temporary_folder / "scumble-XXXXXX").string();
-  if (context.temporary_folder.empty() || !::mkdtemp(name.data())) return;
-  path_ = name;
-  if (guard_) guard_->FolderMade(path_);
+  if (context.temporary_folder.empty()) return;
+  const internal::LockedFolder made = internal::MakeLockedFolder(context.temporary_folder);
+  path_ = made.path, lock_ = made.lock;
+  if (guard_ && !path_.empty()) guard_->FolderMade(path_);
 }
 
 ScratchFolder::~ScratchFolder() {
   std::error_code failed;
   if (!path_.empty()) fs::remove_all(path_, failed);
+  if (lock_ >= 0) ::close(lock_);
   if (guard_) guard_->End();
 }
 

@@ -13,7 +13,7 @@
 namespace scumble {
 
 // A folder of its own in RunContext::temporary_folder, removed when this is destroyed. The path is empty where it could
-// not be made. The context's process guard follows it.
+// not be made. The context's process guard follows it. Those of runs that were killed are removed when one is made.
 class ScratchFolder {
  public:
   explicit ScratchFolder(const RunContext& context);
@@ -25,6 +25,7 @@ class ScratchFolder {
  private:
   std::shared_ptr<ProcessGuard> guard_;
   std::filesystem::path path_;
+  int lock_ = -1;  // by which other runs see that the folder is in use
 };
 
 // What Blender is run for, for messages.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/image/status.h"
+#include "guidegen/load/file_listener.h"
 #include "pipeline/style/style_set.h"
 
 namespace scumble {
@@ -18,33 +19,34 @@ class RunInputs {
   // A file that the run reads; `what` is for the message: "the guides". Empty names and files that are not there
   // are passed over; reading them is an error later.
   void Reads(const std::string& what, const std::string& path);
-  // A scene with the files that it names: buffers and pictures of a .gltf or .glb, the .mtl of an .obj and its
-  // pictures.
-  void ReadsScene(const std::string& scene);
+  // A scene's file. What else the scene consists of is known when it is loaded: the listener, for
+  // SceneRequest::on_file, adds that. It refers to this.
+  [[nodiscard]] FileListener ReadsScene(const std::string& scene);
   // Style files, exemplars, their guides, paper: of every style in the set.
   void ReadsStyles(const StyleSet& styles);
-  // Whether all of them are known; not where the scene has asked for some since.
-  bool KnowsStyles(const StyleSet& styles) const { return styles_ == styles.opened.size(); }
+  // Whether outputs were checked against all that is read; not where a scene has named files or asked for styles since.
+  bool IsChecked(const StyleSet* styles) const {
+    return checked_ == inputs_.size() && (!styles || styles_ == styles->opened.size());
+  }
   // Paths of the files that are there, each file once, in alphabetical order.
   std::vector<std::string> Inputs() const;
 
   // kUsage where an output is one of these files, under whatever name or link; kOutput where it cannot be written, its
   // folder is missing, or it is a folder. The outputs of a range are in one folder. Nothing is left behind.
-  // `option` is for the message.
-  Status CheckOutputs(std::span<const std::string> outputs, const std::string& option = "-o") const;
-  Status CheckOutput(const std::string& output) const { return CheckOutputs(std::span(&output, 1)); }
+  // `option` is for the message. With `resumes`, write-protected outputs pass: they may be kept.
+  Status CheckOutputs(std::span<const std::string> outputs, const std::string& option = "-o", bool resumes = false);
+  Status CheckOutput(const std::string& output) { return CheckOutputs(std::span(&output, 1)); }
 
  private:
   // Files that a text names in quotes, from a folder.
   void ReadsQuoted(const std::string& what, const std::string& file, const std::string& folder);
-  // Those that a .gltf or a .glb names.
-  void ReadsUris(const std::string& what, const std::string& file, const std::string& folder);
 
   struct Input {
     std::string what, path;
   };
   std::map<std::pair<unsigned long, unsigned long>, Input> inputs_;  // by device and file number
   std::size_t styles_ = 0;                                           // opened when they were read
+  std::size_t checked_ = 0;                                          // inputs when outputs were checked
 };
 
 }  // namespace scumble

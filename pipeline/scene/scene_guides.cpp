@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <system_error>
+#include <utility>
 
 #include "core/image/stopwatch.h"
 #include "core/io/guide_file.h"
@@ -45,11 +46,20 @@ void WarnIfNothingShows(const GuideSet& guides, const std::string& scene, const 
 Expected<Scene> LoadAnyScene(const SceneRequest& options, const RunContext& context, BlenderAnimation* animation) {
   BlenderRequest blender = options.blender;
   blender.wants_start = options.view.has_value();
-  if (IsBlenderScene(options.scene)) return LoadBlenderScene(options.scene, blender, context, animation);
-  return LoadScene(options.scene, LoadOptionsOf(options));
+  if (!IsBlenderScene(options.scene)) return LoadScene(options.scene, LoadOptionsOf(options));
+  if (options.on_file) options.on_file(options.scene);
+  Expected<Scene> scene = LoadBlenderScene(options.scene, blender, context, animation);
+  if (animation) TellFiles(*animation, options);
+  return scene;
 }
 
 }  // namespace
+
+void TellFiles(BlenderAnimation& animation, const SceneRequest& request) {
+  for (const std::string& file : std::exchange(animation.files, {})) {
+    if (request.on_file) request.on_file(file);
+  }
+}
 
 bool IsScene(const std::string& path) { return HasEnding(path, {".glb", ".gltf", ".obj", ".ply", ".blend"}); }
 
@@ -72,7 +82,7 @@ Expected<Scene> OpenScene(const SceneRequest& options, const RunContext& context
 }
 
 LoadOptions LoadOptionsOf(const SceneRequest& request) {
-  return {TextureLoading::kWhenNeeded, request.auto_smooth_degrees};
+  return {TextureLoading::kWhenNeeded, request.auto_smooth_degrees, request.on_file};
 }
 
 void PassOnNotes(const Scene& scene, const std::string& file, const RunContext& context, bool warns) {
@@ -83,6 +93,7 @@ void PassOnNotes(const Scene& scene, const std::string& file, const RunContext& 
 
 Status CheckSceneRequest(const SceneRequest& request) {
   SCUMBLE_RETURN_IF_ERROR(CheckScene(request.scene));
+  SCUMBLE_RETURN_IF_ERROR(CheckFrame(request.blender.frame));
   if (IsBlenderScene(request.scene)) {
     if (request.auto_smooth_degrees) {
       return UsageError("--auto-smooth is for files that lack normals; Blender gives those of " + request.scene +

@@ -55,6 +55,9 @@ std::string LightToText(const LightAngles& light);
 // How the request's scene is loaded; textures are decoded when they are needed.
 LoadOptions LoadOptionsOf(const SceneRequest& request);
 
+// Tells the request's listener of the files that a .blend names, once.
+void TellFiles(BlenderAnimation& animation, const SceneRequest& request);
+
 // Passes on a loaded scene's notes, and its warnings if `warns`.
 void PassOnNotes(const Scene& scene, const std::string& file, const RunContext& context, bool warns = true);
 

@@ -192,6 +192,7 @@ Expected<Scene*> SceneFrames::BlenderFrame(int frame) {
   while (!scenes_.count(frame) && loaded_ < exported_.size()) {
     const int following = exported_[loaded_++];
     Expected<Scene> scene = blender_->Load(following);
+    TellFiles(blender_->animation(), options_);
     if (!scene && following == frame) return scene.error();
     if (scene) scenes_[following] = std::move(*scene);
   }

@@ -280,7 +280,8 @@ FinishMeasures MeasureAndTell(const GuideSet& guides, const LayerSet& read, std:
   }
   const std::string where =
       frame ? fmt::format(" on frame {}: give it to each run where a sequence is cut into several", *frame) : "";
-  context.Note("finish: --finish-measures " + MeasuresText(measures) + " repeats what was measured" + where);
+  const std::string text = "finish: --finish-measures " + MeasuresText(measures) + " repeats what was measured" + where;
+  frame ? context.Warn(text) : context.Note(text);
   return measures;
 }
 

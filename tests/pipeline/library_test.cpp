@@ -6,7 +6,9 @@
 #include <filesystem>
 #include <limits>
 #include <string>
+#include <thread>
 #include <utility>
+#include <vector>
 
 #include "pipeline/scene/scene_sequence.h"
 #include "scumble/scumble.h"
@@ -46,6 +48,27 @@ TEST(Library, APictureWhoseMembersDoNotFitIsAnError) {
   EXPECT_TRUE(SavePicture((folder / "p.png").string(), Picture(4, 4)));
 }
 
+// oneTBB warns of threads beyond the cores, unless it is told of them.
+TEST(Library, MoreThreadsThanCoresPrintNothing) {
+  SceneSettings scene;
+  scene.file = std::string(SCUMBLE_SOURCE_DIR) + "/scenes/ball.glb";
+  scene.width = scene.height = 32;
+  StylizerOptions more, most;
+  more.threads = int(std::thread::hardware_concurrency()) + 1, most.threads = more.threads + 3;
+  testing::internal::CaptureStderr();
+  std::vector<std::jthread> users;
+  for (const StylizerOptions& options : {more, most}) {
+    users.emplace_back([&scene, options] {
+      Stylizer stylizer(options);
+      StyleSettings style;
+      style.style = std::string(SCUMBLE_SOURCE_DIR) + "/exemplars/oil";
+      EXPECT_TRUE(stylizer.Paint(scene, style));
+    });
+  }
+  users.clear();
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
 // Measured as guidegen does, with and without what the Stylizer has kept.
 TEST(Library, ViewsAndLightsOutsideTheirRangeAreRefused) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN(), kInfinity = std::numeric_limits<double>::infinity();
@@ -61,6 +84,7 @@ TEST(Library, ViewsAndLightsOutsideTheirRangeAreRefused) {
     EXPECT_EQ(guides.error().kind, ErrorKind::kUsage) << guides.error().message;
     EXPECT_EQ(guides.error().message.substr(0, words.size()), words);
   };
+  refuses("frame -2147483648", [&](SceneSettings& scene) { scene.frame = std::numeric_limits<int>::min(); });
   refuses("view.azimuth", [&](SceneSettings& scene) { scene.view->azimuth = kNaN; });
   refuses("view.elevation", [&](SceneSettings& scene) { scene.view->elevation = 90.5; });
   refuses("view.distance", [&](SceneSettings& scene) { scene.view->distance = kInfinity; });

@@ -1,7 +1,7 @@
 // A workspace pays for what changed and nothing else, and paints what `scumble stylize` paints.
 #include "pipeline/workspace.h"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <atomic>
 #include <chrono>
@@ -344,6 +344,31 @@ TEST(Workspace, ATextureThatIsMissingStaysLeftOut) {
   EXPECT_EQ(workspace.counters().structures_built, 3u) << "it depends on materials, and on the camera";
 }
 
+// Also where it is in the folder of the library, was missing, or could not be loaded with the scene.
+TEST(Workspace, AFileOfTheSceneThatChangedIsReadAgain) {
+  const TemporaryFolder folder;
+  const auto write = [&](const char* name, const std::string& text) { std::ofstream(folder / name) << text; };
+  fs::create_directory(folder / "tex");
+  write("tex/tile.mtl", "newmtl m\nmap_Kd skin.png\n");
+  write("tile.obj", "mtllib tex\\tile.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n");
+  const SceneRequest scene = SceneIn(folder / "tile.obj");
+  const std::string skin = (folder / "tex/skin.png").string();
+  Workspace workspace(Context());
+  const Picture without = Painted(workspace, scene, StyleOf("tinted-oil"));
+  EXPECT_THAT(workspace.SceneFiles(), testing::Contains(skin)) << "to wait for it";
+  Picture texture(8, 8);
+  for (std::size_t i = 3; i < texture.rgba.size(); i += 4) texture.rgba[i - 3] = texture.rgba[i] = 0xffff;
+  ASSERT_TRUE(WritePicture(skin, texture));
+  const Picture red = Painted(workspace, scene, StyleOf("tinted-oil"));
+  EXPECT_NE(red.rgba, without.rgba);
+  fs::remove(skin);
+  EXPECT_EQ(Painted(workspace, scene, StyleOf("tinted-oil")).rgba, without.rgba);
+  EXPECT_EQ(workspace.counters().scenes_loaded, 3u);
+  write("lost.gltf", R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":36,"uri":"lost.bin"}]})");
+  EXPECT_FALSE(workspace.Describe(SceneIn(folder / "lost.gltf"), std::nullopt));
+  EXPECT_THAT(workspace.SceneFiles(), testing::Contains((folder / "lost.bin").string()));
+}
+
 TEST(Workspace, AnotherSmoothingLoadsTheFileAgain) {
   const TemporaryFolder folder;
   std::ofstream(folder / "roof.obj")
@@ -564,7 +589,7 @@ TEST(Workspace, DescribesTheSceneAndCastsNoRay) {
   ASSERT_TRUE(toys.ok()) << toys.error().message;
   EXPECT_EQ(workspace.counters().guides_cast, 0u);
   EXPECT_EQ(workspace.counters().structures_built, 0u);
-  EXPECT_FALSE(toys->objects.empty() || toys->materials.empty() || toys->files.empty());
+  EXPECT_FALSE(toys->objects.empty() || toys->materials.empty());
   ASSERT_TRUE(toys->animation);
   EXPECT_GT(toys->animation->last, 1);
   // A view from the eye is the picture itself.

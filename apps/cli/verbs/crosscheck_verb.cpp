@@ -75,9 +75,7 @@ Status CheckScenes(const CrosscheckVerb& verb) {
 }
 
 // Checked before minutes of rendering, not after.
-Status CheckTargets(const CrosscheckVerb& verb) {
-  RunInputs files;
-  for (const std::string& scene : verb.scenes) files.ReadsScene(scene);
+Status CheckTargets(const CrosscheckVerb& verb, RunInputs files) {
   if (!verb.write_baseline.empty()) SCUMBLE_RETURN_IF_ERROR(files.CheckOutput(verb.write_baseline));
   files.Reads("the baseline", verb.baseline);  // which --write-baseline may bring up to date
   const std::string ending = fs::path(verb.html).extension().string();
@@ -219,7 +217,9 @@ Expected<ExitCode> RunCrosscheckVerb(CrosscheckVerb verb, const Globals& globals
   SCUMBLE_ASSIGN(verb.request.size, ParseSize(verb.size));
   verb.request.heat_maps = !verb.html.empty();
   SCUMBLE_RETURN_IF_ERROR(CheckScenes(verb));
-  SCUMBLE_RETURN_IF_ERROR(CheckTargets(verb));
+  RunInputs files;
+  for (const std::string& scene : verb.scenes) verb.request.on_file = files.ReadsScene(scene);
+  SCUMBLE_RETURN_IF_ERROR(CheckTargets(verb, files));
   Baseline baseline;
   if (!verb.baseline.empty()) {
     SCUMBLE_ASSIGN(baseline, ReadBaseline(verb.baseline));
@@ -227,6 +227,9 @@ Expected<ExitCode> RunCrosscheckVerb(CrosscheckVerb verb, const Globals& globals
   }
   SCUMBLE_ASSIGN(const CheckedScenes checked, CheckAllScenes(verb, baseline, globals));
   if (globals.json) Print(CrosscheckToJson(checked.reports));
+  // Once more: what the scenes consist of is known now.
+  if (!verb.html.empty()) SCUMBLE_RETURN_IF_ERROR(files.CheckOutput(verb.html));
+  if (!verb.write_baseline.empty()) SCUMBLE_RETURN_IF_ERROR(files.CheckOutput(verb.write_baseline));
   if (!verb.html.empty()) {
     const CrosscheckRun run{"Cycles, Blender " + checked.blender_version, RepeatCommand(verb), verb.baseline};
     SCUMBLE_ASSIGN(const std::string html, CrosscheckToHtml(checked.reports, run));

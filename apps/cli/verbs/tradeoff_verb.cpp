@@ -70,8 +70,22 @@ class MadeFolders {
   std::vector<fs::path> made_;
 };
 
+// Of a folder that is there; once more before writing, when it is known what the scene consists of.
+Status CheckTargets(const std::string& folder, RunInputs& files) {
+  const fs::path pictures = fs::path(folder) / kPictures;
+  std::error_code failed;
+  for (const char* name : {kTradeoffPage, "tradeoff.csv", kJson, "chart.svg"}) {
+    SCUMBLE_RETURN_IF_ERROR(files.CheckOutput((fs::path(folder) / name).string()));
+  }
+  // The pictures' names are not known yet: so no picture in the folder may be an input file.
+  for (const fs::directory_entry& entry : fs::directory_iterator(pictures, failed)) {
+    if (entry.path().extension() == ".png") SCUMBLE_RETURN_IF_ERROR(files.CheckOutput(entry.path().string()));
+  }
+  return files.CheckOutput((pictures / "00.png").string());
+}
+
 // Checked before minutes of work: whether the folder exists and is writable, and no input file is overwritten.
-Status CheckFolder(const TradeoffVerb& verb, const std::error_code& making, const Globals& globals) {
+Status CheckFolder(const TradeoffVerb& verb, const std::error_code& making, RunInputs& files, const Globals& globals) {
   const fs::path pictures = fs::path(verb.folder) / kPictures;
   std::error_code failed;
   if (!fs::is_directory(fs::status(pictures, failed))) {
@@ -79,20 +93,11 @@ Status CheckFolder(const TradeoffVerb& verb, const std::error_code& making, cons
         fmt::format("-o {}: it is no folder with a folder {} in it, and none can be made{}; name another", verb.folder,
                     kPictures, making ? ": " + making.message() : ""));
   }
-  RunInputs files;
-  files.ReadsScene(verb.setup.scene.scene);
   StyleRequest style = verb.setup.style;
   style.scene_styles = false;
   SCUMBLE_ASSIGN(const StyleSet styles, OpenStyles(style, globals));
   files.ReadsStyles(styles);
-  for (const char* name : {kTradeoffPage, "tradeoff.csv", kJson, "chart.svg"}) {
-    SCUMBLE_RETURN_IF_ERROR(files.CheckOutput((fs::path(verb.folder) / name).string()));
-  }
-  // The pictures' names are not known yet: so no picture in the folder may be an input file.
-  for (const fs::directory_entry& entry : fs::directory_iterator(pictures, failed)) {
-    if (entry.path().extension() == ".png") SCUMBLE_RETURN_IF_ERROR(files.CheckOutput(entry.path().string()));
-  }
-  return files.CheckOutput((pictures / "00.png").string());
+  return CheckTargets(verb.folder, files);
 }
 
 // Pictures that an earlier report in the folder lists and this one does not; no other files.
@@ -184,16 +189,19 @@ Expected<ExitCode> RunTradeoffVerb(TradeoffVerb verb, const Globals& globals) {
     Print(fmt::format("{{\"peak_bytes\": {}}}\n", bytes));
     return ExitCode::kOk;
   }
+  RunInputs files;
+  verb.setup.scene.on_file = files.ReadsScene(verb.setup.scene.scene);
   if (!verb.folder.empty()) {
     const MadeFolders folders(fs::path(verb.folder) /
                               kPictures);  // removed again, because minutes of work may be interrupted
-    SCUMBLE_RETURN_IF_ERROR(CheckFolder(verb, folders.error(), globals));
+    SCUMBLE_RETURN_IF_ERROR(CheckFolder(verb, folders.error(), files, globals));
   }
   SCUMBLE_ASSIGN(const TradeReport report, MeasureTradeoff(verb.setup, globals));
   Status written = Ok();
   if (!verb.folder.empty()) {
     const MadeFolders folders(fs::path(verb.folder) / kPictures);
-    written = WriteFolder(verb.folder, report);
+    written = CheckTargets(verb.folder, files);
+    if (written) written = WriteFolder(verb.folder, report);
   }
   Print(globals.json ? TradeJson(report)
                      : TradeTable(report));  // always printed: minutes of work are not lost if writing fails

@@ -58,6 +58,11 @@ Expected<SceneDescription> Lane::Describe(const SceneRequest& scene, std::option
   return workspace_.Describe(scene, frame);
 }
 
+std::vector<std::string> Lane::SceneFiles() {
+  const std::lock_guard working(work_);
+  return workspace_.SceneFiles();
+}
+
 void Lane::Stop() {
   stopped_ = true;
   workspace_.Cancel();

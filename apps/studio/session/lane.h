@@ -8,6 +8,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "pipeline/quality/budget_choice.h"
 #include "pipeline/requests.h"
@@ -41,6 +42,9 @@ class Lane {
 
   // What Workspace::Describe says, once nothing is painted. A newer picture, which needs the scene too, waits for it.
   Expected<SceneDescription> Describe(const SceneRequest& scene, std::optional<int> frame);
+
+  // What Workspace::SceneFiles says.
+  std::vector<std::string> SceneFiles();
 
   void Stop();  // cancels, now and from now on
 

@@ -16,7 +16,6 @@
 #include "core/style/style_keyframes.h"
 #include "pipeline/file_stamp.h"
 #include "pipeline/scene/blender_scene.h"
-#include "pipeline/scene/run_inputs.h"
 #include "pipeline/style/style_locations.h"
 
 namespace scumble {
@@ -333,9 +332,8 @@ void Session::State::Tell(const std::string& why) {
 // After a picture: what it was made of.
 void Session::State::WatchFilesOf(const Moment& moment, std::chrono::system_clock::time_point begun, bool is_painted) {
   const PictureJob job = JobAt(moment, std::nullopt);
-  const std::string of =
-      fmt::format("{}\n{}\n{}", job.scene.scene, job.style.style, fmt::join(job.style.assigned, "\n"));
-  std::string belongs = fmt::format("{}\n{} {}", of, moment.generation, is_painted);
+  std::string belongs = fmt::format("{}\n{}\n{}\n{} {}", job.scene.scene, job.style.style,
+                                    fmt::join(job.style.assigned, "\n"), moment.generation, is_painted);
   std::vector<StyleEntry> styles = ChosenStyles(moment.state);
   {
     const std::lock_guard lock(mutex);
@@ -343,35 +341,19 @@ void Session::State::WatchFilesOf(const Moment& moment, std::chrono::system_cloc
     if (watched == belongs) return;
     watched = belongs;
   }
-  const Expected<SceneDescription> described = LaneOf(finals, job).Describe(job.scene, job.picture.frame);
-  std::vector<std::string> files;
+  Lane& lane = LaneOf(finals, job);
+  const Expected<SceneDescription> described = lane.Describe(job.scene, job.picture.frame);
+  std::vector<std::string> files = lane.SceneFiles();
+  files.push_back(job.scene.scene);
   if (described) {
-    files = described->files;
     files.insert(files.end(), described->style_files.begin(), described->style_files.end());
     SetWarnings(described->warnings);
-  } else {
-    RunInputs inputs;
-    inputs.ReadsScene(job.scene.scene);
-    files = inputs.Inputs();
-    files.push_back(job.scene.scene);
   }
   // The names in a folder count only where a file may be missing.
   std::erase_if(files, [](const std::string& file) {
     std::error_code failed;
     return std::filesystem::is_directory(file, failed);
   });
-  {
-    const std::lock_guard lock(mutex);
-    if (known_of != of) known_of = of, known_files.clear();
-    // Of a scene that cannot be read, what it was read from; otherwise files that are away, which may come back.
-    std::error_code failed;
-    for (const std::string& file : known_files) {
-      if (!described || !std::filesystem::exists(file, failed)) files.push_back(file);
-    }
-    std::sort(files.begin(), files.end());
-    files.erase(std::unique(files.begin(), files.end()), files.end());
-    known_files = files;
-  }
   for (const StyleEntry& style : styles) AddFilesAround(style, !is_painted, files);
   watch->Watch(files, begun);
 }

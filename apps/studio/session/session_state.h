@@ -59,10 +59,8 @@ struct Session::State {
   std::uint64_t revision = 1;
   std::uint64_t generation = 1;  // raised when a file has changed
   std::optional<Error> problem;
-  std::string watched;                   // what the files that are watched belong to
-  std::string known_of;                  // the scene and the styles of `known_files`
-  std::vector<std::string> known_files;  // that they were read from
-  std::vector<StyleEntry> compared;      // styles of the last pictures that were asked for beside the main one
+  std::string watched;               // what the files that are watched belong to
+  std::vector<StyleEntry> compared;  // styles of the last pictures that were asked for beside the main one
   std::map<std::string, std::shared_ptr<const StyleFacts>> facts;  // by style id
   std::map<std::string, SceneDescription> descriptions;            // by what they depend on
   std::map<std::string, SceneDescription> last_descriptions;       // by scene file, the newest of each

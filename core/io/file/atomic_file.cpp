@@ -90,6 +90,10 @@ Expected<Target> CheckTarget(const fs::path& path) {
   const fs::file_status status = fs::status(target, ignored);
   if (fs::is_directory(status)) return OutputError("cannot write " + path.string() + ": it is a folder");
   if (fs::exists(status) && !fs::is_regular_file(status)) return Target{target, status, true};
+  if (fs::exists(status) && IsWriteProtected(target)) {
+    return OutputError("cannot write " + path.string() + ": it is write-protected (" + std::strerror(errno) +
+                       "): make it writable, as chmod u+w does, or give another name");
+  }
   const fs::path folder = target.parent_path();
   if (!folder.empty() && !fs::exists(folder, ignored)) {
     return OutputError("cannot write " + path.string() + ": there is no folder " + folder.string() + "; make it first");
@@ -98,6 +102,10 @@ Expected<Target> CheckTarget(const fs::path& path) {
 }
 
 }  // namespace
+
+bool IsWriteProtected(const fs::path& path) {
+  return ::faccessat(AT_FDCWD, path.c_str(), W_OK, AT_EACCESS) != 0 && errno != ENOENT && errno != ENOTDIR;
+}
 
 Status CheckWritable(const fs::path& path) {
   SCUMBLE_ASSIGN(const Target target, CheckTarget(path));

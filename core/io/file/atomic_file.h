@@ -14,8 +14,8 @@ namespace scumble {
 
 // Writes to a temporary name in the same folder, flushes it to disk, then renames. An interrupted run leaves the old
 // file or none. Links are followed. A target that is no regular file (a device, a pipe) is written directly. A missing
-// folder is an error: on a farm it is an unmounted share. A replaced file keeps its permissions. Every error gives the
-// file's name and the system's reason.
+// folder is an error: on a farm it is an unmounted share. So is a file that the user may not write, as for `cp`: it may
+// be an approved one. A replaced file keeps its permissions. Every error gives the file's name and the system's reason.
 Status WriteFileAtomically(const std::filesystem::path& path, std::span<const std::byte> bytes);
 Status WriteFileAtomically(const std::filesystem::path& path, std::string_view text);
 
@@ -24,6 +24,9 @@ std::uint64_t BytesWrittenByThisThread();
 
 // Whether WriteFileAtomically can write there. Makes and removes its temporary file; call it before long work.
 Status CheckWritable(const std::filesystem::path& path);
+
+// Whether a file is there that this user may not write.
+bool IsWriteProtected(const std::filesystem::path& path);
 
 // The whole file, `limit` bytes at most. If it is larger, that is an error, and `remedy` ends the message.
 Expected<std::vector<std::byte>> ReadWholeFile(const std::filesystem::path& path,

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <ctime>
 #include <fstream>
 #include <mutex>
@@ -27,6 +28,37 @@ std::string MarkIn(const std::string& name) {
   const std::size_t mark = name.size() - kEnd;
   const bool has_form = name[mark - 1] == '.' && name[mark + kMarkLength] == '-';
   return has_form ? name.substr(mark, kMarkLength) : "";
+}
+
+constexpr std::string_view kFolderPrefix = "scumble-";
+
+bool IsFolderOfOurs(int file, struct stat& found) {
+  return ::fstat(file, &found) == 0 && S_ISDIR(found.st_mode) && found.st_uid == ::geteuid();
+}
+
+int OpenFolder(const fs::path& path) { return ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_DIRECTORY); }
+
+void RemoveFolderIfLeft(const fs::path& path, bool lock_is_seen) {
+  const int file = OpenFolder(path);
+  if (file < 0) return;
+  struct stat found;
+  const bool is_ours = IsFolderOfOurs(file, found);
+  const bool is_old = is_ours && std::time(nullptr) - found.st_mtime > kDay;
+  std::error_code failed;
+  if (is_ours && (lock_is_seen || is_old) && ::flock(file, LOCK_EX | LOCK_NB) == 0) fs::remove_all(path, failed);
+  ::close(file);
+}
+
+void RemoveStaleFolders(const fs::path& parent) {
+  std::error_code failed;
+  for (fs::directory_iterator entry(parent, failed); !failed && entry != fs::directory_iterator();
+       entry.increment(failed)) {
+    const std::string name = entry->path().filename().string();
+    const std::size_t stroke = kFolderPrefix.size() + kMarkLength;
+    if (name.size() != stroke + 1 + kRandomLength || !name.starts_with(kFolderPrefix) || name[stroke] != '-') continue;
+    const std::string mark = name.substr(kFolderPrefix.size(), kMarkLength);
+    RemoveFolderIfLeft(entry->path(), mark == KernelMark() && mark != kNoMark);
+  }
 }
 
 void RemoveIfLeft(const fs::path& path, bool lock_is_seen) {
@@ -70,6 +102,24 @@ void RemoveStaleTemporariesOnce(const fs::path& folder) {
     if (!done.insert(folder).second) return;
   }
   RemoveStaleTemporaries(folder);
+}
+
+LockedFolder MakeLockedFolder(const fs::path& parent) {
+  RemoveStaleFolders(parent);
+  for (int tries = 0; tries < 10; ++tries) {
+    std::string name = (parent / (std::string(kFolderPrefix) + KernelMark() + "-XXXXXX")).string();
+    if (!::mkdtemp(name.data())) return {};
+    const int lock = OpenFolder(name);
+    if (lock < 0) return {name, -1};
+    // Another run may have taken it for a stale one, until it was locked: then it is gone, or soon will be.
+    struct stat held, there;
+    const bool is_held =
+        ::flock(lock, LOCK_EX) != 0 ||
+        (::fstat(lock, &held) == 0 && ::stat(name.c_str(), &there) == 0 && held.st_ino == there.st_ino);
+    if (is_held) return {name, lock};
+    ::close(lock);
+  }
+  return {};
 }
 
 }  // namespace scumble::internal

@@ -1,4 +1,4 @@
-// Stale temporary files: those of killed runs. How they are recognised, and when they are removed.
+// Stale temporary files and folders: those of killed runs. How they are recognised, and when they are removed.
 //
 // A file that is being written is called ".NAME.MARK-XXXXXX.scumble-tmp": NAME is the output's own name, MARK stands
 // for this system since its last start, X are random. The file is locked (flock) until it has its final name, and the
@@ -25,5 +25,14 @@ void RemoveStaleTemporaries(const std::filesystem::path& folder);
 
 // RemoveStaleTemporaries, on the first call of this process for this folder. Thread-safe.
 void RemoveStaleTemporariesOnce(const std::filesystem::path& folder);
+
+// A new folder "scumble-MARK-XXXXXX" in `parent`, locked and stale by the same rules as a file. Removes those there
+// that are stale and the user's. The caller closes `lock` after it has removed the folder. Where none can be made, the
+// path is empty.
+struct LockedFolder {
+  std::filesystem::path path;
+  int lock = -1;
+};
+LockedFolder MakeLockedFolder(const std::filesystem::path& parent);
 
 }  // namespace scumble::internal

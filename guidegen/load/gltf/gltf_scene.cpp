@@ -36,8 +36,8 @@ class GltfLoader {
   GltfLoader(std::string file, std::optional<std::string> animation, MissingNormals missing)
       : file_(std::move(file)), animation_(std::move(animation)), missing_(missing) {}
 
-  Expected<MovingScene> Load(const std::filesystem::path& path) {
-    SCUMBLE_RETURN_IF_ERROR(ParseGltf(path, model_, warnings_));
+  Expected<MovingScene> Load(const std::filesystem::path& path, const FileListener& on_file) {
+    SCUMBLE_RETURN_IF_ERROR(ParseGltf(path, on_file, model_, warnings_));
     SCUMBLE_RETURN_IF_ERROR(CheckVersionAndExtensions());
     SCUMBLE_RETURN_IF_ERROR(LoadGltfMaterials(model_, file_, scene_, warnings_));
     SCUMBLE_RETURN_IF_ERROR(ReadMaterialExtras(model_, file_, scene_));
@@ -333,14 +333,14 @@ class GltfLoader {
 
 }  // namespace
 
-Expected<Scene> LoadGltfScene(const std::filesystem::path& path, MissingNormals missing) {
-  SCUMBLE_ASSIGN(MovingScene loaded, GltfLoader(path.string(), std::nullopt, missing).Load(path));
+Expected<Scene> LoadGltfScene(const std::filesystem::path& path, MissingNormals missing, const FileListener& on_file) {
+  SCUMBLE_ASSIGN(MovingScene loaded, GltfLoader(path.string(), std::nullopt, missing).Load(path, on_file));
   return std::move(loaded.scene);
 }
 
 Expected<MovingScene> LoadMovingGltfScene(const std::filesystem::path& path, const std::string& animation,
-                                          MissingNormals missing) {
-  return GltfLoader(path.string(), animation, missing).Load(path);
+                                          MissingNormals missing, const FileListener& on_file) {
+  return GltfLoader(path.string(), animation, missing).Load(path, on_file);
 }
 
 }  // namespace scumble

@@ -19,13 +19,14 @@
 
 #include "core/image/status.h"
 #include "guidegen/load/auto_smooth.h"
+#include "guidegen/load/file_listener.h"
 #include "guidegen/load/gltf/rig.h"
 #include "guidegen/scene/scene.h"
 
 namespace scumble {
 
 // At rest: nodes as they stand, skins and morph weights applied.
-Expected<Scene> LoadGltfScene(const std::filesystem::path& path, MissingNormals missing);
+Expected<Scene> LoadGltfScene(const std::filesystem::path& path, MissingNormals missing, const FileListener& on_file);
 
 struct MovingScene {
   Scene scene;  // at rest
@@ -34,6 +35,6 @@ struct MovingScene {
 };
 // `animation` as in GltfAnimation::Read.
 Expected<MovingScene> LoadMovingGltfScene(const std::filesystem::path& path, const std::string& animation,
-                                          MissingNormals missing);
+                                          MissingNormals missing, const FileListener& on_file);
 
 }  // namespace scumble

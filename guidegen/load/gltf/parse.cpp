@@ -262,7 +262,8 @@ bool KeepEncoded(tinygltf::Image* image, int, std::string* error, std::string*, 
 
 // Files and folders that tinygltf may read.
 struct Surroundings {
-  std::string folder;            // the scene's
+  std::string folder;  // the scene's
+  const FileListener* on_file = nullptr;
   bool keep_pictures = false;    // pictures are there, too
   bool hidden_pictures = false;  // some were requested, and hidden
   std::set<std::filesystem::path> read = {};
@@ -280,6 +281,7 @@ bool HasPictureEnding(const std::string& name) {
 bool BesideScene(const std::string& name, void* base) {
   Surroundings& surroundings = *static_cast<Surroundings*>(base);
   if (name.rfind(surroundings.folder, 0) != 0) return false;
+  (*surroundings.on_file)(name);
   if (!surroundings.keep_pictures && HasPictureEnding(name)) {
     surroundings.hidden_pictures = true;
     return false;
@@ -407,7 +409,8 @@ Status CheckRequiredExtensions(const std::string& file, std::span<const std::str
   return InputError(file + " requires " + names + (unknown > kMostNamed ? ", …" : "") + ", which cannot be read" + fix);
 }
 
-Status ParseGltf(const std::filesystem::path& path, tinygltf::Model& model, WarningCounter& warnings) {
+Status ParseGltf(const std::filesystem::path& path, const FileListener& on_file, tinygltf::Model& model,
+                 WarningCounter& warnings) {
   const std::string file = path.string();
   SCUMBLE_ASSIGN(const std::vector<std::byte> whole, ReadRegularFile(path));
   std::span<const unsigned char> bytes = AsChars(whole);
@@ -448,13 +451,17 @@ Status ParseGltf(const std::filesystem::path& path, tinygltf::Model& model, Warn
                       " buffers without a uri; expected one, the file's own binary chunk: export it again, with " +
                       "compression of meshes (meshopt) switched off");
   }
-  Surroundings surroundings{FolderOf(path)};
-  const Status parsed = RunTinygltf(file, surroundings, bytes, model, warnings);
-  if (parsed || !surroundings.hidden_pictures) return parsed;
-  // A buffer may have a picture's name.
-  surroundings = {surroundings.folder, true};
-  model = tinygltf::Model();
-  return RunTinygltf(file, surroundings, bytes, model, warnings);
+  Surroundings surroundings{FolderOf(path), &on_file};
+  Status parsed = RunTinygltf(file, surroundings, bytes, model, warnings);
+  if (!parsed && surroundings.hidden_pictures) {  // a buffer may have a picture's name
+    surroundings = {surroundings.folder, &on_file, true};
+    model = tinygltf::Model();
+    parsed = RunTinygltf(file, surroundings, bytes, model, warnings);
+  }
+  for (const tinygltf::Image& image : model.images) {
+    if (image.image.empty() && !image.uri.empty()) on_file(PictureFile(path, image.uri));
+  }
+  return parsed;
 }
 
 // The escapes %20 to %FF stand for bytes; a name with another % keeps it.

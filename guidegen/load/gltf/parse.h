@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/image/status.h"
+#include "guidegen/load/file_listener.h"
 #include "guidegen/load/loader_util.h"
 
 namespace tinygltf {
@@ -22,7 +23,8 @@ namespace scumble {
 // elements and extras of more values than any scene has, each of which it makes hundreds of times as large. Refuses
 // buffers that repeat one chunk or one large file, of which it would keep as many copies. Its exceptions become errors
 // that name the file, its messages about accepted files become warnings. Only regular files beside the scene are read.
-Status ParseGltf(const std::filesystem::path& path, tinygltf::Model& model, WarningCounter& warnings);
+Status ParseGltf(const std::filesystem::path& path, const FileListener& on_file, tinygltf::Model& model,
+                 WarningCounter& warnings);
 
 // Ok, or an error that names the extensions among `required` that are not read here, and how to export without them.
 // ParseGltf asks this before anything else.

@@ -92,21 +92,26 @@ TEST_F(CliFiles, NorThatOfFilesThatABinarySceneNames) {
   RunOk(With(stylize, {"-o", "new.png"}));
 }
 
-// A name is what follows any space of a line. Of 50,000 words all such ends were kept at once: 50,000 times 50 KB, 2.5
-// GB.
-TEST_F(CliFiles, LinesOfManyWordsTakeNoMemory) {
+// They are those that the loader looks for, wherever that is.
+TEST_F(CliFiles, NorThatOfFilesInOtherFolders) {
   WriteStyle("style");
-  std::string words;
-  for (int i = 0; i < 50'000; ++i) words += "a ";
-  WriteText("tri.obj", "mtllib " + words + "tri.mtl\nusemtl m\n" + TriangleObj());
-  WriteText("tri.mtl", "newmtl m\nmap_Kd " + words + "skin.png\n");
-  WritePainted("skin.png", 8, 8);
-  const pid_t child = Start({"stylize", "tri.obj", "--style", "style", "--size", "16", "-o", "skin.png"});
-  int status = 0;
-  rusage usage{};
-  ASSERT_EQ(::wait4(child, &status, 0, &usage), child);
-  EXPECT_EQ(WEXITSTATUS(status), 2) << "the last words name files all the same";
-  EXPECT_LT(usage.ru_maxrss, 1'500'000) << "KB";
+  fs::create_directory(At("tex"));
+  WriteText("tri.obj", "mtllib tex\\tri.mtl\nusemtl m\n" + TriangleObj());
+  WriteText("tex/tri.mtl", "newmtl m\nmap_Kd near.png\nmap_Ke far.png\n");
+  std::string cloud = TrianglePly();
+  WriteText("tri.ply", cloud.insert(cloud.find("element"), "comment TextureFile tex\\cloud.png\n"));
+  for (const std::string name : {"tex/near.png", "far.png", "tex/cloud.png"}) WritePainted(name, 8, 8);
+  const Arguments tail = {"--style", "style", "--size", "16", "-o"};
+  const auto expect_refused = [&](const std::string& scene, const std::string& output) {
+    const std::string before = Bytes(output);
+    ExpectError(With(With({"stylize", scene}, tail), {output}), 2, {output, "overwrite a file of the scene " + scene});
+    EXPECT_EQ(Bytes(output), before);
+  };
+  expect_refused("tri.obj", "tex/near.png");
+  expect_refused("tri.obj", "far.png");
+  expect_refused("tri.ply", "tex/cloud.png");
+  ExpectError({"guidegen", "tri.obj", "--frames", "1-2", "--size", "16", "-o", "tex/tri.mtl"}, 2, {"tex/tri.mtl"});
+  RunOk(With(With({"stylize", "tri.obj"}, tail), {"tex/new.png"}));
 }
 
 TEST_F(CliFiles, OutputsAreTriedBeforeTheWork) {

@@ -302,6 +302,20 @@ TEST_F(CliSequence, HolesAreNamedAndTheOthersMade) {
   EXPECT_EQ(failed, 4);
 }
 
+// Whoever started it sees which frames there are.
+TEST_F(CliSequence, AFaultThatEndsItTellsOfTheFramesBefore) {
+  WriteStyle("style");
+  WriteGuideFile("g.exr", Ball(32));
+  std::filesystem::create_symlink("/dev/full", At("p2.png"));
+  const CommandResult ended =
+      Run({"transfer", "g.exr", "--style", "style", "--frames", "1-3", "-o", "p#.png", "--json"});
+  EXPECT_EQ(ended.code, 4) << ended.err;
+  const nlohmann::json report = ended.Json();
+  EXPECT_EQ(report["made"], 1);
+  ASSERT_EQ(report["frames"].size(), 1u);
+  EXPECT_EQ(report["frames"][0]["output"], "p1.png");
+}
+
 TEST_F(CliSequence, AnErrorThatWouldComeAgainEndsIt) {
   WriteStyle("style");
   WriteGuideFile("g.exr", Ball(32));

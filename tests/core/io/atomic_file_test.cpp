@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -123,6 +125,31 @@ TEST(AtomicFile, PermissionsOfTheOldFileStay) {
   ASSERT_TRUE(WriteFileAtomically(folder / "private.txt", "new"));
   EXPECT_EQ(fs::status(folder / "private.txt").permissions(), fs::perms::owner_read | fs::perms::owner_write);
   EXPECT_EQ(Content(folder / "private.txt"), "new");
+}
+
+// As another user, because root may write any file.
+TEST(AtomicFile, AWriteProtectedFileStaysAsItIs) {
+  const TemporaryFolder folder;
+  const fs::path locked = folder / "locked.png";
+  std::ofstream(locked) << "approved";
+  fs::permissions(folder.path(), fs::perms::all);
+  fs::permissions(locked, fs::perms::owner_read | fs::perms::others_read);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    if (::geteuid() == 0 && ::seteuid(65534) != 0) ::_exit(2);
+    const Status checked = CheckWritable(locked), written = WriteFileAtomically(locked, "other");
+    const bool is_told = !written && written.error().kind == ErrorKind::kOutput &&
+                         written.error().message.find("write-protected") != std::string::npos;
+    const Status another = WriteFileAtomically(folder / "new.png", "new");
+    ::_exit(!checked && is_told && another && IsWriteProtected(locked) ? 0 : 1);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+  std::string text;
+  std::ifstream(locked) >> text;
+  EXPECT_EQ(text, "approved");
+  EXPECT_FALSE(IsWriteProtected(folder / "lost.png"));
 }
 
 TEST(AtomicFile, AFolderIsNotOverwritten) {

@@ -71,6 +71,27 @@ TEST(LeftoverFiles, AreThoseOfProcessesThatAreNoMore) {
 }
 
 // With one descriptor left the file can be made and cannot be locked: another run would take it for a leftover.
+TEST(LeftoverFiles, AFolderOfAKilledProcessIsRemoved) {
+  const TemporaryFolder folder;
+  const LockedFolder used = MakeLockedFolder(folder.path());
+  WriteText(used.path / "scene.glb", "x");
+  fs::create_directory(folder / "scumble-abcdef");
+  const pid_t child = ::fork();
+  if (child == 0) {
+    WriteText(MakeLockedFolder(folder.path()).path / "scene.glb", "x");
+    ::kill(::getpid(), SIGKILL);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_EQ(Names(folder).size(), 3u);
+  const LockedFolder next = MakeLockedFolder(folder.path());
+  const std::vector<std::string> names = Names(folder);
+  EXPECT_EQ(names.size(), 3u) << "the killed one's is gone";
+  EXPECT_TRUE(fs::exists(used.path / "scene.glb") && fs::exists(next.path) && fs::exists(folder / "scumble-abcdef"));
+  ::close(used.lock);
+  ::close(next.lock);
+}
+
 TEST(LeftoverFiles, AFileThatCannotBeLockedIsNotWritten) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP()
