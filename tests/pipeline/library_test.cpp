@@ -124,8 +124,10 @@ TEST(Library, MotionIsThatOfGuidegen) {
     }
     EXPECT_GT(moved, 1.0) << "something moves";
   }
-  scene.frame = std::numeric_limits<int>::max();
+  scene.frame = 999'999'999;
   EXPECT_TRUE(stylizer.Guides(scene, {Layer::kMotion}));
+  scene.frame = std::numeric_limits<int>::max();
+  EXPECT_FALSE(stylizer.Guides(scene, {Layer::kMotion}));
 }
 
 TEST(Library, WhatWasMovedFromMayBeCancelled) {
