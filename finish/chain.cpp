@@ -17,6 +17,7 @@
 #include "core/image/hash.h"
 #include "finish/area/area_effects.h"
 #include "finish/area/ink.h"
+#include "finish/area/oklab_blocks.h"
 #include "finish/finish.h"
 #include "finish/jitter.h"
 #include "finish/outline/outline.h"
@@ -33,7 +34,9 @@ using internal::HardLight, internal::IsOfGuides, internal::OklabBlock, internal:
 // Background has no light and no colour of its own: what looks at them leaves it as it is, a renderer's sky too. It is
 // infinitely far.
 std::span<const float> CoverageFor(const FinishPass& pass, const FinishFrame& frame) {
-  const bool looks = std::holds_alternative<ShadowsPass>(pass.effect) ||
+  const auto* const tones = std::get_if<TonesPass>(&pass.effect);
+  const bool looks = (tones && tones->tone == TonesPass::Tone::kLight) ||
+                     std::holds_alternative<ShadowsPass>(pass.effect) ||
                      std::holds_alternative<ToonPass>(pass.effect) || std::holds_alternative<RenderPass>(pass.effect) ||
                      std::holds_alternative<DepthPass>(pass.effect);
   return looks ? frame.guides->Plane(Layer::kCoverage) : std::span<const float>();
@@ -118,7 +121,14 @@ std::optional<PointEffect> PointEffectOf(const FinishStep& step, const FinishFra
       lights = LightsOf(one, frame);
       return internal::MakeRender(one, frame);
     }
-    std::optional<PointEffect> operator()(const TonesPass& one) { return internal::MakeTones(one); }
+    std::optional<PointEffect> operator()(const TonesPass& one) {
+      if (one.tone == TonesPass::Tone::kPaint) return internal::MakeTones(one);
+      const auto light =
+          std::make_shared<const internal::FloatPlane>(internal::ToneOf(EdgesPass::Tone::kLight, frame, picture));
+      lights = {{*light, internal::kHardStep}};
+      return [light, effect = internal::MakeTones(one, *light)](std::size_t first, std::size_t count,
+                                                                OklabBlock& block) { effect(first, count, block); };
+    }
     std::optional<PointEffect> operator()(const ShadowsPass& one) {
       if (!(one.soften > 0.0)) {
         lights = LightsOf(one, frame);
