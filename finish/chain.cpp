@@ -8,10 +8,11 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "core/filter/oklab_rows.h"
 #include "core/filter/parallel.h"
-#include "core/filter/wide_loops.h"
 #include "core/image/check.h"
 #include "core/image/hash.h"
 #include "finish/area/area_effects.h"
@@ -20,26 +21,22 @@
 #include "finish/finish.h"
 #include "finish/jitter.h"
 #include "finish/outline/outline.h"
+#include "finish/point_loop.h"
+#include "finish/tone/light_contour.h"
 #include "finish/tone/point_effect.h"
-#include "finish/tone/surface_share.h"
+#include "finish/tone/toon_bands.h"
 
 namespace scumble {
 namespace {
 
-using internal::OklabBlock, internal::PointEffect;
-
-// A step of a loop over pixels.
-struct PointStep {
-  PointEffect apply;
-  const FinishStep* step = nullptr;
-  std::span<const float> coverage;  // the step changes only surfaces, as far as they cover; empty: it changes all
-  PointEffect behind = {};          // what it does to background, where that is another thing; `coverage` parts the two
-};
+using internal::HardLight, internal::IsOfGuides, internal::OklabBlock, internal::PointEffect, internal::PointStep;
 
 // Background has no light and no colour of its own: what looks at them leaves it as it is, a renderer's sky too. It is
 // infinitely far.
 std::span<const float> CoverageFor(const FinishPass& pass, const FinishFrame& frame) {
-  const bool looks = std::holds_alternative<ShadowsPass>(pass.effect) ||
+  const auto* const tones = std::get_if<TonesPass>(&pass.effect);
+  const bool looks = (tones && tones->tone == TonesPass::Tone::kLight) ||
+                     std::holds_alternative<ShadowsPass>(pass.effect) ||
                      std::holds_alternative<ToonPass>(pass.effect) || std::holds_alternative<RenderPass>(pass.effect) ||
                      std::holds_alternative<DepthPass>(pass.effect);
   return looks ? frame.guides->Plane(Layer::kCoverage) : std::span<const float>();
@@ -73,8 +70,34 @@ void MixByShare(const Picture& before, std::span<const std::uint16_t> shares, Pi
   });
 }
 
-// The effect, where it treats each pixel by itself. `picture`: as the steps before have left it, if LooksAtPicture.
-std::optional<PointEffect> PointEffectOf(const FinishStep& step, const FinishFrame& frame, Picture& picture) {
+// The light that toon cuts or shades by; it lies in `light`. Borders that are not soft are steps.
+std::vector<HardLight> LightsOf(const ToonPass& pass, const FinishFrame& frame, std::span<const float> light) {
+  if (light.empty() || !(pass.softness > 0.0)) return {};
+  const auto bright = static_cast<float>(internal::BrightestOf(pass, frame));
+  return {{light, internal::kHardStep * bright, pass.bands, static_cast<float>(pass.bands) / bright}};
+}
+
+// The light that shade is made of.
+std::vector<HardLight> LightsOf(const ShadowsPass& pass, const FinishFrame& frame) {
+  const GuideSet& guides = *frame.guides;
+  const float hard = HasExactLight(guides) ? internal::kHardStep : internal::kHardStepInNoise;
+  std::vector<HardLight> lights;
+  if (pass.source != ShadowsPass::Source::kForm) lights.push_back({guides.Plane(Layer::kShadow), hard});
+  if (pass.source != ShadowsPass::Source::kCast)
+    lights.push_back({guides.Plane(Layer::kLuminance), hard * static_cast<float>(frame.measures.bright)});
+  return lights;
+}
+
+// Of green light, most of luminance.
+std::vector<HardLight> LightsOf(const RenderPass&, const FinishFrame& frame) {
+  const auto hard = internal::kHardStepInNoise * static_cast<float>(frame.measures.full);
+  return {{frame.guides->Plane(Layer::kLpeFull, 1), hard}};
+}
+
+// The effect, where it treats each pixel by itself, and the light that it looks at. `picture`: as the steps before have
+// left it, if LooksAtPicture.
+std::optional<PointEffect> PointEffectOf(const FinishStep& step, const FinishFrame& frame, Picture& picture,
+                                         std::vector<HardLight>& lights) {
   const FinishPass& pass = step.pass;
   const bool is_of_sheet = pass.at == FinishPass::Stage::kSheet;
   if (is_of_sheet && std::holds_alternative<FillPass>(pass.effect)) return std::nullopt;  // raises alpha
@@ -82,6 +105,7 @@ std::optional<PointEffect> PointEffectOf(const FinishStep& step, const FinishFra
     const FinishStep& step;
     const FinishFrame& frame;
     Picture& picture;
+    std::vector<HardLight>& lights;
     std::optional<PointEffect> operator()(const OutlinePass&) { return std::nullopt; }
     std::optional<PointEffect> operator()(const SmoothPass&) { return std::nullopt; }
     std::optional<PointEffect> operator()(const EdgesPass&) { return std::nullopt; }
@@ -89,13 +113,27 @@ std::optional<PointEffect> PointEffectOf(const FinishStep& step, const FinishFra
     std::optional<PointEffect> operator()(const PigmentPass&) { return std::nullopt; }
     std::optional<PointEffect> operator()(const ToonPass& one) {
       const auto light = std::make_shared<const internal::FloatPlane>(internal::ToonLight(one, frame));
+      lights = LightsOf(one, frame, *light);
       return [light, effect = internal::MakeToon(one, frame, *light)](
                  std::size_t first, std::size_t count, OklabBlock& block) { effect(first, count, block); };
     }
-    std::optional<PointEffect> operator()(const RenderPass& one) { return internal::MakeRender(one, frame); }
-    std::optional<PointEffect> operator()(const TonesPass& one) { return internal::MakeTones(one); }
+    std::optional<PointEffect> operator()(const RenderPass& one) {
+      lights = LightsOf(one, frame);
+      return internal::MakeRender(one, frame);
+    }
+    std::optional<PointEffect> operator()(const TonesPass& one) {
+      if (one.tone == TonesPass::Tone::kPaint) return internal::MakeTones(one);
+      const auto light =
+          std::make_shared<const internal::FloatPlane>(internal::ToneOf(EdgesPass::Tone::kLight, frame, picture));
+      lights = {{*light, internal::kHardStep}};
+      return [light, effect = internal::MakeTones(one, *light)](std::size_t first, std::size_t count,
+                                                                OklabBlock& block) { effect(first, count, block); };
+    }
     std::optional<PointEffect> operator()(const ShadowsPass& one) {
-      if (!(one.soften > 0.0)) return internal::MakeShadows(one, frame);
+      if (!(one.soften > 0.0)) {
+        lights = LightsOf(one, frame);
+        return internal::MakeShadows(one, frame);
+      }
       const auto shade = std::make_shared<const internal::FloatPlane>(internal::SoftShade(one, frame));
       return [shade, effect = internal::MakeShadows(one, frame, *shade)](
                  std::size_t first, std::size_t count, OklabBlock& block) { effect(first, count, block); };
@@ -113,119 +151,8 @@ std::optional<PointEffect> PointEffectOf(const FinishStep& step, const FinishFra
     }
     std::optional<PointEffect> operator()(const GradePass& one) { return internal::MakeGrade(one); }
     std::optional<PointEffect> operator()(const FillPass& one) { return internal::MakeFill(one); }
-  } make{step, frame, picture};
+  } make{step, frame, picture, lights};
   return std::visit(make, pass.effect);
-}
-
-// From one colour to the other, as far as the share says.
-SCUMBLE_WIDE_LOOPS void Mix(const float* shares, const float* from, std::size_t count, float* to) {
-  for (std::size_t i = 0; i < count; ++i) {
-    const float mixed = from[i] + (to[i] - from[i]) * shares[i];
-    to[i] = shares[i] >= 1.0f ? to[i] : mixed;
-  }
-}
-
-void MixColors(const float* shares, std::size_t count, const OklabBlock& from, OklabBlock& to) {
-  Mix(shares, from.lightness.data(), count, to.lightness.data());
-  Mix(shares, from.a.data(), count, to.a.data());
-  Mix(shares, from.b.data(), count, to.b.data());
-}
-
-// `count` pixels of a picture, from `first` on.
-struct Pixels {
-  std::size_t first, count;
-  const std::uint16_t* texels;
-};
-
-bool IsOfGuides(const FinishStep& step) { return step.pass.at == FinishPass::Stage::kGuides; }
-
-// How much of each pixel of a block is the surface: made once, for all steps that ask.
-class Surface {
- public:
-  using Shares = std::array<float, internal::kOklabBlock>;
-
-  // The same coverage and stage for all steps of a loop.
-  const Shares& Of(const PointStep& one, const Pixels& pixels) {
-    if (!is_made_) {
-      kinds_ = internal::SurfaceShares(one.coverage.data() + pixels.first, pixels.texels, IsOfGuides(*one.step),
-                                       pixels.count, shares_.data());
-      is_made_ = true;
-    }
-    return shares_;
-  }
-  const internal::ShareKinds& kinds() const { return kinds_; }
-
- private:
-  Shares shares_;
-  internal::ShareKinds kinds_;
-  bool is_made_ = false;
-};
-
-// How much of each pixel's change stays.
-enum class Weight { kNothing, kParts, kAll };
-
-Weight WeightsOf(const PointStep& one, const Pixels& pixels, Surface& surface, float* shares) {
-  const auto [first, count, texels] = pixels;
-  const FinishStep& step = *one.step;
-  const auto strength = static_cast<float>(step.pass.strength);
-  Weight weight = strength < 1.0f || !step.share.empty() || !step.only.empty() ? Weight::kParts : Weight::kAll;
-  const bool has_coverage = !one.coverage.empty() && !one.behind;
-  if (has_coverage) {
-    surface.Of(one, pixels);
-    if (surface.kinds().all_zero) return Weight::kNothing;
-    if (!surface.kinds().all_one) weight = Weight::kParts;
-  }
-  if (weight == Weight::kAll) return weight;
-  std::fill_n(shares, count, strength);
-  for (std::size_t i = 0; i < count && !step.share.empty(); ++i)
-    shares[i] = strength * (static_cast<float>(step.share[first + i]) / 65535.0f);
-  for (std::size_t i = 0; i < count && !step.only.empty(); ++i) shares[i] = step.only[first + i] ? shares[i] : 0.0f;
-  if (has_coverage) {
-    const Surface::Shares& of_surface = surface.Of(one, pixels);
-    for (std::size_t i = 0; i < count; ++i) shares[i] *= of_surface[i];
-  }
-  return weight;
-}
-
-// The part of mixed pixels that is background takes what the step does to that.
-void MixBehind(const PointStep& one, const Pixels& pixels, Surface& surface, const OklabBlock& before,
-               OklabBlock& block) {
-  Surface::Shares shares = surface.Of(one, pixels);
-  OklabBlock behind = before;
-  one.behind(pixels.first, pixels.count, behind);
-  for (std::size_t i = 0; i < pixels.count; ++i) shares[i] = shares[i] > 0.0f ? shares[i] : 1.0f;
-  MixColors(shares.data(), pixels.count, behind, block);
-}
-
-// Texels whose colour no step changes keep their bits, those of alpha 0 too.
-void PaintBlock(std::span<const PointStep> steps, std::size_t first, std::size_t count, std::uint16_t* texels) {
-  OklabBlock given, block, before;
-  internal::OklabFromTexels(texels, count, given);
-  block = given;
-  const Pixels pixels{first, count, texels};
-  Surface surface;
-  for (const PointStep& one : steps) {
-    Surface::Shares shares;
-    const Weight weight = WeightsOf(one, pixels, surface, shares.data());
-    if (weight == Weight::kNothing) continue;
-    if (one.behind) surface.Of(one, pixels);
-    const bool mixes_behind = one.behind && surface.kinds().is_mixed;
-    if (weight == Weight::kParts || mixes_behind) before = block;
-    one.apply(first, count, block);
-    if (mixes_behind) MixBehind(one, pixels, surface, before, block);
-    if (weight == Weight::kParts) MixColors(shares.data(), count, before, block);
-  }
-  internal::PutBlock(given, 1.0f, nullptr, count, block, texels);
-}
-
-bool PaintPoints(std::span<const PointStep> steps, internal::RowProgress& progress, Picture& picture) {
-  return internal::ForEachRow({0, 0, picture.width, picture.height}, progress, [&](int y) {
-    const auto width = static_cast<std::size_t>(picture.width);
-    for (std::size_t x = 0; x < width; x += internal::kOklabBlock) {
-      const std::size_t count = std::min(internal::kOklabBlock, width - x);
-      PaintBlock(steps, std::size_t(y) * width + x, count, picture.At(static_cast<int>(x), y));
-    }
-  });
 }
 
 // What the step's pass leaves to chance, for the frame. Draw 0 has the frame's own seed.
@@ -278,15 +205,16 @@ Status Apply(std::span<const FinishStep* const> steps, const FinishFrame& frame,
     const std::size_t begin = i;
     for (; i < steps.size(); ++i) {
       if (i > begin && LooksAtPicture(steps[i]->pass)) break;
-      std::optional<PointEffect> effect = PointEffectOf(*steps[i], FrameOf(*steps[i], frame), picture);
+      std::vector<HardLight> lights;
+      std::optional<PointEffect> effect = PointEffectOf(*steps[i], FrameOf(*steps[i], frame), picture, lights);
       if (!effect) break;
-      points.push_back({*std::move(effect), steps[i], CoverageFor(steps[i]->pass, frame)});
+      points.push_back({*std::move(effect), steps[i], CoverageFor(steps[i]->pass, frame), {}, std::move(lights)});
       if (const auto* depth = std::get_if<DepthPass>(&steps[i]->pass.effect))
         points.back().behind = internal::MakeDepthOfBackground(*depth, frame);
     }
     if (!points.empty()) {
       internal::RowProgress rows(progress, share * double(begin), share * double(i), std::max(1, picture.height));
-      if (!PaintPoints(points, rows, picture)) return CancelledError();
+      if (!internal::PaintPoints(points, frame, rows, picture)) return CancelledError();
       continue;
     }
     const FinishStep& step = *steps[i++];

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "core/image/finish_pass.h"
+#include "core/image/fragments.h"
 #include "core/image/guides.h"
 #include "core/image/progress.h"
 #include "core/image/status.h"
@@ -69,6 +70,9 @@ struct FinishFrame {
   // Where `guides` were upsampled: what they were made of, a whole number of times smaller, with their layers. Strokes
   // are traced on these, which have no blocks.
   const GuideSet* small_guides = nullptr;
+  // Of the picture as it is given, by fragment of the guides; null: not known. Effects that treat each pixel by itself
+  // then change each surface of a pixel by its own paint, else by the pixel's.
+  const FragmentColors* colors = nullptr;
   // Pixels of `guides` from one sample to the next.
   int Apart() const { return small_guides ? guides->width() / small_guides->width() : 1; }
 };

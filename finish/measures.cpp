@@ -37,7 +37,7 @@ bool Looks(const ToonPass& pass) {
 }
 bool Looks(const RenderPass&) { return true; }
 bool Looks(const DepthPass& pass) { return pass.near == 0.0 || pass.far == 0.0; }
-bool Looks(const TonesPass&) { return false; }
+bool Looks(const TonesPass& pass) { return pass.tone == TonesPass::Tone::kLight; }
 bool Looks(const PalettePass&) { return false; }
 bool Looks(const GradePass&) { return false; }
 bool Looks(const PigmentPass&) { return false; }

@@ -70,7 +70,7 @@ class Run {
                                : Region{0, 0, guides.width(), guides.height()}),
         frame_{guides, map, styles, region_},
         fragments_(frame_) {
-    scratch.times = {};
+    scratch.times = {}, scratch.colors = {};
   }
 
   Status PaintAll(std::span<const PreparedStyle* const> styles) {
@@ -91,7 +91,7 @@ class Run {
     const bool shadows = styles.front()->shadow && map_;
     if (shadows) SCUMBLE_RETURN_IF_ERROR(PaintShadows(*styles.front()));
     if (!fragments_.empty()) {
-      fragments_.Mix(out_);
+      fragments_.Mix(out_, options_.keep_colors ? &scratch_.colors : nullptr);
       start_.softly_covered = true;  // the mixed pixels may be, whatever paints their centres
     }
     std::span<const float> coverage = guides_.Plane(Layer::kCoverage);

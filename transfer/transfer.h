@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/filter/region.h"
+#include "core/image/fragments.h"
 #include "core/image/guides.h"
 #include "core/image/progress.h"
 #include "core/image/status.h"
@@ -89,6 +90,7 @@ struct TransferOptions {
   int threads = 0;                // 0: all
   const Picture* over = nullptr;  // composited underneath instead of the paper; the guides' size
   bool bare = false;              // neither paper nor `over` is put behind: PutBackground does it later
+  bool keep_colors = false;       // TransferScratch::colors is wanted afterwards
   std::optional<Region> region;   // only these pixels of the result are made; empty: all
   bool keep_field = false;        // TransferScratch::field and `active` are wanted afterwards; costs some time
   Progress progress;
@@ -111,6 +113,7 @@ struct TransferScratch {
   SourceField field;                 // empty unless TransferOptions::keep_field requests it or the transfer needs it
   std::vector<std::uint8_t> active;  // 1: pixels that the last style painted; empty likewise
   StageTimes times;
+  FragmentColors colors;                    // of the guides' fragments; empty unless keep_colors requests it
   std::vector<internal::BandMemory> bands;  // by thread
   Picture base_votes;                       // of hybrids
 };

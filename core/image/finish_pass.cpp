@@ -74,7 +74,9 @@ LayerSet Of(const PigmentPass& pass) {
 }
 
 LayerSet Of(const PalettePass&) { return {}; }
-LayerSet Of(const TonesPass&) { return {}; }
+LayerSet Of(const TonesPass& pass) {
+  return pass.tone == TonesPass::Tone::kLight ? LayerSet{Layer::kCoverage, Layer::kLuminance} : LayerSet();
+}
 LayerSet Of(const GradePass&) { return {}; }
 LayerSet Of(const FillPass&) { return {}; }
 

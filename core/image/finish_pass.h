@@ -98,6 +98,8 @@ struct RenderPass {
 
 // Lightness in steps (Winnemöller, Olsen, Gooch 2006, made to keep black, white and the middle of every step).
 struct TonesPass {
+  enum class Tone { kPaint, kLight };  // whose lightness is cut; of the light, the paint keeps its detail
+  Tone tone = Tone::kPaint;
   int bins = 8;            // 2 … 64
   double sharpness = 4.0;  // 0 … 64: 0 changes nothing, 4 rounds the steps, 64 is hard
 };
@@ -112,6 +114,7 @@ struct ShadowsPass {
   // Luminances, as shares of the picture's brightest tenth: form shade is full up to `full`, none from `none` on.
   double full = 0.1, none = 0.4;  // 0 … 4
   Rgb16 color = {0x2a2a, 0x3434, 0x6262};
+  double tint = 0.0;  // 0 … 1: kComplement turns grey paint to the hue of `color` so far
 };
 
 // What distance does to colours. u = clamp(|depth - focus| / (far - near), 0, 1)^gamma.
@@ -120,7 +123,7 @@ struct DepthPass {
   double near = 0.0, far = 0.0;             // metres; 0: the 2nd and 98th percentile of the first picture's depth
   double focus = 0.0;                       // metres; 0: near
   double gamma = 1.0;                       // 0.1 … 10
-  int layers = 0;                           // 0 smooth, 2 … 64: u takes so many values
+  int layers = 0;                           // 0 smooth, 2 … 64: u and the air take so many values
   Metric metric = Metric::kLinear;
   double desaturate = 0.6;  // 0 … 1: chroma is multiplied by 1 - desaturate · u
   double tint = 0.0;        // 0 … 1: hue and chroma go towards `color` by tint · u

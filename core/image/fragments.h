@@ -6,6 +6,7 @@
 // memory is in proportion to the borders in the picture.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -44,6 +45,15 @@ struct Fragments {
   // guides' names lack (where there are names), or values that GuideSet::Validate refuses. `name` stands for the guides
   // in the message. O(fragments).
   Status Validate(const GuideSet& guides, const std::string& name) const;
+};
+
+// The paint of each surface in a picture that mixes them, straight alpha, by fragment.
+struct FragmentColors {
+  using Texel = std::array<std::uint16_t, 4>;
+
+  std::vector<Texel> own;
+  // At the first fragment of each pixel: of the surface at its centre, and what the mixture was.
+  std::vector<Texel> centre, mixed;
 };
 
 }  // namespace scumble

@@ -302,7 +302,9 @@ std::vector<FinishKey> RenderKeys() {
 std::vector<FinishKey> TonesKeys() {
   using P = TonesPass;
   return {PassWhole("bins", &P::bins, 2, 64, "steps of lightness"),
-          PassNumber("sharpness", &P::sharpness, 0.0, 64.0, "of the steps; 0: none show")};
+          PassNumber("sharpness", &P::sharpness, 0.0, 64.0, "of the steps; 0: none show"),
+          PassChoice("tone", &P::tone, {"paint", "light"},
+                     "whose lightness is cut: with light, the paint keeps its strokes")};
 }
 
 std::vector<FinishKey> ShadowsKeys() {
@@ -315,7 +317,9 @@ std::vector<FinishKey> ShadowsKeys() {
                  "the shade's contour is evened out within each object: sigma, pixels"),
       PassNumber("full", &P::full, 0.0, 4.0, "luminance up to which a face is in full shade, 1: the brightest tenth's"),
       PassNumber("none", &P::none, 0.0, 4.0, "luminance from which on it is not"),
-      PassColor("color", &P::color, "of mode color, and the hue of complement where paint is grey")};
+      PassColor("color", &P::color, "of mode color, and of tint"),
+      PassNumber("tint", &P::tint, 0.0, 1.0,
+                 "of mode complement: share of the colour's hue and chroma that grey paint takes on")};
 }
 
 std::vector<FinishKey> DepthKeys() {

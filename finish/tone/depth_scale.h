@@ -66,20 +66,26 @@ class DepthScale {
       power_ = Curve(1.0, [gamma = pass.gamma](double u) { return u > 0.0 ? Exp2(gamma * Log2(u)) : 0.0; });
     layers_ = pass.layers;
   }
-  // Depth above 0, infinity allowed. Unclamped: 0 near, 1 far.
-  double Distance(float depth) const { return (Of(depth) - near_) * per_span_; }
+  // Depth above 0, infinity allowed. 0 near, 1 far; unclamped, or in layers from 0 to 1, but for infinity.
+  double Distance(float depth) const {
+    const double distance = (Of(depth) - near_) * per_span_;
+    if (layers_ < 2 || std::isinf(depth)) return distance;
+    return Layered(static_cast<float>(std::clamp(distance, 0.0, 1.0)));
+  }
   bool IsBeforeFocus(float depth) const { return depth < focus_depth_; }
   // 0 … 1, of many.
   void Shares(const float* depth, std::size_t count, float* out) const {
     const auto focus = static_cast<float>(focus_), per_span = static_cast<float>(std::fabs(per_span_));
     (inverse_ ? InverseDistances : Distances)(depth, focus, per_span, count, out);
     for (std::size_t i = 0; i < count && gamma_ != 1.0; ++i) out[i] = static_cast<float>(power_.At(double(out[i])));
-    const auto layers = static_cast<float>(layers_);
-    for (std::size_t i = 0; i < count && layers_ > 1; ++i)
-      out[i] = std::min(static_cast<float>(static_cast<int>(out[i] * layers)), layers - 1.0f) / (layers - 1.0f);
+    for (std::size_t i = 0; i < count && layers_ > 1; ++i) out[i] = Layered(out[i]);
   }
 
  private:
+  float Layered(float u) const {
+    const auto layers = static_cast<float>(layers_);
+    return std::min(static_cast<float>(static_cast<int>(u * layers)), layers - 1.0f) / (layers - 1.0f);
+  }
   double Of(double depth) const { return inverse_ ? -1.0 / depth : depth; }
 
   bool inverse_;

@@ -17,7 +17,8 @@ using PointEffect = std::function<void(std::size_t first, std::size_t count, Okl
 // `light`: what ToonLight gives; it must outlive the effect.
 PointEffect MakeToon(const ToonPass& pass, const FinishFrame& frame, std::span<const float> light);
 PointEffect MakeRender(const RenderPass& pass, const FinishFrame& frame);
-PointEffect MakeTones(const TonesPass& pass);
+// `light`: by pixel its lightness 0 … 1, and must outlive the effect; empty: the paint's counts.
+PointEffect MakeTones(const TonesPass& pass, std::span<const float> light = {});
 // `soft`: by pixel how much of it is in shade, and must outlive the effect; empty: what ShadeOf says.
 PointEffect MakeShadows(const ShadowsPass& pass, const FinishFrame& frame, std::span<const float> soft = {});
 PointEffect MakeDepth(const DepthPass& pass, const FinishFrame& frame);

@@ -58,7 +58,7 @@ struct Look {
 constexpr float kGrey = 0.04f;
 
 template <ShadowsPass::Mode kMode>
-Look LookOf(const LabColor& paint, const LabColor& color) {
+Look LookOf(const LabColor& paint, const LabColor& color, float tint) {
   const auto& [lightness, a, b] = paint;
   switch (kMode) {
     case ShadowsPass::Mode::kBlack:
@@ -68,7 +68,7 @@ Look LookOf(const LabColor& paint, const LabColor& color) {
     case ShadowsPass::Mode::kColor:
       return {color, paint};
     case ShadowsPass::Mode::kComplement: {
-      const float grey = 1.0f - SmoothStep(0.0f, kGrey, std::sqrt(a * a + b * b));
+      const float grey = tint * (1.0f - SmoothStep(0.0f, kGrey, std::sqrt(a * a + b * b)));
       return {{lightness, Mix(-a, color.a, grey), Mix(-b, color.b, grey)}, paint};
     }
     case ShadowsPass::Mode::kChiaroscuro:
@@ -83,11 +83,12 @@ Look LookOf(const LabColor& paint, const LabColor& color) {
 
 // `shares`: of shade.
 template <ShadowsPass::Mode kMode>
-SCUMBLE_WIDE_LOOPS void PaintShade(const float* shares, const LabColor& color, std::size_t count, OklabBlock& block) {
+SCUMBLE_WIDE_LOOPS void PaintShade(const float* shares, const LabColor& color, float tint, std::size_t count,
+                                   OklabBlock& block) {
   constexpr bool kChangesLight = kMode == ShadowsPass::Mode::kChiaroscuro || kMode == ShadowsPass::Mode::kImpression;
   for (std::size_t i = 0; i < count; ++i) {
     const LabColor paint{block.lightness[i], block.a[i], block.b[i]};
-    const auto [dark, light] = LookOf<kMode>(paint, color);
+    const auto [dark, light] = LookOf<kMode>(paint, color, tint);
     const bool stays = !kChangesLight && !(shares[i] > 0.0f);
     block.lightness[i] = stays ? paint.lightness : Mix(light.lightness, dark.lightness, shares[i]);
     block.a[i] = stays ? paint.a : Mix(light.a, dark.a, shares[i]);
@@ -95,7 +96,8 @@ SCUMBLE_WIDE_LOOPS void PaintShade(const float* shares, const LabColor& color, s
   }
 }
 
-using ShadePainter = void (*)(const float* shares, const LabColor& color, std::size_t count, OklabBlock& block);
+using ShadePainter = void (*)(const float* shares, const LabColor& color, float tint, std::size_t count,
+                              OklabBlock& block);
 
 ShadePainter PainterOf(ShadowsPass::Mode mode) {
   using Mode = ShadowsPass::Mode;
@@ -127,10 +129,11 @@ void ShadeOf(const ShadowsPass& pass, const FinishFrame& frame, std::size_t firs
 PointEffect MakeShadows(const ShadowsPass& pass, const FinishFrame& frame, std::span<const float> soft) {
   const Shade shade(pass, frame);
   const LabColor color = ToOklab(pass.color);
-  return [=, paint = PainterOf(pass.mode)](std::size_t first, std::size_t count, OklabBlock& block) {
+  return [=, tint = static_cast<float>(pass.tint), paint = PainterOf(pass.mode)](std::size_t first, std::size_t count,
+                                                                                 OklabBlock& block) {
     std::array<float, kOklabBlock> shares;
     if (soft.empty()) shade.Of(first, count, shares.data());
-    paint(soft.empty() ? shares.data() : soft.data() + first, color, count, block);
+    paint(soft.empty() ? shares.data() : soft.data() + first, color, tint, count, block);
   };
 }
 

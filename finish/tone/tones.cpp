@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <array>
+
 #include "core/filter/wide_loops.h"
 #include "finish/tone/fast_tanh.h"
 #include "finish/tone/point_effect.h"
@@ -25,10 +28,17 @@ SCUMBLE_WIDE_LOOPS void TakeSoftSteps(int levels, float sharpness, std::size_t c
 
 }  // namespace
 
-PointEffect MakeTones(const TonesPass& pass) {
-  return [levels = pass.bins, sharpness = static_cast<float>(pass.sharpness)](std::size_t, std::size_t count,
-                                                                              OklabBlock& block) {
-    if (sharpness > kStraight) TakeSoftSteps(levels, sharpness, count, block.lightness.data());
+PointEffect MakeTones(const TonesPass& pass, std::span<const float> light) {
+  return [levels = pass.bins, sharpness = static_cast<float>(pass.sharpness), light](
+             std::size_t first, std::size_t count, OklabBlock& block) {
+    if (!(sharpness > kStraight)) return;
+    if (light.empty()) return TakeSoftSteps(levels, sharpness, count, block.lightness.data());
+    // The paint takes what the step adds to the light.
+    std::array<float, kOklabBlock> stepped;
+    std::copy_n(light.data() + first, count, stepped.begin());
+    TakeSoftSteps(levels, sharpness, count, stepped.data());
+    for (std::size_t i = 0; i < count; ++i)
+      block.lightness[i] = std::clamp(block.lightness[i] + (stepped[i] - light[first + i]), 0.0f, 1.0f);
   };
 }
 

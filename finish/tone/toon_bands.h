@@ -11,6 +11,7 @@
 #include "core/filter/oklab_rows.h"
 #include "core/filter/wide_loops.h"
 #include "finish/finish.h"
+#include "finish/tone/light_contour.h"
 
 namespace scumble::internal {
 
@@ -31,16 +32,16 @@ struct ToonBlock {
 };
 
 // Of each pixel its place among the bands, the nearest border, and the squared slope of its light: of the larger
-// differences to neighbours of the same object, along each axis.
-SCUMBLE_WIDE_LOOPS inline void FindBands(const ToonBlock& block, float per_light, float bands, std::size_t count,
-                                         float* places, float* borders, float* slopes) {
+// differences to neighbours of the same object, along each axis. A difference above `hard` is no slope.
+SCUMBLE_WIDE_LOOPS inline void FindBands(const ToonBlock& block, float per_light, float bands, float hard,
+                                         std::size_t count, float* places, float* borders, float* slopes) {
   const float *const light = block.light, *const above = block.above, *const below = block.below,
                      *const across = block.across;
   const float *const object = block.object, *const object_above = block.object_above,
                      *const object_below = block.object_below, *const objects = block.objects;
-  const auto step = [](float here, float there, float object_here, float object_there) {
+  const auto step = [hard](float here, float there, float object_here, float object_there) {
     const float difference = std::fabs(there - here);
-    return object_here == object_there ? difference : 0.0f;
+    return (object_here == object_there) & (difference <= hard) ? difference : 0.0f;
   };
   const auto larger = [](float a, float b) { return a < b ? b : a; };
   for (std::size_t i = 0; i < count; ++i) {
@@ -76,6 +77,7 @@ class BandOf {
         width_(static_cast<std::size_t>(frame.guides->width())),
         bands_(static_cast<float>(pass.bands)),
         per_light_(static_cast<float>(pass.bands / BrightestOf(pass, frame))),
+        hard_(kHardStep * static_cast<float>(BrightestOf(pass, frame))),
         softness_(static_cast<float>(pass.softness * frame.scale)) {}
 
   // Of pixels of one row, kOklabBlock at most.
@@ -117,8 +119,8 @@ class BandOf {
     across[0] = has_left ? light[-1] : light[0], objects[0] = has_left ? object[-1] : object[0];
     across[count + 1] = has_right ? light[count] : light[count - 1];
     objects[count + 1] = has_right ? object[count] : object[count - 1];
-    FindBands({light, above, below, object, object_above, object_below, across, objects}, per_light_, bands_, count,
-              places, borders, slopes);
+    FindBands({light, above, below, object, object_above, object_below, across, objects}, per_light_, bands_, hard_,
+              count, places, borders, slopes);
   }
 
   // Whether the border lies between the pixel and one of its object within the softness, along a row or a column. Where
@@ -141,7 +143,7 @@ class BandOf {
 
   std::span<const float> light_, object_;
   std::size_t width_;
-  float bands_, per_light_, softness_;
+  float bands_, per_light_, hard_, softness_;
 };
 
 }  // namespace scumble::internal

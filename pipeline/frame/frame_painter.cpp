@@ -56,7 +56,7 @@ Status Paint(std::span<const PreparedStyle> prepared, const StyleMap* map, const
   options.over = settings.over;
   options.keep_field = settings.keep_field;
   options.progress = settings.finish ? Within(progress, 0.0, kTransferShare) : progress;
-  options.bare = settings.finish != nullptr;
+  options.bare = options.keep_colors = settings.finish != nullptr;
   if (!map) {
     SCUMBLE_RETURN_IF_ERROR(Transfer(prepared.front(), guides, options, scratch, picture));
   } else {
@@ -67,7 +67,8 @@ Status Paint(std::span<const PreparedStyle> prepared, const StyleMap* map, const
   if (!settings.finish) return Ok();
   Stopwatch watch;
   const FrameFinish& finish = *settings.finish;
-  const FinishFrame frame = FrameOf(settings, guides);
+  FinishFrame frame = FrameOf(settings, guides);
+  frame.colors = &scratch.colors;
   FinishLayerOptions names;
   if (settings.over) names.ground = "picture underneath";
   names.put_ground = [&](Picture& painted) {

@@ -205,7 +205,7 @@ void AddGuides(const Size& size, const LayerSet& layers, const SceneRequest& opt
   if (layers.Has(Layer::kOutline)) need.TakeTransient("distances to outlines", 3 * kFloat * PixelsOf(size));
   if (options.aa > 1) {
     // As found by the threads and as gathered, both in vectors that may have grown to twice their content, and colours.
-    const Bytes of_fragment = 2 * kFloat * (ChannelsOf(Made(layers)) + 5) + kPaint;
+    const Bytes of_fragment = 2 * kFloat * (ChannelsOf(Made(layers)) + 5) + 4 * kPaint;
     need.Take("fragments", of_fragment * FragmentsExpected(size, options.aa));
   }
   Bytes path_layers = 0;
@@ -237,7 +237,7 @@ void AddGuidesRead(const GuideFileInfo& info, const GuideReadOptions& read, Memo
   if (info.fragments > 0) {
     layers.Add({Layer::kObject, Layer::kMaterial});
     // As they stand in the file's header, in a copy of it and in memory, with an index each, and their colours.
-    const Bytes of_fragment = 3 * kFloat * (ChannelsOf(info.layers.begin()->second) + 2) + kPaint;
+    const Bytes of_fragment = 3 * kFloat * (ChannelsOf(info.layers.begin()->second) + 2) + 4 * kPaint;
     need.Take("fragments", of_fragment * info.fragments);
   }
   need.Take("guides", kFloat * ChannelsOf(layers) * pixels);

@@ -125,6 +125,33 @@ TEST(Edges, FillIsTheCurveOfTheTone) {
   }
 }
 
+// A Gaussian leaves a ramp as it is, so the difference of two has the tone itself.
+TEST(Edges, RampIsTheCurveOfTheTone) {
+  EdgesPass pass = OfPaint();
+  pass.fill = 1.0, pass.threshold = 0.7, pass.slope = 3.0, pass.width = 6.0;
+  const auto tone_at = [](int x) { return 0.2 + 0.003 * x; };
+  const Picture made = Finished(StepOf(pass), nullptr, Columns(200, 20, tone_at));
+  for (int x = 30; x < 170; ++x) {
+    const double tone = tone_at(x), ink = tone < 0.7 ? -std::tanh(3.0 * (tone - 0.7)) : 0.0;
+    EXPECT_NEAR(LightnessAt(made, x, 10), tone * (1.0 - ink), 2e-3) << x;
+  }
+}
+
+TEST(Edges, TurnWithThePicture) {
+  const Picture given = ColorfulPicture(60, 40);
+  Picture turned(40, 60);
+  for (int y = 0; y < 40; ++y) {
+    for (int x = 0; x < 60; ++x) std::copy_n(given.At(x, y), 4, turned.At(39 - y, x));
+  }
+  const Picture made = Finished(StepOf(OfPaint()), nullptr, given);
+  const Picture made_turned = Finished(StepOf(OfPaint()), nullptr, turned);
+  for (int y = 0; y < 40; ++y) {
+    for (int x = 0; x < 60; ++x) {
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(made.At(x, y)[c], made_turned.At(39 - y, x)[c], 4) << x << ' ' << y;
+    }
+  }
+}
+
 // The trough of the response beside a step, at -sigma sqrt(2 ln(k (1 + p) / p) / (1 - k^-2)).
 TEST(Edges, LineLiesBesideAStep) {
   EdgesPass pass = OfPaint();

@@ -93,7 +93,17 @@ GuideSet Cylinder(int size, float sign) {
   return guides;
 }
 
-// The formula of lengths instead of a tensor gives both cylinders one direction.
+// Directions from lengths instead of a tensor, atan2(|n(x, y + 1) - n|, |n(x + 1, y) - n|), are one for both cylinders.
+TEST(Hatch, LengthsOfDifferencesDoNotTellCylindersApart) {
+  const auto angle = [](const GuideSet& guides) {
+    const glm::vec3 here = guides.Vec3(Layer::kNormal, guides.Index(90, 100));
+    const glm::vec3 right = guides.Vec3(Layer::kNormal, guides.Index(91, 100));
+    const glm::vec3 below = guides.Vec3(Layer::kNormal, guides.Index(90, 101));
+    return std::atan2(glm::length(below - here), glm::length(right - here));
+  };
+  EXPECT_NEAR(angle(Cylinder(200, 1.0f)), angle(Cylinder(200, -1.0f)), 1e-2);
+}
+
 TEST(Hatch, CylindersThatLeanTheOtherWayAreHatchedTheOtherWay) {
   HatchPass pass;
   pass.layers = 1, pass.wobble = 0.0, pass.angle = 0.0, pass.spacing = 8.0, pass.patch = 1000.0;

@@ -110,6 +110,32 @@ TEST(Tones, HardStepsAreWhatTheBinsSay) {
   EXPECT_THAT(levels, ::testing::ElementsAre(0, 100, 200, 300));
 }
 
+// Strokes of the paint do not cross a step, which is the light's.
+TEST(Tones, OfTheLightLeaveNoSpecksInPaint) {
+  GuideSet guides = FlatGuides(60, 8);
+  Picture paint(60, 8);
+  for (int y = 0; y < 8; ++y) {
+    for (int x = 0; x < 60; ++x) {
+      guides.Plane(Layer::kLuminance)[guides.Index(x, y)] = x < 30 ? 0.2f : 0.9f;
+      std::fill_n(paint.At(x, y), 3, GreyOf(x * 5 % 7 < 3 ? 0.45 : 0.53));
+      paint.At(x, y)[3] = 65535;
+    }
+  }
+  TonesPass pass;
+  pass.bins = 3, pass.sharpness = 64.0;
+  const auto steps = [&](const Picture& made) {
+    int count = 0;
+    for (int x = 1; x < 60; ++x) count += std::fabs(LabOf(made.At(x, 4)).x - LabOf(made.At(x - 1, 4)).x) > 0.15;
+    return count;
+  };
+  ASSERT_EQ(steps(paint), 0);
+  pass.bins = 2;
+  EXPECT_GT(steps(Finished(StepOf(pass), &guides, paint)), 5) << "of the paint";
+  pass.tone = TonesPass::Tone::kLight;
+  EXPECT_EQ(steps(Finished(StepOf(pass), &guides, paint)), 1) << "of the light";
+  EXPECT_TRUE(RequiredLayers(StepOf(pass).pass).Has(Layer::kLuminance));
+}
+
 TEST(Tones, NoSharpnessIsTheSameBytes) {
   TonesPass pass;
   pass.sharpness = 0.0;
@@ -150,15 +176,25 @@ TEST(Shadows, ComplementTwiceIsThePaintAgain) {
   EXPECT_NEAR(is.y, -was.y, 1e-4);
   EXPECT_NEAR(is.z, -was.z, 1e-4);
   const Picture twice = Finished(StepOf(pass), &guides, once);
-  for (int c = 0; c < 3; ++c) EXPECT_NEAR(twice.At(0, 0)[c], paint.At(0, 0)[c], 8);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(twice.At(0, 0)[c], paint.At(0, 0)[c], 2);
 }
 
-// Grey has no opposite hue and takes that of the pass.
+// Grey has no opposite hue, and stays grey unless the pass gives one.
+TEST(Shadows, ComplementOfGreyIsGrey) {
+  GuideSet guides = FlatGuides(1, 1);
+  guides.Plane(Layer::kShadow)[0] = 1.0f;
+  ShadowsPass pass;
+  pass.mode = ShadowsPass::Mode::kComplement;
+  const Picture grey = PlainPicture(1, 1, 32896, 32896, 32896);
+  const Picture made = Finished(StepOf(pass), &guides, grey);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(made.At(0, 0)[c], grey.At(0, 0)[c], 2);
+}
+
 TEST(Shadows, ComplementOfGreyHasTheGivenHue) {
   GuideSet guides = FlatGuides(1, 1);
   guides.Plane(Layer::kShadow)[0] = 1.0f;
   ShadowsPass pass;
-  pass.mode = ShadowsPass::Mode::kComplement, pass.color = {0x2020, 0x2020, 0x8080};
+  pass.mode = ShadowsPass::Mode::kComplement, pass.color = {0x2020, 0x2020, 0x8080}, pass.tint = 1.0;
   const Picture made = Finished(StepOf(pass), &guides, PlainPicture(1, 1, 30000, 30000, 30000));
   EXPECT_GT(made.At(0, 0)[2], made.At(0, 0)[0] + 3000);
 }
@@ -223,6 +259,30 @@ TEST(Depth, LayersAreSoManyValues) {
   std::set<std::uint16_t> values;
   for (int x = 0; x < 200; ++x) values.insert(made.At(x, 0)[0]);
   EXPECT_EQ(values.size(), 4u);
+}
+
+TEST(Depth, SharesAreTheFormula) {
+  const GuideSet guides = Ramp(200);
+  DepthPass pass;
+  pass.near = 15.0, pass.far = 135.0, pass.desaturate = 1.0;
+  internal::OklabBlock block{};
+  std::fill_n(block.a.begin(), 200, 1.0f);
+  FinishFrame frame;
+  frame.guides = &guides;
+  internal::MakeDepth(pass, frame)(0, 200, block);
+  for (int x = 0; x < 200; ++x)
+    EXPECT_NEAR(block.a[std::size_t(x)], 1.0 - std::clamp(std::fabs(x - 10.0) / 120.0, 0.0, 1.0), 1e-5) << x;
+}
+
+TEST(Depth, AirHasLayersToo) {
+  const GuideSet guides = Ramp(200);
+  DepthPass pass;
+  pass.near = 5.0, pass.far = 204.0, pass.layers = 3, pass.desaturate = 0.0, pass.air = 0.75;
+  const Picture made = Finished(StepOf(pass), &guides, PlainPicture(200, 1, 0, 0, 0));
+  std::set<std::uint16_t> values;
+  for (int x = 0; x < 200; ++x) values.insert(made.At(x, 0)[0]);
+  EXPECT_EQ(values.size(), 3u);
+  EXPECT_EQ(made.At(0, 0)[0], 0) << "near there is none";
 }
 
 TEST(Depth, AirFollowsBeerAndLambert) {

@@ -229,13 +229,17 @@ void FragmentPaint::PaintShadows(const std::function<void(int x, int y, std::uin
   });
 }
 
-void FragmentPaint::Mix(Picture& out) const {
+void FragmentPaint::Mix(Picture& out, FragmentColors* kept) const {
+  if (kept) *kept = {colors_, std::vector<Texel>(colors_.size()), std::vector<Texel>(colors_.size())};
   ForAll([&](std::size_t i, int x, int y) {
     const std::vector<std::uint32_t>& pixels = fragments_->pixel;
     if (i > 0 && pixels[i - 1] == pixels[i]) return;
     std::size_t end = i + 1;
     while (end < pixels.size() && pixels[end] == pixels[i]) ++end;
-    MixPixel(i, end, out.At(x, y));
+    std::uint16_t* const pixel = out.At(x, y);
+    if (kept) std::copy_n(pixel, 4, kept->centre[i].begin());
+    MixPixel(i, end, pixel);
+    if (kept) std::copy_n(pixel, 4, kept->mixed[i].begin());
   });
 }
 

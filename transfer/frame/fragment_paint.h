@@ -53,11 +53,12 @@ class FragmentPaint {
   void PaintShadows(const std::function<void(int x, int y, std::uint16_t* texel)>& paint);
 
   // Mixes the colours into the painted pixels, in linear light, by coverage. Fragments that are left as they are add
-  // nothing. Afterwards alpha is the share of the pixel's coverage that is painted. Runs in the caller's arena.
-  void Mix(Picture& out) const;
+  // nothing. Afterwards alpha is the share of the pixel's coverage that is painted. `kept`, if not null, gets the
+  // colours. Runs in the caller's arena.
+  void Mix(Picture& out, FragmentColors* kept = nullptr) const;
 
  private:
-  using Texel = std::array<std::uint16_t, 4>;
+  using Texel = FragmentColors::Texel;
 
   std::uint16_t StyleOf(std::size_t fragment) const;
   bool ShowsSurface(std::size_t q, std::size_t fragment, float crease_cosine) const;

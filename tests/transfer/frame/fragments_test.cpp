@@ -47,6 +47,32 @@ TEST(FragmentPaint, ColoursAreMixedByCoverage) {
   EXPECT_GT(mixed, 100);
 }
 
+// What finishing effects change surface by surface.
+TEST(FragmentPaint, KeepsTheColoursThatItMixes) {
+  const GuideSet guides = GuidesAt(kPictureWidth, kPictureHeight, kAa);
+  const std::array<std::uint16_t, 3> wall = {60000, 2000, 30000}, balls = {1000, 50000, 9000};
+  const PreparedStyle first = MustPrepareStyle(PlainStyle(PlainColor(wall)));
+  const PreparedStyle second = MustPrepareStyle(PlainStyle(PlainColor(balls)));
+  const StyleAssignment assignment{{{IdOfObject(guides, "near"), 1}, {IdOfObject(guides, "far"), 1}}, {}, 0};
+  const StyleMap map = MapStyles(guides, assignment);
+  TransferOptions options;
+  options.keep_colors = true;
+  TransferScratch scratch;
+  Picture out;
+  ASSERT_TRUE(Transfer({{&first, &second}}, map, guides, options, scratch, out));
+  const FragmentColors& colors = scratch.colors;
+  const std::vector<std::uint32_t>& pixels = guides.fragments->pixel;
+  ASSERT_EQ(colors.own.size(), pixels.size());
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      ASSERT_EQ(colors.own[i][c], (map.fragment_style[i] == 1 ? balls : wall)[c]);
+      if (i > 0 && pixels[i - 1] == pixels[i]) continue;
+      ASSERT_EQ(colors.centre[i][c], (map.style[pixels[i]] == 1 ? balls : wall)[c]);
+      ASSERT_EQ(colors.mixed[i][c], out.rgba[4 * pixels[i] + c]);
+    }
+  }
+}
+
 struct BorderError {
   double smooth, jagged;
 };

@@ -1,0 +1,413 @@
+#include "finish/point_loop.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdlib>
+#include <glm/glm.hpp>
+#include <iterator>
+#include <optional>
+#include <vector>
+
+#include "core/filter/oklab_rows.h"
+#include "core/filter/wide_loops.h"
+#include "core/image/color.h"
+#include "core/image/fragments.h"
+#include "finish/area/oklab_blocks.h"
+#include "finish/tone/surface_share.h"
+
+namespace scumble::internal {
+namespace {
+
+// From one colour to the other, as far as the share says.
+SCUMBLE_WIDE_LOOPS void Mix(const float* shares, const float* from, std::size_t count, float* to) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const float mixed = from[i] + (to[i] - from[i]) * shares[i];
+    to[i] = shares[i] >= 1.0f ? to[i] : mixed;
+  }
+}
+
+void MixColors(const float* shares, std::size_t count, const OklabBlock& from, OklabBlock& to) {
+  Mix(shares, from.lightness.data(), count, to.lightness.data());
+  Mix(shares, from.a.data(), count, to.a.data());
+  Mix(shares, from.b.data(), count, to.b.data());
+}
+
+using Texel = FragmentColors::Texel;
+
+// A surface that shows in a share of a pixel, and a pixel whose guides are like its own.
+struct Part {
+  std::size_t pixel, like;
+  float share;
+};
+
+// `count` pixels of a picture, from `first` on; or that many parts of pixels.
+struct Pixels {
+  std::size_t first, count;
+  const std::uint16_t* texels;
+  const Part* parts = nullptr;
+
+  std::size_t Of(std::size_t i) const { return parts ? parts[i].like : first + i; }
+};
+
+void ApplyEffect(const PointEffect& effect, const Pixels& pixels, OklabBlock& block) {
+  if (!pixels.parts) return effect(pixels.first, pixels.count, block);
+  OklabBlock one;
+  for (std::size_t i = 0; i < pixels.count; ++i) {
+    one.lightness[0] = block.lightness[i], one.a[0] = block.a[i], one.b[0] = block.b[i];
+    effect(pixels.parts[i].like, 1, one);
+    block.lightness[i] = one.lightness[0], block.a[i] = one.a[0], block.b[i] = one.b[0];
+  }
+}
+
+// How much of each pixel of a block is the surface: made once, for all steps that ask.
+class Surface {
+ public:
+  using Shares = std::array<float, kOklabBlock>;
+
+  // The same coverage and stage for all steps of a loop.
+  const Shares& Of(const PointStep& one, const Pixels& pixels) {
+    if (!is_made_) {
+      const float* coverage = one.coverage.data() + pixels.first;
+      Shares of_parts;
+      for (std::size_t i = 0; i < pixels.count && pixels.parts; ++i) of_parts[i] = one.coverage[pixels.parts[i].pixel];
+      if (pixels.parts) coverage = of_parts.data();
+      kinds_ = SurfaceShares(coverage, pixels.texels, IsOfGuides(*one.step), pixels.count, shares_.data());
+      is_made_ = true;
+    }
+    return shares_;
+  }
+  const ShareKinds& kinds() const { return kinds_; }
+
+ private:
+  Shares shares_;
+  ShareKinds kinds_;
+  bool is_made_ = false;
+};
+
+// How much of each pixel's change stays.
+enum class Weight { kNothing, kParts, kAll };
+
+Weight WeightsOf(const PointStep& one, const Pixels& pixels, Surface& surface, float* shares) {
+  const std::size_t count = pixels.count;
+  const FinishStep& step = *one.step;
+  const auto strength = static_cast<float>(step.pass.strength);
+  Weight weight = strength < 1.0f || !step.share.empty() || !step.only.empty() ? Weight::kParts : Weight::kAll;
+  const bool has_coverage = !one.coverage.empty() && !one.behind;
+  if (has_coverage) {
+    surface.Of(one, pixels);
+    if (surface.kinds().all_zero) return Weight::kNothing;
+    if (!surface.kinds().all_one) weight = Weight::kParts;
+  }
+  if (weight == Weight::kAll) return weight;
+  std::fill_n(shares, count, strength);
+  for (std::size_t i = 0; i < count && !step.share.empty(); ++i)
+    shares[i] = strength * (static_cast<float>(step.share[pixels.Of(i)]) / 65535.0f);
+  for (std::size_t i = 0; i < count && !step.only.empty(); ++i) shares[i] = step.only[pixels.Of(i)] ? shares[i] : 0.0f;
+  if (has_coverage) {
+    const Surface::Shares& of_surface = surface.Of(one, pixels);
+    for (std::size_t i = 0; i < count; ++i) shares[i] *= of_surface[i];
+  }
+  return weight;
+}
+
+// The part of mixed pixels that is background takes what the step does to that.
+void MixBehind(const PointStep& one, const Pixels& pixels, Surface& surface, const OklabBlock& before,
+               OklabBlock& block) {
+  Surface::Shares shares = surface.Of(one, pixels);
+  OklabBlock behind = before;
+  ApplyEffect(one.behind, pixels, behind);
+  for (std::size_t i = 0; i < pixels.count; ++i) shares[i] = shares[i] > 0.0f ? shares[i] : 1.0f;
+  MixColors(shares.data(), pixels.count, behind, block);
+}
+
+// Texels whose colour no step changes keep their bits, those of alpha 0 too.
+void PaintBlock(std::span<const PointStep> steps, const Pixels& pixels, std::uint16_t* texels) {
+  const std::size_t count = pixels.count;
+  OklabBlock given, block, before;
+  OklabFromTexels(texels, count, given);
+  block = given;
+  Surface surface;
+  for (const PointStep& one : steps) {
+    Surface::Shares shares;
+    const Weight weight = WeightsOf(one, pixels, surface, shares.data());
+    if (weight == Weight::kNothing) continue;
+    if (one.behind) surface.Of(one, pixels);
+    const bool mixes_behind = one.behind && surface.kinds().is_mixed;
+    if (weight == Weight::kParts || mixes_behind) before = block;
+    ApplyEffect(one.apply, pixels, block);
+    if (mixes_behind) MixBehind(one, pixels, surface, before, block);
+    if (weight == Weight::kParts) MixColors(shares.data(), count, before, block);
+  }
+  PutBlock(given, 1.0f, nullptr, count, block, texels);
+}
+
+// Colours by their shares of a pixel, in linear light.
+class Mixture {
+ public:
+  void Add(const Texel& texel, float share) {
+    const float weight = share * (static_cast<float>(texel[3]) / 65535.0f);
+    for (std::size_t c = 0; c < 3; ++c) sum_[c] += weight * Srgb16ToLinear(texel[c]);
+    alpha_ += weight;
+    is_one_ = is_one_ && (count_ == 0 || std::equal(texel.begin(), texel.begin() + 3, first_.begin()));
+    if (count_++ == 0) first_ = texel;
+  }
+  Texel Color() const {
+    Texel color = first_;
+    for (std::size_t c = 0; c < 3 && alpha_ > 0.0f && !is_one_; ++c)
+      color[c] = Srgb16FromLinear(std::min(1.0f, sum_[c] / alpha_));
+    return color;
+  }
+
+ private:
+  float sum_[3] = {}, alpha_ = 0.0f;
+  int count_ = 0;
+  bool is_one_ = true;
+  Texel first_ = {};
+};
+
+struct Painted {
+  std::size_t pixel;
+  Texel texel;
+};
+
+void Put(std::span<const Painted> painted, Picture& picture) {
+  for (const auto& [pixel, texel] : painted)
+    std::copy_n(texel.begin(), 3, picture.rgba.begin() + 4 * std::ptrdiff_t(pixel));
+}
+
+// The pixels that several surfaces share.
+class SharedPixels {
+ public:
+  SharedPixels(std::span<const PointStep> steps, const FinishFrame& frame) : steps_(steps), frame_(frame) {
+    if (!frame.guides) return;
+    for (const PointStep& one : steps) {
+      if (IsOfGuides(*one.step)) continue;
+      // Without its paint a surface can only differ by what its guides say.
+      if (frame.colors || !one.coverage.empty()) fragments_ = frame.guides->fragments.get();
+    }
+    if (fragments_ && (fragments_->count() == 0 || !fragments_->values.Has(Layer::kObject))) fragments_ = nullptr;
+  }
+
+  // What they become in a row.
+  std::vector<Painted> Paint(int y, const Picture& picture) const {
+    if (!fragments_) return {};
+    const std::size_t width = static_cast<std::size_t>(picture.width), begin = std::size_t(y) * width;
+    const std::size_t end = fragments_->From(begin + width);
+    Batch batch;
+    for (std::size_t first = fragments_->From(begin); first < end;) {
+      Shared shared{fragments_->pixel[first], first, first};
+      while (shared.end < end && fragments_->pixel[shared.end] == shared.pixel) ++shared.end;
+      first = shared.end;
+      if (picture.rgba[4 * shared.pixel + 3] != 0) AddParts(shared, picture.rgba.data() + 4 * shared.pixel, batch);
+    }
+    return Mixed(batch, picture);
+  }
+
+ private:
+  struct Shared {
+    std::size_t pixel, first, end;  // with its fragments
+  };
+  // The parts of pixels one after the other, and the paint of each without the steps.
+  struct Batch {
+    std::vector<Part> parts;
+    std::vector<Texel> paint;
+  };
+
+  // The pixel around whose centre shows the fragment's surface, the nearest to its cells; none: the picture has no such
+  // pixel nearby.
+  std::optional<std::size_t> LikeOf(std::size_t fragment) const {
+    constexpr int kReach = 4;
+    const GuideSet& guides = *frame_.guides;
+    const auto width = static_cast<std::size_t>(guides.width());
+    const int x = int(fragments_->pixel[fragment] % width), y = int(fragments_->pixel[fragment] / width);
+    const std::uint16_t cells = fragments_->cells.empty() ? Fragments::kAllCells : fragments_->cells[fragment];
+    glm::vec2 middle(0.0f);
+    for (int cell = 0; cell < 16; ++cell) {
+      if (cells >> cell & 1)
+        middle += glm::vec2(cell % 4 - 1.5f, cell / 4 - 1.5f) / (4.0f * float(std::popcount(cells)));
+    }
+    const auto shows_surface = [&](std::size_t pixel) {
+      for (const Layer layer : {Layer::kObject, Layer::kMaterial}) {
+        if (guides.Has(layer) && guides.Plane(layer)[pixel] != fragments_->values.Plane(layer)[fragment]) return false;
+      }
+      return true;
+    };
+    std::optional<std::size_t> like;
+    float least = 0.0f;
+    for (int reach = 1; reach <= kReach && !like; ++reach) {
+      for (int v = std::max(0, y - reach); v <= std::min(guides.height() - 1, y + reach); ++v) {
+        for (int u = std::max(0, x - reach); u <= std::min(guides.width() - 1, x + reach); ++u) {
+          const std::size_t pixel = guides.Index(u, v);
+          if (std::max(std::abs(u - x), std::abs(v - y)) != reach || !shows_surface(pixel)) continue;
+          const glm::vec2 off = glm::vec2(u - x, v - y) - middle;
+          const float distance = glm::dot(off, off);
+          if (!like || distance < least) like = pixel, least = distance;
+        }
+      }
+    }
+    return like;
+  }
+
+  // The paint of the surfaces of a pixel before they were mixed; null: it is not known.
+  const FragmentColors* ColorsOf(const Shared& shared, const std::uint16_t* texel) const {
+    const FragmentColors* const colors = frame_.colors;
+    if (!colors || colors->own.size() != fragments_->count()) return nullptr;
+    const Texel& mixed = colors->mixed[shared.first];
+    return std::equal(mixed.begin(), mixed.begin() + 3, texel) ? colors : nullptr;  // else something has changed it
+  }
+
+  void AddParts(const Shared& shared, const std::uint16_t* texel, Batch& batch) const {
+    const std::size_t pixel = shared.pixel;
+    Texel given;
+    std::copy_n(texel, 4, given.begin());
+    const FragmentColors* const colors = ColorsOf(shared, texel);
+    const auto add = [&](const Texel& paint, std::size_t like, float share) {
+      batch.parts.push_back({pixel, like, share});
+      batch.paint.push_back(paint);
+    };
+    float left = 1.0f;
+    const float whole = frame_.guides->Plane(Layer::kCoverage)[pixel];
+    for (std::size_t i = shared.first; i < shared.end; ++i) {
+      const float coverage = fragments_->values.Plane(Layer::kCoverage)[i];
+      const float share = whole > 0.0f ? std::min(left, coverage / whole) : 0.0f;
+      left -= share;
+      add(colors ? colors->own[i] : given, LikeOf(i).value_or(pixel), share);
+    }
+    add(colors ? colors->centre[shared.first] : given, pixel, left);
+  }
+
+  // The pixels whose parts the steps change.
+  std::vector<Painted> Mixed(const Batch& batch, const Picture& picture) const {
+    const std::size_t count = batch.parts.size();
+    std::vector<Texel> made = batch.paint, alphas(count);
+    for (std::size_t i = 0; i < count; ++i) alphas[i][3] = picture.rgba[4 * batch.parts[i].pixel + 3];
+    for (std::size_t i = 0; i < count; i += kOklabBlock) {
+      const Pixels some{0, std::min(kOklabBlock, count - i), alphas[i].data(), batch.parts.data() + i};
+      PaintBlock(steps_, some, made[i].data());
+    }
+    std::vector<Painted> painted;
+    for (std::size_t i = 0; i < count;) {
+      const std::size_t pixel = batch.parts[i].pixel;
+      Mixture mixture;
+      bool changes = false;
+      for (; i < count && batch.parts[i].pixel == pixel; ++i) {
+        changes = changes || made[i] != batch.paint[i];
+        mixture.Add(made[i], batch.parts[i].share);
+      }
+      if (changes) painted.push_back({pixel, mixture.Color()});
+    }
+    return painted;
+  }
+
+  std::span<const PointStep> steps_;
+  const FinishFrame& frame_;
+  const Fragments* fragments_ = nullptr;
+};
+
+// The pixels beside hard contours of the light that steps look at. Each takes the steps' change of those that it is
+// beside, by its share beyond the contour: paint keeps its detail, and what no step changes keeps its bytes.
+class ContourPixels {
+ public:
+  // `picture`: before the steps.
+  ContourPixels(std::span<const PointStep> steps, const FinishFrame& frame, const Picture& picture) {
+    std::vector<LightContour> contours;
+    for (const PointStep& one : steps) {
+      for (const HardLight& light : one.lights) {
+        if (!IsOfGuides(*one.step)) contours.emplace_back(light, *frame.guides);
+      }
+    }
+    if (contours.empty()) return;
+    rows_.resize(static_cast<std::size_t>(picture.height));
+    ForEach([&](std::size_t y) {
+      for (const LightContour& contour : contours) {
+        contour.ForEachInRow(static_cast<int>(y), [&](int x, const LightContour::Shares& shares) {
+          rows_[y].push_back({x, shares, ColorsAround(picture.At(x, static_cast<int>(y)), shares, picture.width)});
+        });
+      }
+    });
+  }
+
+  // `picture`: after the steps.
+  void Mix(Picture& picture) const {
+    std::vector<std::vector<Painted>> mixed(rows_.size());
+    ForEach([&](std::size_t y) {
+      for (const Beside& one : rows_[y]) AddMixed(one, picture.At(one.x, static_cast<int>(y)), picture, mixed[y]);
+    });
+    ForEach([&](std::size_t y) { Put(mixed[y], picture); });
+  }
+
+ private:
+  using Colors = std::array<Texel, 5>;  // of a pixel's neighbours in the order of Shares, and its own
+  struct Beside {
+    int x;
+    LightContour::Shares shares;
+    Colors before;
+  };
+
+  template <class Visit>
+  void ForEach(const Visit& visit) const {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rows_.size(), 16), [&](const auto& part) {
+      for (std::size_t y = part.begin(); y != part.end(); ++y) visit(y);
+    });
+  }
+
+  static Colors ColorsAround(const std::uint16_t* own, const LightContour::Shares& shares, int width) {
+    const std::ptrdiff_t row = 4 * std::ptrdiff_t(width), beside[4] = {-4, 4, -row, row};
+    Colors colors{};
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (shares[k] > 0.0f) std::copy_n(own + beside[k], 4, colors[k].begin());
+    }
+    std::copy_n(own, 4, colors[4].begin());
+    return colors;
+  }
+
+  // Of two contours in one pixel the later one counts.
+  static void AddMixed(const Beside& one, const std::uint16_t* own, const Picture& picture,
+                       std::vector<Painted>& mixed) {
+    const Colors after = ColorsAround(own, one.shares, picture.width);
+    if (own[3] == 0 || after == one.before) return;
+    const auto change = [&](std::size_t k, std::size_t c) {
+      return Srgb16ToLinear(after[k][c]) - Srgb16ToLinear(one.before[k][c]);
+    };
+    const auto& [on_left, on_right, above, below] = one.shares;
+    Texel texel = after[4];
+    for (std::size_t c = 0; c < 3; ++c) {
+      // In pairs, so that a mirrored picture has the same bytes.
+      const float beyond =
+          (on_left * change(0, c) + on_right * change(1, c)) + (above * change(2, c) + below * change(3, c));
+      const float left = 1.0f - ((on_left + on_right) + (above + below));
+      const float light = Srgb16ToLinear(one.before[4][c]) + (left * change(4, c) + beyond);
+      texel[c] = Srgb16FromLinear(std::clamp(light, 0.0f, 1.0f));
+    }
+    mixed.push_back({static_cast<std::size_t>(own - picture.rgba.data()) / 4, texel});
+  }
+
+  std::vector<std::vector<Beside>> rows_;
+};
+
+}  // namespace
+
+bool IsOfGuides(const FinishStep& step) { return step.pass.at == FinishPass::Stage::kGuides; }
+
+bool PaintPoints(std::span<const PointStep> steps, const FinishFrame& frame, RowProgress& progress, Picture& picture) {
+  const SharedPixels shared(steps, frame);
+  const ContourPixels contours(steps, frame, picture);
+  const bool finished = ForEachRow({0, 0, picture.width, picture.height}, progress, [&](int y) {
+    const std::vector<Painted> painted = shared.Paint(y, picture);
+    const auto width = static_cast<std::size_t>(picture.width);
+    for (std::size_t x = 0; x < width; x += kOklabBlock) {
+      const std::size_t first = std::size_t(y) * width + x;
+      std::uint16_t* const texels = picture.At(static_cast<int>(x), y);
+      PaintBlock(steps, {first, std::min(kOklabBlock, width - x), texels}, texels);
+    }
+    Put(painted, picture);
+  });
+  if (finished) contours.Mix(picture);
+  return finished;
+}
+
+}  // namespace scumble::internal

@@ -1,0 +1,32 @@
+// The loop over a picture for steps that treat each pixel by itself.
+//
+// A pixel may show several surfaces (core/image/fragments.h). It is painted once for each, by the guides of a pixel
+// beside it that shows the surface, and the colours are mixed by coverage, in linear light. A pixel beside a hard contour
+// of light (finish/tone/light_contour.h) takes its share of what changes beyond. So all borders are smooth.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/filter/parallel.h"
+#include "finish/finish.h"
+#include "finish/tone/light_contour.h"
+#include "finish/tone/point_effect.h"
+
+namespace scumble::internal {
+
+struct PointStep {
+  PointEffect apply;
+  const FinishStep* step = nullptr;
+  std::span<const float> coverage;  // the step changes only surfaces, as far as they cover; empty: it changes all
+  PointEffect behind = {};          // what it does to background, where that is another thing; `coverage` parts the two
+  std::vector<HardLight> lights = {};  // that the step looks at
+};
+
+// Whether the step changes the guides.
+bool IsOfGuides(const FinishStep& step);
+
+// Applies the steps to the picture. False: cancelled.
+bool PaintPoints(std::span<const PointStep> steps, const FinishFrame& frame, RowProgress& progress, Picture& picture);
+
+}  // namespace scumble::internal

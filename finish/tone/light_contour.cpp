@@ -1,0 +1,110 @@
+#include "finish/tone/light_contour.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "core/filter/wide_loops.h"
+
+namespace scumble::internal {
+namespace {
+
+SCUMBLE_WIDE_LOOPS bool Differ(const float* a, const float* b, float least, std::size_t count) {
+  int any = 0;
+  for (std::size_t i = 0; i < count; ++i) any |= std::fabs(a[i] - b[i]) > least ? 1 : 0;
+  return any != 0;
+}
+
+// An end of a step.
+struct End {
+  float from = 0.0f;   // from the pixel's centre
+  bool turns = false;  // the contour turns into the pixel's side there
+  bool is_corner = false;
+};
+
+// The line begins there half a pixel above the contour and meets it after `length` pixels: its area in the pixel.
+float AreaUnder(const End& at, float length) {
+  const float begin = at.from - 0.5f, end = std::min(at.from + 0.5f, length);
+  if (!at.turns || end <= begin) return 0.0f;
+  return 0.5f * (end - begin - (end * end - begin * begin) / (2.0f * length));
+}
+
+}  // namespace
+
+LightContour::LightContour(const HardLight& light, const GuideSet& guides)
+    : light_(light),
+      coverage_(guides.Plane(Layer::kCoverage)),
+      object_(guides.Has(Layer::kObject) ? guides.Plane(Layer::kObject) : std::span<const float>()),
+      width_(guides.width()),
+      height_(guides.height()) {}
+
+// Whether pixels x0 … x1 - 1 of a row may have a contour beside them.
+bool LightContour::MayHave(int x0, int x1, int y) const {
+  const float* const row = light_.tone.data() + std::ptrdiff_t(y) * width_;
+  const float* const here = row + x0;
+  const auto count = static_cast<std::size_t>(x1 - x0);
+  const int left = std::max(0, x0 - 1), right = std::min(width_ - 1, x1);
+  return Differ(row + left, row + left + 1, light_.least, static_cast<std::size_t>(right - left)) ||
+         (y > 0 && Differ(here, here - width_, light_.least, count)) ||
+         (y + 1 < height_ && Differ(here, here + width_, light_.least, count));
+}
+
+// Beyond the side that lies one pixel that way, along x or along y.
+float LightContour::ShareBeyond(int x, int y, int side_x, int side_y) const {
+  const float* const tone = light_.tone.data();
+  const std::ptrdiff_t pixel = std::ptrdiff_t(y) * width_ + x, side = std::ptrdiff_t(side_y) * width_ + side_x;
+  if (!(std::fabs(tone[pixel] - tone[pixel + side]) > light_.least)) return 0.0f;
+  const auto is_one = [&](std::ptrdiff_t i) {
+    const auto place = static_cast<std::size_t>(i);
+    return object_.empty() ? coverage_[place] > 0.0f : object_[place] == object_[std::size_t(pixel)];
+  };
+  if (!(coverage_[std::size_t(pixel)] > 0.0f) || !is_one(pixel + side)) return 0.0f;
+  const float own = tone[pixel] * light_.per_tone, other = tone[pixel + side] * light_.per_tone;
+  float border = 0.5f * (own + other);
+  if (light_.bands > 1) {
+    const auto band = [&](float at) { return std::floor(std::clamp(at, 0.0f, float(light_.bands - 1))); };
+    if (band(own) == band(other)) return 0.0f;
+    border = std::max(band(own), band(other));
+  }
+  const bool is_bright = own >= border;
+  const auto is_own_side = [&](std::ptrdiff_t i) { return (tone[i] * light_.per_tone >= border) == is_bright; };
+  const bool along_x = side_x == 0;
+  const std::ptrdiff_t along = along_x ? 1 : width_;
+  const bool has_row_behind =
+      along_x ? y - side_y >= 0 && y - side_y < height_ : x - side_x >= 0 && x - side_x < width_;
+  const auto end_at = [&](std::ptrdiff_t step, int room) {
+    const int reach = std::min(kReach, room);
+    std::ptrdiff_t i = pixel;
+    for (int k = 1; k <= reach; ++k) {
+      i += step;
+      if (!is_one(i) || !is_one(i + side)) return End{static_cast<float>(k) - 0.5f};
+      const bool here = is_own_side(i), there = is_own_side(i + side);
+      if (here && !there) continue;
+      End end{static_cast<float>(k) - 0.5f, !here && !there};
+      // Whether the contour goes on that way for more than a pixel.
+      end.is_corner = end.turns && has_row_behind && is_one(i - side) && is_one(i - step - side) &&
+                      !is_own_side(i - side) && is_own_side(i - step - side);
+      return end;
+    }
+    return End{static_cast<float>(reach) + 0.5f};
+  };
+  const End before = end_at(-along, along_x ? x : y);
+  const End after = end_at(along, along_x ? width_ - 1 - x : height_ - 1 - y);
+  const float length = before.from + after.from, half = 0.5f * length;
+  const auto area = [&](const End& end) {
+    return AreaUnder(end, end.is_corner && length > 1.0f ? std::min(half, 0.5f) : half);
+  };
+  return area(before) + area(after);
+}
+
+LightContour::Shares LightContour::SharesBeyond(int x, int y) const {
+  Shares shares = {x > 0 ? ShareBeyond(x, y, -1, 0) : 0.0f, x + 1 < width_ ? ShareBeyond(x, y, 1, 0) : 0.0f,
+                   y > 0 ? ShareBeyond(x, y, 0, -1) : 0.0f, y + 1 < height_ ? ShareBeyond(x, y, 0, 1) : 0.0f};
+  // Near 45 degrees two sides see one line: their areas overlap.
+  const float sum = (shares[0] + shares[1]) + (shares[2] + shares[3]);
+  const float most = std::max(std::max(shares[0], shares[1]), std::max(shares[2], shares[3]));
+  for (float& share : shares) share = sum > 0.0f ? share * (most / sum) : 0.0f;
+  return shares;
+}
+
+}  // namespace scumble::internal

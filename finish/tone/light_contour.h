@@ -1,0 +1,65 @@
+// Where light ends at a hard contour, as a lamp's shadow does: which share of a pixel lies on the other side.
+//
+// Light is known at pixel centres alone, so a contour is a staircase of steps between pixels. A straight contour has
+// steps of one length along rows or columns, and runs through the middle of each riser (Reshetov, "Morphological
+// antialiasing", 2009). The share is the area of the pixel beyond that line. A step is traced for at most kReach pixels
+// to each side and ends at another object, where the line goes on as it is. Where both sides of a corner are longer
+// than a pixel, the corner is one of the shadow, and only its outermost half pixel is cut off.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include "core/image/guides.h"
+
+namespace scumble::internal {
+
+// Neighbours whose light differs by more of the brightest are on two sides of a contour: on smooth forms light does not
+// change so fast. Light that has the noise of samples changes by chance, too.
+inline constexpr float kHardStep = 0.1f, kHardStepInNoise = 0.25f;
+
+// Light whose contours count, by pixel.
+struct HardLight {
+  std::span<const float> tone = {};
+  float least = 0.0f;  // contours are where neighbours of one object differ by more
+  int bands = 0;       // above 1: and lie in different bands, of which per_tone times the tone is the number
+  float per_tone = 1.0f;
+};
+
+class LightContour {
+ public:
+  static constexpr int kReach = 32;
+  // Of a pixel, by neighbour: on the left, on the right, above, below.
+  using Shares = std::array<float, 4>;
+
+  // Keeps references to the light and the guides. Without objects all that is covered is one.
+  LightContour(const HardLight& light, const GuideSet& guides);
+
+  // The shares of a pixel that lie beyond the contours beside it: less than 1 in all. All 0 where there is none.
+  Shares SharesBeyond(int x, int y) const;
+
+  // Calls visit(x, shares) for the pixels of a row of which some share lies beyond.
+  template <class Visit>
+  void ForEachInRow(int y, const Visit& visit) const {
+    constexpr int kSome = 64;
+    for (int x = 0; x < width_; x += kSome) {
+      const int end = x + kSome < width_ ? x + kSome : width_;
+      if (!MayHave(x, end, y)) continue;
+      for (int u = x; u < end; ++u) {
+        const Shares shares = SharesBeyond(u, y);
+        if (shares[0] + shares[1] + shares[2] + shares[3] > 0.0f) visit(u, shares);
+      }
+    }
+  }
+
+ private:
+  bool MayHave(int x0, int x1, int y) const;
+  float ShareBeyond(int x, int y, int side_x, int side_y) const;
+
+  HardLight light_;
+  std::span<const float> coverage_, object_;
+  int width_, height_;
+};
+
+}  // namespace scumble::internal
