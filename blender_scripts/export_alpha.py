@@ -1,16 +1,99 @@
-"""Holes in Principled surfaces: part of export_scene.py.
+"""Holes in surfaces, by a Principled node's Alpha or a Mix Shader with Transparent: part of export_scene.py.
 
 Guides know no half-transparent surfaces: what lies below one half is a hole, all else is solid.
 """
 
+import bpy
 import numpy as np
 
-from export_nodes import clear_links, image_fault, one_texture, previous
+from export_nodes import clear_links, constant, image_fault, one_texture, previous
 
 CUT = 0.5
 MOSTLY = (0.1, 0.9)  # between them an alpha is neither hole nor surface
 MOST_PIXELS = 2048 * 2048  # of an image that is looked at
 SOFT_SHARE = 0.1  # of an image's pixels: more is no soft rim
+
+
+def is_transparent(source):
+    """Whether it is a Transparent shader that lets at least half of every colour through."""
+    if source is None or source.node.type != "BSDF_TRANSPARENT":
+        return False
+    color = constant(source.node.inputs["Color"])
+    return color is not None and min(color) >= CUT
+
+
+def inverted_by(node):
+    """The input whose value the node takes from 1; None for other nodes."""
+    if node.type == "INVERT" and constant(node.inputs["Fac"]) == 1.0:
+        return node.inputs["Color"]
+    if node.type == "MATH" and node.operation == "SUBTRACT" and constant(node.inputs[0]) == 1.0:
+        return node.inputs[1]
+    return None
+
+
+def inverted(tree, source):
+    """The output of an image's copy that is 1 where the image is 0; the image's own where that has a fault."""
+    node = source.node
+    alphas = alphas_of(source)
+    if not alphas.size or image_fault(node, "alpha") is not None:
+        return source
+    copy = bpy.data.images.new(node.image.name, *node.image.size, alpha=True)
+    values = np.repeat(1.0 - np.clip(alphas, 0.0, 1.0).reshape(-1, 1), 4, axis=1)
+    copy.pixels.foreach_set(values.ravel())
+    copy.pack()
+    other = tree.nodes.new("ShaderNodeTexImage")
+    other.image, other.interpolation, other.extension = copy, node.interpolation, node.extension
+    below = previous(node.inputs["Vector"])
+    if below is not None:
+        tree.links.new(below, other.inputs["Vector"])
+    return other.outputs["Alpha"]
+
+
+def without_transparent(tree, surface):
+    """What a Mix Shader of Transparent and another shader shows: that shader's output, and its alpha, a number or an
+    image's output. Transparent alone is nothing with an alpha of 0; any other surface is itself without an alpha."""
+    if is_transparent(surface):
+        return None, 0.0
+    if surface.node.type != "MIX_SHADER":
+        return surface, None
+    factor, *sides = surface.node.inputs
+    sides = [previous(side) for side in sides]
+    clear = [is_transparent(side) for side in sides]
+    if None in sides or clear[0] == clear[1]:
+        return surface, None
+    invert = clear[1]  # the factor is the second shader's share
+    source = previous(factor)
+    while source is not None and inverted_by(source.node) is not None:
+        factor, invert = inverted_by(source.node), not invert
+        source = previous(factor)
+    alpha = constant(factor)
+    if isinstance(alpha, tuple):
+        alpha = alpha[0]
+    if alpha is None and source.node.type == "TEX_IMAGE":
+        alpha = source
+        if source.name == "Alpha" and source.node.image is not None and source.node.image.alpha_mode == "NONE":
+            alpha = 1.0  # as in Cycles
+        elif invert:
+            alpha = inverted(tree, source)
+    if alpha is None:
+        return surface, None
+    if isinstance(alpha, float) and invert:
+        alpha = 1.0 - alpha
+    return sides[0] if clear[1] else sides[1], alpha
+
+
+def put(tree, node, alpha, reader):
+    """Gives the Principled node the alpha of a Mix Shader around it."""
+    socket = node.inputs["Alpha"]
+    own = previous(socket)
+    if (own is not None and own != alpha) or (own is None and socket.default_value != 1.0):
+        reader.complain("Principled Alpha within a Mix Shader with Transparent is ignored")
+    clear_links(tree, socket)
+    socket.default_value = 1.0
+    if isinstance(alpha, float):
+        socket.default_value = min(max(alpha, 0.0), 1.0)
+    else:
+        tree.links.new(alpha, socket)
 
 
 def alphas_of(source):

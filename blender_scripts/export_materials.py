@@ -172,7 +172,7 @@ def read_principled(tree, node, reader):
 
 
 def rebuild(copy, bsdf, source, bends, surface, output):
-    """Puts a Principled node that carries the colour in the place of another surface node."""
+    """Puts a Principled node that carries the colour in the place of another surface node, and returns it."""
     tree = copy.node_tree
     carrier = tree.nodes.new("ShaderNodeBsdfPrincipled")
     carrier.inputs["Base Color"].default_value = (*[min(max(c, 0.0), 1.0) for c in bsdf["color"]], 1.0)
@@ -189,44 +189,73 @@ def rebuild(copy, bsdf, source, bends, surface, output):
     if surface:
         tree.nodes.remove(surface.node)
     tree.links.new(carrier.outputs[0], output.inputs["Surface"])
+    return carrier
+
+
+def shown_surface(copy, reader):
+    """The output node, the surface's output and the alpha of a Mix Shader with Transparent, None without one, which
+    leaves the tree. A surface of None with an alpha is nothing."""
+    tree = copy.node_tree
+    output, surface = surface_of(copy)
+    if output is None:
+        return tree.nodes.new("ShaderNodeOutputMaterial"), None, None
+    has_volume = previous(output.inputs["Volume"]) is not None
+    if surface is None and has_volume:
+        reader.complain("it has a volume and no surface: its faces are left out")
+        return output, None, 0.0
+    for name in ("Volume", "Displacement"):
+        if previous(output.inputs[name]) is not None:
+            reader.complain(f"its {name.lower()} is ignored")
+    if surface is None:
+        return output, None, None
+    shown, alpha = export_alpha.without_transparent(tree, surface)
+    if alpha is not None:
+        tree.nodes.remove(surface.node)
+    if shown is not None:
+        tree.links.new(shown, output.inputs["Surface"])
+    return output, shown, alpha
+
+
+def unknown_surface(copy, surface, reader):
+    if surface is None:
+        reader.complain("a surface without a node is black")
+        return diffuse((0.0, 0.0, 0.0))  # as in Cycles
+    reader.complain(f"node '{surface.node.name}' ({surface.node.type}) cannot be expressed; it is Diffuse in its "
+                    "viewport colour instead")
+    return diffuse(copy.diffuse_color[:3])
 
 
 def simplify_nodes(copy, reader):
     """The extras of a material with nodes, whose copy is made exportable; what bends its normals; whether it has holes;
     and the attribute that is its colour."""
-    export_copies.prepare(copy.node_tree)
-    output, surface = surface_of(copy)
-    if output is not None:
-        for name in ("Volume", "Displacement"):
-            if previous(output.inputs[name]) is not None:
-                reader.complain(f"its {name.lower()} is ignored")
+    tree = copy.node_tree
+    export_copies.prepare(tree)
+    output, surface, alpha = shown_surface(copy, reader)
     kind = PLAIN.get(surface.node.type) if surface else None
     bends = export_bends.read(surface.node.inputs.get("Normal") if kind else None, reader)
     if kind == "PRINCIPLED":
-        bsdf, source, holes = read_principled(copy.node_tree, surface.node, reader)
+        if alpha is not None:
+            export_alpha.put(tree, surface.node, alpha, reader)
+        bsdf, source, holes = read_principled(tree, surface.node, reader)
         if source is None:
-            clear_links(copy.node_tree, surface.node.inputs["Base Color"])
+            clear_links(tree, surface.node.inputs["Base Color"])
             surface.node.inputs["Base Color"].default_value = (*bsdf["color"], 1.0)
-        export_bends.attach(copy.node_tree, surface.node, bends)
-    elif kind is not None:
-        bsdf, source = read_plain(kind, surface.node, reader)
-        holes = False
-        rebuild(copy, bsdf, source, bends, surface, output)
+        export_bends.attach(tree, surface.node, bends)
     else:
-        what = f"node '{surface.node.name}' ({surface.node.type})" if surface else "a surface without a node"
-        if surface is None:
-            bsdf = diffuse((0.0, 0.0, 0.0))  # as in Cycles
-            reader.complain(f"{what} is black")
+        if kind is not None:
+            bsdf, source = read_plain(kind, surface.node, reader)
+        elif surface is None and alpha is not None:
+            bsdf, source = diffuse((0.0, 0.0, 0.0)), None
         else:
-            bsdf = diffuse(copy.diffuse_color[:3])
-            reader.complain(f"{what} cannot be expressed; it is Diffuse in its viewport colour instead")
-        source, holes = None, False
-        if output is None:
-            output = copy.node_tree.nodes.new("ShaderNodeOutputMaterial")
-        rebuild(copy, bsdf, None, bends, surface, output)
+            bsdf, source = unknown_surface(copy, surface, reader), None
+        carrier = rebuild(copy, bsdf, source, bends, surface, output)
+        holes = False
+        if alpha is not None:
+            export_alpha.put(tree, carrier, alpha, reader)
+            holes = export_alpha.read(tree, carrier, source if is_texture(source) else None, reader)
     if isinstance(source, tuple):
         carrier = surface_of(copy)[1].node.inputs["Base Color"]
-        clear_links(copy.node_tree, carrier)
+        clear_links(tree, carrier)
         carrier.default_value = (1.0, 1.0, 1.0, 1.0)
     return bsdf, bends, holes, source if isinstance(source, tuple) else None
 

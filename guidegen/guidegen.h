@@ -108,6 +108,9 @@ struct GuidegenResult {
   // guides.attributes["scumble:samples"].
   int samples = 0;
   double noise = 0.0;  // the estimated error, if `noise` or a time budget was given
+  // With options.light_error: nine of ten lit pixels have an estimated error of their light up to this one, which is
+  // larger where `samples` are too few. 0: there is no such light. Also in guides.attributes["scumble:light_error"].
+  double light_error = 0.0;
 };
 
 // Casts rays through pixel centres and returns the guides (conventions in core/image/guides.h). Transforms compose in

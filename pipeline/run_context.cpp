@@ -26,7 +26,7 @@ RunContext RunContext::WithoutNotes() const {
   RunContext quiet = *this;
   quiet.clock.reset();
   quiet.on_progress = nullptr;
-  quiet.noted_memory.reset();
+  quiet.noted_memory.reset(), quiet.noted_light_noise.reset();
   if (on_message) {
     quiet.on_message = [tell = on_message](const Message& message) {
       if (message.kind == Message::Kind::kWarning) tell(message);

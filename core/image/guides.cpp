@@ -1,9 +1,11 @@
 #include "core/image/guides.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <set>
+#include <system_error>
 
 #include "core/image/check.h"
 #include "core/image/fragments.h"
@@ -154,6 +156,15 @@ std::vector<std::uint32_t> IdsForNames(std::span<const std::string> names) {
 bool HasExactLight(const GuideSet& guides) {
   const auto found = guides.attributes.find(kLightKey);
   return found != guides.attributes.end() && found->second == kExactLight;
+}
+
+double LightErrorOf(const GuideSet& guides) {
+  const auto found = guides.attributes.find(kLightErrorKey);
+  if (found == guides.attributes.end()) return 0.0;
+  const std::string& text = found->second;
+  double error = 0.0;
+  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), error);
+  return fault == std::errc() && end == text.data() + text.size() && error >= 0.0 && error <= 1.0 ? error : 0.0;
 }
 
 }  // namespace scumble

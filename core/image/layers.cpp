@@ -37,7 +37,7 @@ constexpr LayerInfo kLayers[kLayerCount] = {
     {Layer::kPref, "pref", kPrefChannels, false, "object-space rest position"},
     {Layer::kMotion, "motion", kMotionChannels, false, "pixels to the next frame"},
     {Layer::kAlbedo, "albedo", kAlbedoChannels, true, "base colour, textured, linear"},
-    {Layer::kLuminance, "luminance", kLuminanceChannels, true, "direct light on white Lambert, shadowed"},
+    {Layer::kLuminance, "luminance", kLuminanceChannels, true, "direct light on white Lambert, shadowed, and emission"},
     {Layer::kShadow, "shadow", kShadowChannels, true, "share of direct light that is blocked"},
     {Layer::kLpeFull, "lpe.full", kLpeFullChannels, true, "full global illumination"},
     {Layer::kLpeLDE, "lpe.LDE", kLpeLdeChannels, true, "direct diffuse"},

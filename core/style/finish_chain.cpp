@@ -34,7 +34,7 @@ Status SetAt(const StyleTrack& keys, std::int64_t frame, FinishPass& pass) {
 Expected<std::optional<StyleTrack>> FramesIn(const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos) return std::optional<StyleTrack>();
-  const auto parsed = internal::ParseToml("value = " + text.substr(equals + 1), "--set");
+  const auto parsed = internal::ParseSetValue(text.substr(equals + 1));
   const auto* pairs = parsed && parsed->size() == 1 ? parsed->get("value")->as_array() : nullptr;
   if (!pairs || pairs->empty() || !pairs->is_homogeneous(toml::node_type::array)) return std::optional<StyleTrack>();
   StyleTrack track;

@@ -158,7 +158,7 @@ Expected<std::size_t> OverrideFinish(std::span<FinishPass> passes, const std::st
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos) return UsageError("--set " + text + ": expected KEY=VALUE");
   const std::string value_text = text.substr(equals + 1);
-  const auto parsed = internal::ParseToml("value = " + value_text, "--set");
+  const auto parsed = internal::ParseSetValue(value_text);
   const auto value = parsed && parsed->size() == 1 ? internal::ValueOf(*parsed->get("value")) : std::nullopt;
   const std::string key = text.substr(0, equals);
   if (key.rfind(kDialKeys, 0) == 0) {

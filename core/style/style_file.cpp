@@ -386,7 +386,7 @@ Status ApplyOverride(Style& style, const std::string& text) {
     return UsageError("--set " + text + ": expected KEY=VALUE, as in transfer.blend_radius=0");
   }
   const std::string name = text.substr(0, equals), value_text = text.substr(equals + 1);
-  auto parsed = ParseToml("value = " + value_text, "--set");
+  auto parsed = internal::ParseSetValue(value_text);
   toml::table table = parsed ? std::move(*parsed) : toml::table();
   const toml::array* pairs = table.size() == 1 ? table.get("value")->as_array() : nullptr;
   const bool is_track = pairs && !pairs->empty() && pairs->is_homogeneous(toml::node_type::array);

@@ -1,8 +1,28 @@
 #include "core/style/toml_values.h"
 
+#include <algorithm>
+
 #include "core/style/toml_keys.h"
 
 namespace scumble::internal {
+namespace {
+
+// A number with a digit on either side of its point; any other text as it is.
+std::string WithBothDigits(std::string_view text) {
+  std::string number(text);
+  const auto is_digit = [&](std::size_t at) { return at < number.size() && number[at] >= '0' && number[at] <= '9'; };
+  const std::size_t point = number.find('.'), end = std::min(number.find_first_of("eE"), number.size());
+  const std::size_t begin = number.find_first_not_of("+-") == 1 ? 1 : 0;
+  if (point == std::string::npos || point > end || end - begin < 2) return number;
+  for (std::size_t at = begin; at < end; ++at) {
+    if (at != point && !is_digit(at)) return number;
+  }
+  if (!is_digit(point + 1)) number.insert(point + 1, 1, '0');
+  if (point == begin) number.insert(point, 1, '0');
+  return number;
+}
+
+}  // namespace
 
 // Debian's toml++ throws; nothing else here does.
 Expected<toml::table> ParseToml(std::string_view text, const std::string& file) {
@@ -13,6 +33,10 @@ Expected<toml::table> ParseToml(std::string_view text, const std::string& file) 
     return InputError(file + ":" + std::to_string(error.source().begin.line) +
                       ": not valid TOML: " + std::string(error.description()));
   }
+}
+
+Expected<toml::table> ParseSetValue(std::string_view text) {
+  return ParseToml("value = " + WithBothDigits(text), "--set");
 }
 
 std::optional<KeyValue> ValueOf(const toml::node& node) {

@@ -17,6 +17,9 @@ namespace scumble::internal {
 // A kInput error names file and line. `text` may be anything.
 Expected<toml::table> ParseToml(std::string_view text, const std::string& file);
 
+// The value of --set KEY=VALUE, under the key "value". It may leave off the zero of .5 or 5., which TOML asks for.
+Expected<toml::table> ParseSetValue(std::string_view text);
+
 // A plain value; none of tables, arrays and dates.
 std::optional<KeyValue> ValueOf(const toml::node& node);
 

@@ -212,6 +212,10 @@ FloatPlane EvenedLight(std::span<const float> light, const LitSurface& surface, 
   return result;
 }
 
+float LightNoiseOf(const GuideSet& guides) {
+  return std::clamp(3.0f * static_cast<float>(LightErrorOf(guides)), kLightNoise, kMostLightNoise);
+}
+
 LitSurface LitSurfaceOf(const GuideSet& guides) {
   return {guides.Plane(Layer::kObject), guides.Plane(Layer::kNormal, 0), guides.Plane(Layer::kNormal, 1)};
 }

@@ -11,6 +11,11 @@ namespace scumble::internal {
 // Two lights whose difference is below this share of the brightest may be the same one, sampled by chance: about three
 // standard errors of kUnseenLightError.
 inline constexpr float kLightNoise = 0.05f;
+// Noisier light is evened out as if it had this noise: beyond it are forms.
+inline constexpr float kMostLightNoise = 0.25f;
+
+// The noise of the guides' light: kLightNoise, or three standard errors where they are known and larger.
+float LightNoiseOf(const GuideSet& guides);
 
 // What light lies on, by pixel: objects, and the x and y of normals that face the eye; without normals: empty.
 struct LitSurface {

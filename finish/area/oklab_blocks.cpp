@@ -67,7 +67,7 @@ FloatPlane ToneOf(EdgesPass::Tone of, const FinishFrame& frame, const Picture& p
       for (std::size_t i = first; i < first + count; ++i) covered[i] = coverage[i] > 0.0f ? 1.0f : 0.0f;
     });
     even = EvenedLight(light, {covered}, guides.width(), guides.height(),
-                       kLightNoise * static_cast<float>(frame.measures.bright), frame.Apart());
+                       LightNoiseOf(guides) * static_cast<float>(frame.measures.bright), frame.Apart());
     light = even;
   }
   ForEachOklabBlock(pixels, [&](std::size_t first, std::size_t count) {

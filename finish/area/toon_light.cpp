@@ -51,7 +51,7 @@ FloatPlane ToonLight(const ToonPass& pass, const FinishFrame& frame) {
   const bool takes_chance = (!is_wrapped || has_cast) && !HasExactLight(guides);
   if (pass.bands == 1 || !takes_chance) return light;
   return EvenedLight(light, LitSurfaceOf(guides), guides.width(), guides.height(),
-                     kLightNoise * static_cast<float>(BrightestOf(pass, frame)), frame.Apart());
+                     LightNoiseOf(guides) * static_cast<float>(BrightestOf(pass, frame)), frame.Apart());
 }
 
 }  // namespace scumble::internal

@@ -102,7 +102,7 @@ void DrawOutline(const OutlinePass& pass, double strength, std::span<const std::
   }
   FloatPlane shadow;
   if (pass.of_class[std::size_t(LineClass::kShadow)] > 0.0 && !HasExactLight(guides)) {
-    shadow = EvenedLight(guides.Plane(Layer::kShadow), LitSurfaceOf(guides), width, height, kLightNoise,
+    shadow = EvenedLight(guides.Plane(Layer::kShadow), LitSurfaceOf(guides), width, height, LightNoiseOf(guides),
                          is_field ? frame.Apart() : 1);
   }
   std::span<const float> shade = shadow;

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <mutex>
 #include <optional>
 #include <span>
@@ -106,6 +107,12 @@ GuideSet UnsetGuides(const GuidegenOptions& options) {
   return guides;
 }
 
+std::string Digits(double error) {
+  char text[16];
+  std::snprintf(text, sizeof text, "%.3f", error);
+  return text;
+}
+
 Expected<GuidegenResult> CastInArena(LazyScene& objects, const View& view, const GuidegenOptions& options) {
   if (!Continue(options.progress, 0.0)) return CancelledError();
   GuidegenResult result;
@@ -156,7 +163,12 @@ Expected<GuidegenResult> CastInArena(LazyScene& objects, const View& view, const
     result.noise = traced.noise;
   }
   std::vector<const FoundFragments*> found;
-  for (const TileCaster::Scratch& of_thread : scratch) found.push_back(&of_thread.fragments);
+  LightErrors light_errors;
+  for (const TileCaster::Scratch& of_thread : scratch) {
+    found.push_back(&of_thread.fragments);
+    light_errors += of_thread.light_errors();
+  }
+  result.light_error = light_errors.OfMost();
   result.guides.fragments = GatherFragments(found, window, result.guides);
   result.render_ms = watch.Lap();
   if (!Continue(options.progress, 1.0)) return CancelledError();
@@ -172,6 +184,7 @@ Expected<GuidegenResult> CastInArena(LazyScene& objects, const View& view, const
   if (!options.robust) result.guides.attributes["scumble:robust"] = "false";
   if (result.samples > 0) result.guides.attributes["scumble:samples"] = std::to_string(result.samples);
   if (needs.emitters && !view.supply.may_be_met) result.guides.attributes[kLightKey] = kExactLight;
+  if (result.light_error > 0.0) result.guides.attributes[kLightErrorKey] = Digits(result.light_error);
   if (options.seed != 0) result.guides.attributes["scumble:seed"] = std::to_string(options.seed);
   result.guides.attributes["scumble:normal_frame"] = options.normal_frame == NormalFrame::kEye ? "eye" : "camera";
   return result;

@@ -9,6 +9,7 @@
 #include "guidegen/cast/ray_packets.h"
 #include "guidegen/cast/tile_store.h"
 #include "guidegen/rays/ray_offset.h"
+#include "guidegen/surface/bsdf.h"
 #include "guidegen/surface/shading_normal.h"
 
 namespace scumble {
@@ -172,9 +173,17 @@ void TileCaster::Light(const Tile& tile, AreaLightTile& area_light_tile, TileScr
     const double most = unoccluded[pixel] + one.light.unoccluded;
     // Each light is within float's range; their sum need not be.
     constexpr double kMaxFloat = std::numeric_limits<float>::max();
-    if (planes_.luminance) planes_.luminance[one.index] = float(std::min(lit, kMaxFloat));
+    if (planes_.luminance) {
+      const double shines = EmissionOf(hits.object[pixel], hits.primitive[pixel], points[pixel].barycentric);
+      planes_.luminance[one.index] = float(std::min(lit + shines, kMaxFloat));
+    }
     if (planes_.shadow && most > 0.0) planes_.shadow[one.index] = float(1.0 - lit / most);
   }
+}
+
+double TileCaster::EmissionOf(std::uint32_t object, std::uint32_t primitive, const glm::dvec2& barycentric) const {
+  const PlacedObject& placed = scene_.objects()[object];
+  return MayEmit(*placed.material) ? Brightness(SurfaceEmission(placed, primitive, barycentric)) : 0.0;
 }
 
 void TileCaster::WriteWhole(std::span<const Tile> tiles, const Scratch& scratch) const {

@@ -34,6 +34,7 @@ class TileCaster {
     explicit Scratch(const TileCaster& caster);
 
     FoundFragments fragments;  // of all tiles that the thread has cast
+    const LightErrors& light_errors() const { return area_light_tile.errors(); }  // likewise
 
    private:
     friend class TileCaster;
@@ -97,6 +98,8 @@ class TileCaster {
   void Fill(const Tile& tile, Scratch& buffers, TileScratch& scratch, Share& share,
             std::vector<PathPixel>* pixels) const;
   void Light(const Tile& tile, AreaLightTile& area_light_tile, TileScratch& scratch, Share& share) const;
+  // The luminance that a surface itself sends out.
+  double EmissionOf(std::uint32_t object, std::uint32_t primitive, const glm::dvec2& barycentric) const;
   glm::dvec2 Centre(const Tile& tile, int pixel) const {
     return {tile.x0 + TileColumn(pixel) + 0.5, tile.y0 + TileRow(pixel) + 0.5};
   }

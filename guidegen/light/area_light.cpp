@@ -51,7 +51,7 @@ double PointLighting::Weighed(int light, const glm::dvec3& radiance, double dens
 PointLighting::Take PointLighting::TakeFrom(int light, double probability, double u, double v) const {
   Take take;
   take.light_number = light;
-  take.draw = lights_->Draw(light, point_->position, u, v);
+  take.draw = lights_->Draw(light, *point_, u, v);
   const double reflected = DiffuseDensity(*point_, take.draw.direction);
   const double density = probability * take.draw.density;
   if (!(reflected > 0.0) || !(density > 0.0) || std::isinf(density)) return take;
@@ -134,7 +134,7 @@ double PointLighting::Emitted(const RTCRayHit& hit, const glm::dvec3& direction,
   const PlacedObject& object = scene_->objects()[hit.hit.geomID];
   const SurfacePoint met = FindSurfacePoint(object, hit.hit.primID, {origin_, direction});
   const glm::dvec3 radiance = SurfaceEmission(object, hit.hit.primID, met.barycentric);
-  return Weighed(light, radiance, lights_->EmitterDensity(light, point_->position, met), reflected);
+  return Weighed(light, radiance, lights_->EmitterDensity(light, *point_, hit.hit.primID, met), reflected);
 }
 
 AreaLighting SampleAreaLights(const EmbreeScene& scene, const LightSet& lights, const SurfacePoint& point,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "guidegen/light/light_visibility.h"
 #include "guidegen/rays/occlusion_batch.h"
@@ -62,6 +63,26 @@ Mask Widened(const Mask& mask) {
 }
 
 }  // namespace
+
+void LightErrors::Add(double error) {
+  const double steps = std::clamp(std::ceil(error / kStep), 0.0, double(pixels_.size() - 1));
+  ++pixels_[std::size_t(steps)];
+}
+
+LightErrors& LightErrors::operator+=(const LightErrors& other) {
+  for (std::size_t i = 0; i < pixels_.size(); ++i) pixels_[i] += other.pixels_[i];
+  return *this;
+}
+
+double LightErrors::OfMost() const {
+  const auto all = std::accumulate(pixels_.begin(), pixels_.end(), std::uint64_t(0));
+  std::uint64_t up_to = 0;
+  for (std::size_t i = 0; i < pixels_.size() && all > 0; ++i) {
+    up_to += pixels_[i];
+    if (10 * up_to >= 9 * all) return double(i) * kStep;
+  }
+  return 0.0;
+}
 
 AreaLightTile::AreaLightTile(const EmbreeScene& scene, const LightSet& lights, const AreaLightSettings& settings)
     : scene_(scene),
@@ -191,13 +212,19 @@ double AreaLightTile::SquaredError(const Term& term, bool is_smooth) const {
   return edge * edge + spread * spread;
 }
 
-// Decides which terms of a pixel take more samples. The error is judged beside the light of the lamps that the pixel
-// sees, so that a lamp in the next room does not hide the noise of this one's.
-void AreaLightTile::Refine(const AreaLightPixel& pixel, std::size_t number) {
+struct AreaLightTile::Doubt {
+  std::array<double, kMostTerms> variances{};
+  double total = 0.0;
+  double light = 0.0;
+  int uncertain = 0;  // terms
+};
+
+// The error is judged beside the light of the lamps that the pixel sees, so that a lamp in the next room does not hide
+// the noise of this one's.
+AreaLightTile::Doubt AreaLightTile::DoubtOf(const AreaLightPixel& pixel, std::size_t number) {
   const std::span<Term> terms = TermsOf(number);
-  std::array<double, kMostTerms> errors{};
-  double light = pixel.other_light, total = 0.0;
-  int uncertain = 0;
+  Doubt doubt;
+  doubt.light = pixel.other_light;
   for (std::size_t i = 0; i < terms.size(); ++i) {
     const Term& term = terms[i];
     if (term.samples == 0) continue;
@@ -205,15 +232,24 @@ void AreaLightTile::Refine(const AreaLightPixel& pixel, std::size_t number) {
     const bool is_smooth = directions
                                ? !pixels_[number].lighting.LooksForLights()
                                : light_terms_[i] != PointLighting::kAnyLight && !lights_.IsEmitter(light_terms_[i]);
-    if (term.IsLit() || term.in_penumbra) light += term.sum.unoccluded / term.samples;
-    errors[i] = SquaredError(term, is_smooth);
-    total += errors[i];
-    if (errors[i] > 0.0) ++uncertain;
+    if (term.IsLit() || term.in_penumbra) doubt.light += term.sum.unoccluded / term.samples;
+    doubt.variances[i] = SquaredError(term, is_smooth);
+    doubt.total += doubt.variances[i];
+    if (doubt.variances[i] > 0.0) ++doubt.uncertain;
   }
-  const double allowed = settings_.error * settings_.error * light * light;
-  if (!(total > allowed)) return;
+  return doubt;
+}
+
+// Decides which terms of a pixel take more samples.
+void AreaLightTile::Refine(const AreaLightPixel& pixel, std::size_t number) {
+  const Doubt doubt = DoubtOf(pixel, number);
+  const double allowed = settings_.error * settings_.error * doubt.light * doubt.light;
+  if (!(doubt.total > allowed)) return;
+  const std::span<Term> terms = TermsOf(number);
   for (std::size_t i = 0; i < terms.size(); ++i) {
-    if (errors[i] * uncertain > allowed) terms[i].wanted = std::min(2 * terms[i].samples, settings_.samples);
+    if (doubt.variances[i] * doubt.uncertain > allowed) {
+      terms[i].wanted = std::min(2 * terms[i].samples, settings_.samples);
+    }
   }
 }
 
@@ -265,6 +301,9 @@ bool AreaLightTile::Run(std::span<AreaLightPixel> pixels, ProgressGate& gate, Ra
       if (fixed_ || term.samples == 0) continue;
       light += {term.sum.reached / term.samples, term.sum.unoccluded / term.samples};
     }
+    if (fixed_) continue;
+    const Doubt doubt = DoubtOf(pixels[i], i);
+    if (doubt.light > 0.0) errors_.Add(std::sqrt(doubt.total) / doubt.light);
   }
   return true;
 }

@@ -11,6 +11,7 @@
 // no proof. Pixels at a tile's border, which know fewer neighbours, begin with twice as many.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -27,6 +28,20 @@ struct AreaLightSettings {
   int samples = 64;    // of each term; with an error the most there may be
   double error = 0.0;  // as GuidegenOptions::light_error; 0: all take `samples`
   std::uint64_t seed = 0;
+};
+
+// How many pixels have which estimated error of their light, as a share of what the lamps they see would bring. Whole
+// numbers, so that the order of work changes nothing.
+class LightErrors {
+ public:
+  void Add(double error);
+  LightErrors& operator+=(const LightErrors& other);
+  // Nine of ten pixels have no larger error; 0 without pixels.
+  double OfMost() const;
+
+ private:
+  static constexpr double kStep = 1e-3;
+  std::array<std::uint32_t, 1001> pixels_{};  // by the error's steps; the last has 1 and more
 };
 
 // A covered pixel of one tile. `column` and `row` are its place in the tile, 0 … 15.
@@ -48,6 +63,9 @@ class AreaLightTile {
 
   // Lights the pixels of a tile. False if the caller cancelled; the results are then incomplete.
   bool Run(std::span<AreaLightPixel> pixels, ProgressGate& gate, RayCounts& rays);
+
+  // Of all pixels so far whose lamps shine; none without an allowed error.
+  const LightErrors& errors() const { return errors_; }
 
  private:
   // A term of one pixel: sums over its samples.
@@ -75,6 +93,9 @@ class AreaLightTile {
   void AddBlock(AreaLightPixel& pixel, std::size_t number, std::size_t place);
   void FindPenumbra(std::span<const AreaLightPixel> pixels);
   bool Choose(std::span<AreaLightPixel> pixels, ProgressGate& gate, RayCounts& rays);
+  // The estimated variance of a pixel's light, by term and in all, and the light that it is judged beside.
+  struct Doubt;
+  Doubt DoubtOf(const AreaLightPixel& pixel, std::size_t number);
   void Refine(const AreaLightPixel& pixel, std::size_t number);
   double SquaredError(const Term& term, bool is_smooth) const;
 
@@ -85,7 +106,8 @@ class AreaLightTile {
   const std::vector<int> light_terms_;
   const std::size_t term_count_;  // the last is that of directions
   std::vector<Pixel> pixels_;
-  std::vector<Term> terms_;          // by pixel and term
+  std::vector<Term> terms_;  // by pixel and term
+  LightErrors errors_;
   std::vector<AreaLighting> block_;  // samples of one block of pixels, by pixel, term and sample
 };
 

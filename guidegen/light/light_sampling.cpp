@@ -185,28 +185,14 @@ LightSet::LightSet(std::span<const PlacedLight> lights, std::span<const PlacedOb
 }
 
 void LightSet::AddEmitter(std::uint32_t object) {
-  Emitter emitter;
-  emitter.object = object;
   const PlacedObject& placed = objects_[object];
-  double area = 0.0;
-  glm::dvec3 low(std::numeric_limits<double>::infinity());
-  glm::dvec3 high = -low;
-  for (std::size_t i = 0; i < placed.mesh->triangles.size(); ++i) {
-    const Triangle triangle = ViewTriangle(placed, std::uint32_t(i));
-    const glm::dvec3& a = triangle.corner[0];
-    const double size = 0.5 * glm::length(glm::cross(triangle.corner[1] - a, triangle.corner[2] - a));
-    if (!(size > 0.0) || !std::isfinite(size)) continue;
-    area += size;
-    emitter.triangles.push_back(std::uint32_t(i));
-    emitter.areas_up_to.push_back(area);
-    for (const glm::dvec3& corner : triangle.corner) {
-      low = glm::min(low, corner);
-      high = glm::max(high, corner);
-    }
-  }
+  std::vector<Triangle> triangles(placed.mesh->triangles.size());
+  for (std::size_t i = 0; i < triangles.size(); ++i) triangles[i] = ViewTriangle(placed, std::uint32_t(i));
+  Emitter emitter{object, EmitterPieces(triangles)};
+  const double area = emitter.pieces.area();
   if (!(area > 0.0) || !std::isfinite(area)) return;
   const double power = std::min(Brightness(glm::dvec3(placed.material->emission)), kMostIrradiance) * area;
-  shapes_.push_back({0.5 * (low + high), 0.5 * glm::length(high - low), power, false, false});
+  shapes_.push_back({emitter.pieces.centre(), emitter.pieces.radius(), power, false, false});
   emitter_of_[object] = count();
   emitters_.push_back(std::move(emitter));
 }
@@ -236,14 +222,14 @@ double LightSet::Probability(const SurfacePoint& point, int light, bool with_del
   return tree_.Probability(point, light, with_delta, [&](int other) { return Weight(other, point, with_delta); });
 }
 
-LightDraw LightSet::Draw(int light, const glm::dvec3& point, double u, double v) const {
+LightDraw LightSet::Draw(int light, const SurfacePoint& point, double u, double v) const {
   ++thread_counters.light_samples;
   if (IsEmitter(light)) return DrawEmitter(emitters_[std::size_t(light) - analytic_.size()], point, u, v);
   const PlacedLight& placed = analytic_[std::size_t(light)];
-  if (placed.IsDelta()) return DrawDelta(placed, point);
+  if (placed.IsDelta()) return DrawDelta(placed, point.position);
   if (placed.type == LightType::kSun) return DrawSun(placed, u, v);
-  if (placed.type == LightType::kArea) return DrawArea(placed, point, u, v);
-  return DrawBall(placed, point, u, v);
+  if (placed.type == LightType::kArea) return DrawArea(placed, point.position, u, v);
+  return DrawBall(placed, point.position, u, v);
 }
 
 LightDraw LightSet::Meet(int light, const glm::dvec3& point, const glm::dvec3& direction, double length) const {
@@ -254,34 +240,30 @@ LightDraw LightSet::Meet(int light, const glm::dvec3& point, const glm::dvec3& d
   return MeetBall(placed, point, direction, length);
 }
 
-LightDraw LightSet::DrawEmitter(const Emitter& emitter, const glm::dvec3& point, double u, double v) const {
+LightDraw LightSet::DrawEmitter(const Emitter& emitter, const SurfacePoint& point, double u, double v) const {
   LightDraw draw;
-  const double area = emitter.areas_up_to.back();
-  const double wanted = u * area;
-  const auto found = std::upper_bound(emitter.areas_up_to.begin(), emitter.areas_up_to.end(), wanted);
-  const std::size_t at = std::min(std::size_t(found - emitter.areas_up_to.begin()), emitter.triangles.size() - 1);
-  const double before = at > 0 ? emitter.areas_up_to[at - 1] : 0.0;
-  const double remainder = std::clamp((wanted - before) / (emitter.areas_up_to[at] - before), 0.0, 1.0);
+  const EmitterPieces::Choice choice = emitter.pieces.Choose(point, u);
+  if (!(choice.area > 0.0)) return draw;
   const PlacedObject& object = objects_[emitter.object];
-  const std::uint32_t primitive = emitter.triangles[at];
+  const std::uint32_t primitive = choice.primitive;
   const Triangle triangle = ViewTriangle(object, primitive);
-  const double root = std::sqrt(remainder);
+  const double root = std::sqrt(choice.remainder);
   const glm::dvec2 barycentric(root * (1.0 - v), root * v);
   const glm::dvec3 first = triangle.corner[1] - triangle.corner[0];
   const glm::dvec3 second = triangle.corner[2] - triangle.corner[0];
   draw.target = triangle.corner[0] + first * barycentric.x + second * barycentric.y;
-  const glm::dvec3 to_target = draw.target - point;
+  const glm::dvec3 to_target = draw.target - point.position;
   const double square = glm::dot(to_target, to_target);
   if (!(square > kLeastSquaredDistance)) return draw;
   draw.direction = to_target / std::sqrt(square);
   const glm::dvec3 normal = glm::normalize(glm::cross(first, second));
-  double largest = LargestCoordinate(point);
+  double largest = LargestCoordinate(point.position);
   for (const glm::dvec3& corner : triangle.corner) largest = std::max(largest, LargestCoordinate(corner));
   // A flat emitter does not light itself: this near its plane, the side is rounding alone.
   const double off_plane = std::abs(glm::dot(normal, to_target));
   if (!(off_plane > largest * kFlat)) return draw;
   const double cosine = off_plane / std::sqrt(square);
-  draw.density = PerSolidAngle(area, square, cosine);
+  draw.density = PerSolidAngle(choice.area, square, cosine);
   if (draw.density > 0.0 && !IsHole(object, primitive, barycentric)) {
     draw.radiance = SurfaceEmission(object, primitive, barycentric);
   }
@@ -291,13 +273,14 @@ LightDraw LightSet::DrawEmitter(const Emitter& emitter, const glm::dvec3& point,
   return draw;
 }
 
-double LightSet::EmitterDensity(int light, const glm::dvec3& point, const SurfacePoint& on_emitter) const {
+double LightSet::EmitterDensity(int light, const SurfacePoint& point, std::uint32_t primitive,
+                                const SurfacePoint& on_emitter) const {
   const Emitter& emitter = emitters_[std::size_t(light) - analytic_.size()];
-  const glm::dvec3 to_emitter = on_emitter.position - point;
+  const glm::dvec3 to_emitter = on_emitter.position - point.position;
   const double square = glm::dot(to_emitter, to_emitter);
   if (!(square > kLeastSquaredDistance)) return 0.0;
   const double cosine = std::abs(glm::dot(on_emitter.facing, to_emitter)) / std::sqrt(square);
-  return PerSolidAngle(emitter.areas_up_to.back(), square, cosine);
+  return PerSolidAngle(emitter.pieces.AreaFor(point, primitive), square, cosine);
 }
 
 }  // namespace scumble

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "guidegen/light/direct_light.h"
+#include "guidegen/light/emitter_pieces.h"
 #include "guidegen/light/light_tree.h"
 #include "guidegen/surface/surface.h"
 
@@ -66,7 +67,7 @@ class LightSet {
   bool AnyWideFrom(const glm::dvec3& point) const;
 
   // u also chooses a triangle and is rescaled for it. A draw that cannot reach the point has no radiance.
-  LightDraw Draw(int light, const glm::dvec3& point, double u, double v) const;
+  LightDraw Draw(int light, const SurfacePoint& point, double u, double v) const;
 
   // Calls visit(light, radiance, density) for each analytic light with extent that the ray hits before `length`
   // (infinite: it hits nothing else); `density` is Draw's. The caller handles the world.
@@ -91,19 +92,18 @@ class LightSet {
 
   // The light that an object is, or −1.
   int EmitterOf(std::uint32_t object) const { return emitter_of_[object]; }
-  // The density with which Draw chooses the direction to this point of an emitter.
-  double EmitterDensity(int light, const glm::dvec3& point, const SurfacePoint& on_emitter) const;
+  // The density with which Draw chooses the direction to this point of an emitter's triangle.
+  double EmitterDensity(int light, const SurfacePoint& point, std::uint32_t primitive,
+                        const SurfacePoint& on_emitter) const;
 
  private:
-  // A mesh that emits: triangles are chosen by area.
   struct Emitter {
     std::uint32_t object = 0;
-    std::vector<std::uint32_t> triangles;
-    std::vector<double> areas_up_to;  // cumulative; the last is the whole area
+    EmitterPieces pieces;
   };
 
   LightDraw Meet(int light, const glm::dvec3& point, const glm::dvec3& direction, double length) const;
-  LightDraw DrawEmitter(const Emitter& emitter, const glm::dvec3& point, double u, double v) const;
+  LightDraw DrawEmitter(const Emitter& emitter, const SurfacePoint& point, double u, double v) const;
   double Weight(int light, const SurfacePoint& point, bool with_delta) const;
   void AddEmitter(std::uint32_t object);
 

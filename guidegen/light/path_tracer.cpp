@@ -143,7 +143,8 @@ void LightPathTracer::AddEmission(const Vertex& from, const Vertex& to, const Pa
   if (light < 0 || !LooksFor(light, from, flight.lobe)) return;
   const glm::dvec3 radiance = SurfaceEmission(scene_.objects()[to.object], to.primitive, to.point.barycentric);
   if (radiance == glm::dvec3(0.0)) return;
-  const double other = lights_.EmitterDensity(light, from.point.position, to.point) * ChoiceOf(light, from, flight);
+  const double other =
+      lights_.EmitterDensity(light, from.point, to.primitive, to.point) * ChoiceOf(light, from, flight);
   Add(state, flight.throughput * radiance * Balance(flight.density, other), sums);
 }
 
@@ -165,7 +166,7 @@ void LightPathTracer::AddExact(const First& pixel, PathSums& sums, RayCounts& ra
   if (!lobes.lit[0] && (!lobes.lit[1] || first.bsdf.IsMirror())) return;
   for (int light = 0; light < lights_.count(); ++light) {
     if (!lights_.IsDelta(light)) continue;
-    AddDraw(first, lobes, light, lights_.Draw(light, first.point.position, 0.0, 0.0), 1.0, glm::dvec3(1.0), sums, rays);
+    AddDraw(first, lobes, light, lights_.Draw(light, first.point, 0.0, 0.0), 1.0, glm::dvec3(1.0), sums, rays);
   }
 }
 
@@ -175,7 +176,7 @@ void LightPathTracer::AddEach(const Vertex& vertex, const Lobes& lobes, const Sa
   for (int light = 0; light < lights_.count(); ++light) {
     if (lights_.IsDelta(light)) continue;
     const Quad u = sampler.Draw(sample, kFirstLightSets + std::uint32_t(light));
-    const LightDraw draw = lights_.Draw(light, vertex.point.position, u[0], u[1]);
+    const LightDraw draw = lights_.Draw(light, vertex.point, u[0], u[1]);
     AddDraw(vertex, lobes, light, draw, 1.0, glm::dvec3(1.0), sums, rays);
   }
 }
@@ -191,7 +192,7 @@ void LightPathTracer::AddChosen(const Vertex& vertex, const Lobes& lobes, const 
                                 const glm::dvec3& throughput, PathSums& sums, RayCounts& rays) const {
   const LightChoice choice = lights_.Choose(vertex.point, u[0], with_delta);
   if (choice.light < 0) return;
-  const LightDraw draw = lights_.Draw(choice.light, vertex.point.position, choice.remainder, u[1]);
+  const LightDraw draw = lights_.Draw(choice.light, vertex.point, choice.remainder, u[1]);
   AddDraw(vertex, lobes, choice.light, draw, choice.probability, throughput, sums, rays);
 }
 

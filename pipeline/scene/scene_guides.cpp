@@ -43,6 +43,15 @@ void WarnIfNothingShows(const GuideSet& guides, const std::string& scene, const 
   context.Warn(scene + ": the camera sees nothing, the picture is empty; try --view or another --camera");
 }
 
+// Once a run. Edges of shadows alone keep most pixels below twice the wanted error.
+void NoteLightNoise(double error, double wanted, int samples, const RunContext& context) {
+  if (!(error > 2.0 * wanted) || !context.noted_light_noise || context.noted_light_noise->exchange(true)) return;
+  context.Note(
+      fmt::format("luminance and shadow are noisy: {} samples of each light leave a standard error of up to "
+                  "{:.1f}% in nine of ten pixels, {:.1f}% is wanted; try --samples {}, or fewer, larger lights",
+                  samples, 100.0 * error, 100.0 * wanted, 4 * samples));
+}
+
 Expected<Scene> LoadAnyScene(const SceneRequest& options, const RunContext& context, BlenderAnimation* animation) {
   BlenderRequest blender = options.blender;
   blender.wants_start = options.view.has_value();
@@ -246,6 +255,7 @@ Expected<SceneGuides> CastScene(Scene& scene, const Camera& camera, const NextFr
   result.guides.attributes["scumble:settings"] = GuideSettings(options);
   result.guides.attributes[kSamplesKey] = SamplesText(options);
   if (!scene.instances.empty()) WarnIfNothingShows(result.guides, options.scene, context);
+  NoteLightNoise(rendered.light_error, guidegen.light_error, guidegen.samples, context);
   context.EndStage("guides", result.times);
   if (result.cost.textures_decoded > 0) result.times.insert(result.times.begin(), {"textures", textures_ms});
   return result;

@@ -86,6 +86,7 @@ def make_layered(folder):
         layer.layer_collection.children["Excluded"].exclude = True
     odd_materials.plane("Tilted", 3, odd_materials.tilted())
     odd_materials.holes()
+    odd_materials.said()
     odd_objects.emitters()
     odd_objects.diced()
     odd_objects.filtered()

@@ -225,6 +225,63 @@ def holes():
         plane("Holes " + name, 24 + number, material)
 
 
+def mixed(name, kind, transparent, image=None, output="Alpha", factor=1.0, invert=""):
+    """A Mix Shader of a shader and Transparent, which is its first or second input. `invert`: a node on the way."""
+    material, tree, mix = shader(name, "ShaderNodeMixShader")
+    mix.inputs["Fac"].default_value = factor
+    clear, other = (tree.nodes.new("ShaderNode" + one) for one in ("BsdfTransparent", kind))
+    tree.links.new(clear.outputs[0], mix.inputs[1 + transparent])
+    tree.links.new(other.outputs[0], mix.inputs[2 - transparent])
+    if image:
+        texture = tree.nodes.new("ShaderNodeTexImage")
+        texture.image, texture.interpolation = image, "Closest"
+        source = texture.outputs[output]
+        if output == "Alpha" and invert != "Math":  # Cycles forgets colours where alpha is 0
+            tree.links.new(texture.outputs["Color"], other.inputs[0])
+        if invert:
+            node = tree.nodes.new("ShaderNode" + invert)
+            if invert == "Math":
+                node.operation, node.inputs[0].default_value = "SUBTRACT", 1.0
+            tree.links.new(source, node.inputs[1])
+            source = node.outputs[0]
+        tree.links.new(source, mix.inputs["Fac"])
+    return material
+
+
+def leaves():
+    """Cards whose lower half is a hole, one side of a factor's cut, and what nobody sees."""
+    leaf = picture("Leaf", 0.0)
+    mask = bpy.data.images.new("Leaf mask", 4, 4)
+    mask.colorspace_settings.name = "Non-Color"  # before its pixels, which it would reset
+    mask.pixels.foreach_set((np.mgrid[0:4, 0:4, 0:4][0] > 1).astype(np.float32).ravel())
+    mask.pack()
+    plane("Leaf", 19, mixed("leaf", "BsdfDiffuse", 0, leaf))
+    plane("LeafSwapped", 34, mixed("leaf swapped", "BsdfPrincipled", 1, leaf, invert="Invert"))
+    plane("LeafMask", 31, mixed("leaf mask", "BsdfDiffuse", 1, mask, "Color"))
+    plane("LeafMath", 36, mixed("leaf math", "BsdfDiffuse", 0, leaf, invert="Math"))
+    plane("Unseen", 37, shader("unseen", "ShaderNodeBsdfTransparent")[0])
+    plane("UnseenMix", 38, mixed("unseen mix", "BsdfDiffuse", 0, factor=0.0))
+
+
+def said():
+    """A fog box has faces of another material, too; and mixes that are no holes."""
+    fog, tree, surface = shader("fog", "ShaderNodeVolumeScatter")
+    output = tree.nodes["Material Output"]
+    tree.links.new(surface.outputs[0], output.inputs["Volume"])
+    for link in list(output.inputs["Surface"].links):
+        tree.links.remove(link)
+    box = plane("Fog", 33, fog)
+    box.data.materials.append(diffuse("wall", (1, 0, 0)))
+    for polygon in list(box.data.polygons)[:4]:
+        polygon.material_index = 1
+    plane("Veil", 34, mixed("veil", "BsdfDiffuse", 0, factor=0.6))
+    plane("Velvet", 35, mixed("velvet", "BsdfVelvet", 0, picture("Leaf", 0.0)))
+    ray = mixed("by ray", "BsdfDiffuse", 0)
+    ray.node_tree.links.new(ray.node_tree.nodes.new("ShaderNodeLightPath").outputs[0],
+                            ray.node_tree.nodes["Mix Shader"].inputs["Fac"])
+    plane("ByRay", 36, ray)
+
+
 def build():
-    for cells in (attributes, maps, muted, numbers):
+    for cells in (attributes, maps, muted, numbers, leaves):
         cells()

@@ -22,11 +22,15 @@ TRIANGLES = {  # of objects whose viewport shows another mesh, or none
     "Instancer/Body": 2 * QUADS, "Instancer/Child": 2 * QUADS * 16, "Path/Path": 2 * QUADS, "Path/Path#5": 2 * QUADS}
 
 LOST = ["lamp 'Panel': is visible to the camera",
+        "material 'by ray': node 'Mix Shader' (MIX_SHADER) cannot be expressed",
         "material 'elsewhere': node 'Image Texture.001' at other places than the colour's image",
         "material 'fade': image 'Fade' is its alpha and half transparent in wide parts",
+        "material 'fog': it has a volume and no surface: its faces are left out",
         "material 'glass': its alpha 0.3 is cut at one half: the surface is left out",
         "material 'tilted': node 'Mapping'",
         "material 'two': node 'Image Texture.001' at other places than the roughness",
+        "material 'veil': its alpha 0.6 is cut at one half: the surface is solid",
+        "material 'velvet': node 'Velvet BSDF' (BSDF_VELVET) cannot be expressed",
         "object 'Diced': its adaptive subdivision is taken for 4 levels more than its modifier's"]
 
 
@@ -67,6 +71,10 @@ def check_odd(document, extras):
     expect(painted == ["tube"], painted)
     shared = {primitives(name)[0]["material"] for name in nodes if name.startswith("Order ")}
     expect(len(shared) == 1, "one material for all orders of UV maps", shared)
+    modes = {material["name"]: material.get("alphaMode", "OPAQUE") for material in document["materials"]}
+    for name in ("leaf", "leaf swapped", "leaf mask", "leaf math", "unseen", "unseen mix"):
+        expect(modes[name] == "BLEND", "holes by a Mix Shader with Transparent", name, modes[name])
+    expect(materials["leaf"]["type"] == "DIFFUSE" and materials["leaf swapped"]["type"] == "PRINCIPLED", materials)
     expect(abs(materials["glow"]["strength"] - 0.7152) < 1e-6, materials["glow"])
     expect(max(abs(value - 0.7152) for value in extras["world"]) < 1e-6, extras["world"])
     expect(not extras["unsupported"], extras["unsupported"])
@@ -105,7 +113,7 @@ def check_layered(document, extras):
            "particles keep their numbers when others are gone", sorted(living))
     modes = {material["name"]: material.get("alphaMode", "OPAQUE") for material in document["materials"]}
     holes = {name for name, mode in modes.items() if mode != "OPAQUE"}
-    expect(holes == {"glass", "fade", "named", "alone", "clipped"}, "surfaces with holes", modes)
+    expect(holes == {"glass", "fade", "named", "alone", "clipped", "fog", "velvet"}, "surfaces with holes", modes)
     glass = next(material for material in document["materials"] if material["name"] == "glass")
     expect(glass["pbrMetallicRoughness"]["baseColorFactor"][3] == 0, "an alpha that is cut is told once", glass)
     lost = sorted(extras["unsupported"])

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "tests/finish/finish_fixtures.h"
@@ -120,6 +121,18 @@ TEST(EvenLight, MirroredAndOnEveryInstructionSetTheSame) {
   testing::OnEveryInstructionSet([&] {
     EXPECT_EQ(EvenedLight(light, {object, normal_x, normal_y}, kWide, kHigh, kLightNoise), even);
   });
+}
+
+// Known noise that is larger widens the range; what is no error does not.
+TEST(EvenLight, RangeFollowsTheKnownNoise) {
+  GuideSet guides(1, 1);
+  EXPECT_EQ(internal::LightNoiseOf(guides), kLightNoise);
+  const std::pair<const char*, float> kRanges[] = {{"0.006", kLightNoise}, {"0.04", 0.12f},      {"0.9", 0.25f},
+                                                   {"-1", kLightNoise},    {"nan", kLightNoise}, {"4 %", kLightNoise}};
+  for (const auto& [text, range] : kRanges) {
+    guides.attributes[kLightErrorKey] = text;
+    EXPECT_FLOAT_EQ(internal::LightNoiseOf(guides), range) << text;
+  }
 }
 
 // Islands of two pixels do not change their places.

@@ -11,6 +11,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/io/picture_file.h"
@@ -178,6 +179,14 @@ TEST_F(FinishFile, OverridesGoToPassesByName) {
   EXPECT_EQ(*one, 1u);
   EXPECT_EQ(std::get<OutlinePass>(passes[2].effect).width, 7.5);
   EXPECT_EQ(std::get<OutlinePass>(passes[0].effect).width, OutlinePass().width);
+  const std::pair<const char*, double> kWithoutZeros[] = {{".5", 0.5}, {"2.", 2.0}, {"+.25", 0.25}, {"5.e-1", 0.5}};
+  for (const auto& [text, number] : kWithoutZeros) {
+    ASSERT_TRUE(OverrideFinish(passes, std::string("finish.ink.width=") + text)) << "zeros may be left off: " << text;
+    EXPECT_EQ(std::get<OutlinePass>(passes[2].effect).width, number) << text;
+  }
+  for (const char* text : {".", "-.", "1.2.", "..5", "1.x", ".e1"}) {
+    EXPECT_FALSE(OverrideFinish(passes, std::string("finish.ink.width=") + text)) << text;
+  }
   EXPECT_EQ(*OverrideFinish(passes, "finish.ink.ink=#102030"), 1u) << "quotes may be left off";
   EXPECT_EQ(*OverrideFinish(passes, "finish.pen.width=3"), 0u);
   EXPECT_THAT(NoSuchFinish("finish.pen.width=3", passes).message, HasSubstr("there are outline, tones, ink"));

@@ -536,10 +536,10 @@ TEST_F(StyleFile, OnlySixHexadecimalDigitsAreAColour) {
 
 TEST_F(StyleFile, OverridesWinWithQuotesOrWithout) {
   const std::string toml = "name = 'file'\n[transfer]\nlevels = 3\nmethod = 'styleblit'\n" + std::string(kExemplar);
-  const auto style =
-      Load(toml, {"transfer.levels=5", "transfer.method=litsphere", "transfer.threshold=inf",
-                  "transfer.threshold_metric=\"l1\"", "transfer.edge_aware=false", "transfer.paper=#102030",
-                  "name=bare words, with = signs", "licence='MIT'", "transfer.jitter= 0.5 ", "transfer.levels=6"});
+  const auto style = Load(toml, {"transfer.levels=5", "transfer.method=litsphere", "transfer.threshold=inf",
+                                 "transfer.threshold_metric=\"l1\"", "transfer.edge_aware=false",
+                                 "transfer.paper=#102030", "name=bare words, with = signs", "licence='MIT'",
+                                 "transfer.jitter= 0.5 ", "transfer.levels=6", "transfer.scale=1."});
   ASSERT_TRUE(style) << style.error().message;
   EXPECT_EQ(style->transfer.levels, 6) << "the last one wins";
   EXPECT_EQ(style->transfer.method, Method::kLitSphere);
@@ -550,6 +550,7 @@ TEST_F(StyleFile, OverridesWinWithQuotesOrWithout) {
   EXPECT_EQ(style->name, "bare words, with = signs");
   EXPECT_EQ(style->licence, "MIT");
   EXPECT_EQ(style->transfer.jitter, 0.5f);
+  EXPECT_EQ(style->transfer.scale, 1.0f);
 }
 
 TEST_F(StyleFile, BadOverridesAreTheCallersMistake) {

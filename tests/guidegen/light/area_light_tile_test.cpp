@@ -200,6 +200,54 @@ TEST(AreaLightTile, EveryKindOfLampKeepsTheError) {
   }
 }
 
+// A row of globes that are one mesh, along a floor.
+Scene Lanterns() {
+  Scene scene = Floor(Painted(Bsdf::kDiffuse, 0.7f), 3.0);
+  Material glow = Painted(Bsdf::kDiffuse, 0.2f);
+  glow.emission = glm::vec3(8.0f);
+  Mesh row, globe = BallMesh(12);
+  for (int i = 0; i < 9; ++i) {
+    const auto first = std::uint32_t(row.positions.size());
+    for (const glm::vec3& at : globe.positions) row.positions.push_back(0.1f * at + glm::vec3(i - 0.5f, 0.2f, 0.8f));
+    for (const glm::uvec3& corners : globe.triangles) row.triangles.push_back(corners + first);
+  }
+  row.material = AddMaterial(scene, glow);
+  AddObject(scene, "lanterns", row, glm::dmat4(1.0));
+  return scene;
+}
+
+// The error is that of most pixels, and is known to whoever reads the guides.
+TEST(AreaLightTile, TheErrorThatIsReachedIsSaid) {
+  GuidegenOptions options = Chosen(20, 15);
+  const GuidegenResult fine = Render(Lanterns(), kView, options);
+  EXPECT_GT(fine.light_error, 0.0);
+  EXPECT_LT(fine.light_error, 0.1);
+  EXPECT_NEAR(LightErrorOf(fine.guides), fine.light_error, 1e-9);
+  options.samples = 16;
+  EXPECT_GT(Render(Lanterns(), kView, options).light_error, 1.5 * fine.light_error);
+  options.light_error = 0.0;
+  const GuidegenResult fixed = Render(Lanterns(), kView, options);
+  EXPECT_EQ(fixed.light_error, 0.0) << "it is not estimated";
+  EXPECT_EQ(LightErrorOf(fixed.guides), 0.0);
+}
+
+// What shines is bright, whatever lights it.
+TEST(AreaLightTile, EmissionIsLight) {
+  Scene scene = Floor(Painted(Bsdf::kDiffuse, 0.7f), 3.0);
+  scene.lights = {PointLight({0, 0, 4}, 10.0)};
+  const GuidegenOptions options = Chosen(5, 5, 0.0);
+  const GuidegenResult dark = Render(scene, FlatCamera(3.0, 0.5), options);
+  for (Material& material : scene.materials) material.emission = {1.0f, 2.0f, 3.0f};
+  const GuidegenResult bright = Render(scene, FlatCamera(3.0, 0.5), options);
+  const double emitted = 0.2126 + 2 * 0.7152 + 3 * 0.0722;
+  for (std::size_t i = 0; i < dark.guides.pixel_count(); ++i) {
+    const float received = dark.guides.Plane(Layer::kLuminance)[i];
+    EXPECT_GT(received, 0.0f);
+    EXPECT_NEAR(bright.guides.Plane(Layer::kLuminance)[i], received + emitted, 1e-5);
+    EXPECT_EQ(bright.guides.Plane(Layer::kShadow)[i], dark.guides.Plane(Layer::kShadow)[i]);
+  }
+}
+
 TEST(AreaLightTile, BytesDoNotDependOnThreads) {
   for (const int many : {0, 12}) {
     GuidegenOptions options = Chosen(161, 93);

@@ -318,13 +318,15 @@ TEST(LightSet, DrawnDirectionsMeetTheLightWithTheSameDensity) {
   for (const Light& light : {ball, sun, spot, AreaLight(false), AreaLight(true)}) {
     const LightSet lights(Placed({light}), {}, glm::dvec3(0.0));
     const Sampler sampler(3);
-    const glm::dvec3 point(0.1, -0.2, -0.05);
+    SurfacePoint from;
+    from.position = {0.1, -0.2, -0.05};
+    const glm::dvec3& point = from.position;
     int met = 0;
     double solid_angle = 0.0;
     const int n = 1024;
     for (int i = 0; i < n; ++i) {
       const Quad u = sampler.Draw(std::uint32_t(i), 0);
-      const LightDraw draw = lights.Draw(0, point, u[0] * 0.999 + 0.0005, u[1] * 0.999 + 0.0005);
+      const LightDraw draw = lights.Draw(0, from, u[0] * 0.999 + 0.0005, u[1] * 0.999 + 0.0005);
       ASSERT_GT(draw.density, 0.0);
       solid_angle += 1.0 / draw.density / n;
       const auto visit = [&](int, const glm::dvec3& radiance, double density) {

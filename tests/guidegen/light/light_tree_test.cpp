@@ -86,7 +86,7 @@ TEST(LightTree, ChosenLightsBringWhatAllLightsBring) {
     for (int which = 0; which < 3; ++which) {
       const SurfacePoint point = Somewhere(which);
       const auto irradiance = [&](int light, const Quad& u) {
-        const LightDraw draw = lights.Draw(light, point.position, u[0], u[1]);
+        const LightDraw draw = lights.Draw(light, point, u[0], u[1]);
         const double cosine = std::max(0.0, glm::dot(point.normal, draw.direction));
         if (draw.is_delta) return draw.radiance.g * cosine;
         return draw.density > 0.0 ? draw.radiance.g * cosine / draw.density : 0.0;
