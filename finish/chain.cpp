@@ -46,10 +46,10 @@ std::span<const float> CoverageFor(const FinishPass& pass, const FinishFrame& fr
 }
 
 // Whether a point effect depends on more of the picture than the pixel: what comes before it must be painted.
-bool LooksAtPicture(const FinishPass& pass) {
-  const auto* palette = std::get_if<PalettePass>(&pass.effect);
-  const auto* depth = std::get_if<DepthPass>(&pass.effect);
-  return (palette && !palette->source) || (depth && depth->blur > 0.0);
+bool LooksAtPicture(const FinishStep& step) {
+  const auto* palette = std::get_if<PalettePass>(&step.pass.effect);
+  const auto* depth = std::get_if<DepthPass>(&step.pass.effect);
+  return (palette && !palette->source && !(step.colors && *step.colors)) || (depth && depth->blur > 0.0);
 }
 
 // The picture where the step's share is 1, what was before where it is 0, and of both in between: their sum by shares
@@ -71,6 +71,17 @@ void MixByShare(const Picture& before, std::span<const std::uint16_t> shares, Pi
       to[3] = static_cast<std::uint16_t>(alpha + 0.5);
     }
   });
+}
+
+// The colours that a palette changes.
+ColorSpread SourceOf(const PalettePass& palette, const FinishStep& step, const Picture& picture) {
+  if (palette.source) return *palette.source;
+  if (step.colors && *step.colors) return **step.colors;
+  ColorSpread colors = MeasureColors(picture, step.only);
+  if (!step.colors) return colors;
+  for (double& value : colors.mean) value = AsPrinted(value);
+  for (double& value : colors.covariance) value = AsPrinted(value);
+  return *(*step.colors = colors);
 }
 
 // The effect, where it treats each pixel by itself. `picture`: as the steps before have left it, if LooksAtPicture.
@@ -109,7 +120,7 @@ std::optional<PointEffect> PointEffectOf(const FinishStep& step, const FinishFra
       return internal::MakeDepth(one, frame);
     }
     std::optional<PointEffect> operator()(const PalettePass& one) {
-      return internal::MakePalette(one, one.source ? *one.source : MeasureColors(picture, step.only));
+      return internal::MakePalette(one, SourceOf(one, step, picture));
     }
     std::optional<PointEffect> operator()(const GradePass& one) { return internal::MakeGrade(one); }
     std::optional<PointEffect> operator()(const FillPass& one) { return internal::MakeFill(one); }
@@ -277,7 +288,7 @@ Status Apply(std::span<const FinishStep* const> steps, const FinishFrame& frame,
     std::vector<PointStep> points;
     const std::size_t begin = i;
     for (; i < steps.size(); ++i) {
-      if (i > begin && LooksAtPicture(steps[i]->pass)) break;
+      if (i > begin && LooksAtPicture(*steps[i])) break;
       std::optional<PointEffect> effect = PointEffectOf(*steps[i], FrameOf(*steps[i], frame), picture);
       if (!effect) break;
       points.push_back({*std::move(effect), steps[i], CoverageFor(steps[i]->pass, frame)});

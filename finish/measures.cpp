@@ -43,14 +43,13 @@ bool Looks(const GradePass&) { return false; }
 bool Looks(const PigmentPass&) { return false; }
 bool Looks(const FillPass&) { return false; }
 
-// To six digits: as they are printed, so that a run that is given them gives the same bytes.
-double Rounded(double value) {
+}  // namespace
+
+double AsPrinted(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.6g", value);
   return std::strtod(text, nullptr);
 }
-
-}  // namespace
 
 bool LooksAtMeasures(std::span<const FinishPass> passes) {
   return std::any_of(passes.begin(), passes.end(), [](const FinishPass& pass) {
@@ -88,7 +87,7 @@ FinishMeasures MeasureFinish(const GuideSet& guides) {
     if (bright > 0.0) measures.full = bright;
   }
   for (double* value : {&measures.near, &measures.middle, &measures.far, &measures.bright, &measures.full})
-    *value = Rounded(*value);
+    *value = AsPrinted(*value);
   return measures;
 }
 

@@ -208,10 +208,19 @@ struct ColorSpread {
 // The word for a style's own painting.
 inline constexpr const char* kPaintingPalette = "painting";
 
+// Begins a `from` that has the nine numbers of a ColorSpread after it, as a run prints what it has measured.
+inline constexpr std::string_view kMeasuredPalette = "measured ";
+
+// Whether `like` or `from` names a picture's file.
+inline bool IsPaletteFile(const std::string& source) {
+  return !source.empty() && source != kPaintingPalette && source[0] != '#' && source.rfind(kMeasuredPalette, 0) != 0;
+}
+
 // The palette of an example: colours are moved so that their mean and covariance become those of other colours.
 struct PalettePass {
   std::string like = kPaintingPalette;  // the style's painting; or a picture's file; or colours, "#203050 #f0e0c0"
-  std::string from;   // whose colours become those of `like`: a picture's file; empty: the picture's own
+  // Whose colours become those of `like`: a picture's file; or what was measured; empty: the first picture's own.
+  std::string from;
   double gain = 3.0;  // 1 … 16: how much the spread of colours may grow in any direction
   bool keep_lightness = false;
   std::optional<ColorSpread> target, source;  // of `like` and of `from`, once they are read

@@ -338,7 +338,10 @@ std::vector<FinishKey> PaletteKeys() {
   using P = PalettePass;
   return {
       PassText("like", &P::like, "whose colours: painting, the style's own; a picture's file; or \"#203050 #f0e0c0\""),
-      PassText("from", &P::from, "a picture's file whose colours become those; empty: the picture's own"),
+      PassText(
+          "from", &P::from,
+          "whose colours become those: a picture's file; or what was measured, as a run prints it; empty: the first "
+          "picture's own"),
       PassNumber("gain", &P::gain, 1.0, 16.0, "most that the spread of colours grows"),
       PassFlag("keep_lightness", &P::keep_lightness, "hue and chroma change alone")};
 }
