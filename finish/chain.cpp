@@ -334,6 +334,14 @@ Status CheckDepths(const FinishPass& pass, const FinishMeasures& measures) {
                     pass.name + ".far");
 }
 
+Status CheckThresholds(const FinishPass& pass) {
+  const auto* toon = std::get_if<ToonPass>(&pass.effect);
+  if (!toon || toon->thresholds.empty() || toon->thresholds.size() + 1 == std::size_t(toon->bands)) return Ok();
+  return InputError("finish " + pass.name + ": thresholds has " + std::to_string(toon->thresholds.size()) +
+                    " numbers, and bands is " + std::to_string(toon->bands) + ": set finish." + pass.name +
+                    ".bands to " + std::to_string(toon->thresholds.size() + 1));
+}
+
 Status CheckMask(const FinishPass& pass) {
   const FinishMask& mask = pass.mask;
   if (!(mask.near > 0.0) || !(mask.far > 0.0) || mask.near < mask.far) return Ok();
@@ -364,6 +372,7 @@ Status CheckFinish(std::span<const FinishStep> steps, const GuideSet* guides, co
                         step.pass.name + ".like to a picture's file, or to colours, \"#203050 #f0e0c0\"");
     }
     SCUMBLE_RETURN_IF_ERROR(CheckRamp(step.pass));
+    SCUMBLE_RETURN_IF_ERROR(CheckThresholds(step.pass));
     SCUMBLE_RETURN_IF_ERROR(CheckMask(step.pass));
     const auto* outline = std::get_if<OutlinePass>(&step.pass.effect);
     if (outline && outline->form == OutlinePass::Form::kField && outline->side != OutlinePass::Side::kCentre) {

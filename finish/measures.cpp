@@ -32,8 +32,8 @@ bool Looks(const SmoothPass&) { return false; }
 bool Looks(const EdgesPass& pass) { return pass.tone == EdgesPass::Tone::kLight; }
 bool Looks(const HatchPass& pass) { return pass.tone == HatchPass::Tone::kLight; }
 bool Looks(const ToonPass& pass) {
-  const bool by_depth = pass.shading == ToonPass::Shading::kRamp && pass.ramp_rows == ToonPass::Rows::kDepth;
-  return pass.light == ToonPass::Light::kLuminance || by_depth;
+  const bool has_rows = pass.shading == ToonPass::Shading::kRamp && pass.ramp_rows != ToonPass::Rows::kFacing;
+  return pass.light == ToonPass::Light::kLuminance || has_rows;
 }
 bool Looks(const RenderPass&) { return true; }
 bool Looks(const DepthPass& pass) { return pass.near == 0.0 || pass.far == 0.0; }

@@ -32,7 +32,9 @@ LayerSet Of(const ToonPass& pass) {
     if (pass.cast > 0.0) layers.Add(Layer::kShadow);
   }
   if (pass.shading == ToonPass::Shading::kRamp) {
-    layers.Add(pass.ramp_rows == ToonPass::Rows::kDepth ? Layer::kDepth : Layer::kNormal);
+    if (pass.ramp_rows == ToonPass::Rows::kDepth) layers.Add(Layer::kDepth);
+    if (pass.ramp_rows == ToonPass::Rows::kFacing) layers.Add(Layer::kNormal);
+    if (pass.ramp_rows == ToonPass::Rows::kHighlight) layers.Add({Layer::kLpeLSE, Layer::kLuminance});
   } else if (pass.base == ToonPass::Color::kAlbedo) {
     layers.Add(Layer::kAlbedo);
   }

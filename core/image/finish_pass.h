@@ -72,8 +72,10 @@ struct ToonPass {
   enum class Color { kAlbedo, kPaint };       // of the brightest band: the scene's base colour, or the paint's own
   enum class Light { kLuminance, kWrapped };  // direct light; or the cosine to the key light, wrapped around the form
   enum class Shading { kPlain, kGooch, kRamp };  // one darker tone; from cool to warm; colours of `ramp`
-  enum class Rows { kDepth, kFacing };           // of a ramp: by depth, or by how far surfaces turn from the viewer
+  // Of a ramp: by depth, by how far surfaces turn from the viewer, or by highlights (layer lpe.LSE).
+  enum class Rows { kDepth, kFacing, kHighlight };
   int bands = 3;                                 // 1 … 64; 1: flat
+  std::vector<double> thresholds;                // bands - 1 growing tones between 0 and 1; empty: evenly apart
   double softness = 0.75;  // 0 … 16 pixels at the reference height: half the width of a band's border
   double shade = 0.45;     // 0 … 1: the darkest band's lightness, as a share of the brightest's
   double tint = 0.3;       // 0 … 1: how much of the hue of `color` the darkest band takes on

@@ -71,9 +71,14 @@ void LimitToNames(const FinishPass& pass, const GuideSet& guides, const TellFini
     if (patterns.empty() || !guides.Has(layer)) return;
     const std::set<std::uint32_t> ids = IdsThatFit(patterns, names);
     if (ids.empty()) {
+      std::vector<std::string> known;
+      for (const auto& [id, name] : names) known.push_back(name);
+      std::string meant;
+      for (const std::string& pattern : patterns) meant += meant.empty() ? NearestName(pattern, known) : "";
       tell({{Message::Kind::kWarning,
-             fmt::format("finish {}: no {} has the name {}", pass.name, layer == Layer::kObject ? "object" : "material",
-                         fmt::join(patterns, ", "))}});
+             fmt::format("finish {}: no {} has the name {}{}", pass.name,
+                         layer == Layer::kObject ? "object" : "material", fmt::join(patterns, ", "),
+                         meant.empty() ? "" : "; did you mean " + meant + "?")}});
       return;
     }
     const auto plane = guides.Plane(layer);
