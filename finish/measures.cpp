@@ -30,7 +30,9 @@ bool Looks(const OutlinePass& pass) { return (pass.thin != 0.0 && pass.thin_at =
 bool Looks(const ShadowsPass& pass) { return pass.source != ShadowsPass::Source::kCast; }
 bool Looks(const SmoothPass&) { return false; }
 bool Looks(const EdgesPass& pass) { return pass.tone == EdgesPass::Tone::kLight; }
-bool Looks(const HatchPass& pass) { return pass.tone == HatchPass::Tone::kLight; }
+bool Looks(const HatchPass& pass) {
+  return pass.tone == HatchPass::Tone::kLight || pass.along == HatchPass::Along::kLight;
+}
 bool Looks(const ToonPass& pass) {
   const bool has_rows = pass.shading == ToonPass::Shading::kRamp && pass.ramp_rows != ToonPass::Rows::kFacing;
   return pass.light == ToonPass::Light::kLuminance || has_rows;

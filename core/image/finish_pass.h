@@ -177,17 +177,20 @@ inline constexpr const char* kPlainStrokes = "lines";
 
 // Strokes of ink, denser where it is darker, in patches that follow the surfaces.
 struct HatchPass {
-  enum class Tone { kLight, kPaint };            // what is looked at
-  enum class Along { kAround, kAlong, kFixed };  // in the direction in which the surface bends most; across; `angle`
-  double spacing = 7.0;                          // 2 … 128 pixels at the reference height, from stroke to stroke
-  double patch = 64.0;                           // 8 … 1024 pixels: size of a patch of one direction
+  enum class Tone { kLight, kPaint };  // what is looked at
+  // In the direction in which the surface bends most; across that; `angle`; from light to shade; away from the viewer.
+  enum class Along { kAround, kAlong, kFixed, kLight, kDepth };
+  double spacing = 7.0;     // 2 … 128 pixels at the reference height, from stroke to stroke
+  double patch = 64.0;      // 8 … 1024 pixels: size of a patch of one direction
   double angle = 45.0;      // -180 … 180 degrees, 0 along a row: where the surface has no direction, and of kFixed
   double cross = 60.0;      // 0 … 90 degrees from one layer of strokes to the next
   int layers = 2;           // 1 … 4
   double fullest = 0.6;     // 0.05 … 1: share of ink at which a layer is full, and the next begins
   double bare = 1.0;        // 0 … 1: tone from which on nothing is hatched
+  double shade = 1.0;       // 0 … 4: up to 1 the share of missing light that is hatched, above 1 a power of the tone
   double wobble = 0.6;      // 0 … 16 pixels: how far strokes stray
   double jitter_fps = 0.0;  // new strokes a second, up to 1000; 0: none; -1: in each frame
+  bool stick = false;       // strokes stick to surfaces; false: to the picture
   Tone tone = Tone::kLight;
   Along along = Along::kAround;
   Rgb16 ink = {0x1c1c, 0x1a1a, 0x1919};
