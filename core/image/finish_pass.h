@@ -74,11 +74,11 @@ struct ToonPass {
   enum class Shading { kPlain, kGooch, kRamp };  // one darker tone; from cool to warm; colours of `ramp`
   // Of a ramp: by depth, by how far surfaces turn from the viewer, or by highlights (layer lpe.LSE).
   enum class Rows { kDepth, kFacing, kHighlight };
-  int bands = 3;                                 // 1 … 64; 1: flat
-  std::vector<double> thresholds;                // bands - 1 growing tones between 0 and 1; empty: evenly apart
-  double softness = 0.75;  // 0 … 16 pixels at the reference height: half the width of a band's border
-  double shade = 0.45;     // 0 … 1: the darkest band's lightness, as a share of the brightest's
-  double tint = 0.3;       // 0 … 1: how much of the hue of `color` the darkest band takes on
+  int bands = 3;                   // 1 … 64; 1: flat
+  std::vector<double> thresholds;  // bands - 1 growing tones between 0 and 1; empty: evenly apart
+  double softness = 0.75;          // 0 … 16 pixels at the reference height: half the width of a band's border
+  double shade = 0.45;             // 0 … 1: the darkest band's lightness, as a share of the brightest's
+  double tint = 0.3;               // 0 … 1: how much of the hue of `color` the darkest band takes on
   Rgb16 color = {0x3838, 0x4444, 0x8080};
   Color base = Color::kAlbedo;
   Light light = Light::kLuminance;
