@@ -43,10 +43,10 @@ std::span<const float> CoverageFor(const FinishPass& pass, const FinishFrame& fr
 }
 
 // Whether a point effect depends on more of the picture than the pixel: what comes before it must be painted.
-bool LooksAtPicture(const FinishPass& pass) {
-  const auto* palette = std::get_if<PalettePass>(&pass.effect);
-  const auto* depth = std::get_if<DepthPass>(&pass.effect);
-  return (palette && !palette->source) || (depth && depth->blur > 0.0);
+bool LooksAtPicture(const FinishStep& step) {
+  const auto* palette = std::get_if<PalettePass>(&step.pass.effect);
+  const auto* depth = std::get_if<DepthPass>(&step.pass.effect);
+  return (palette && !palette->source && !(step.colors && *step.colors)) || (depth && depth->blur > 0.0);
 }
 
 // The picture where the step's share is 1, what was before where it is 0, and of both in between: their sum by shares
@@ -68,6 +68,17 @@ void MixByShare(const Picture& before, std::span<const std::uint16_t> shares, Pi
       to[3] = static_cast<std::uint16_t>(alpha + 0.5);
     }
   });
+}
+
+// The colours that a palette changes.
+ColorSpread SourceOf(const PalettePass& palette, const FinishStep& step, const Picture& picture) {
+  if (palette.source) return *palette.source;
+  if (step.colors && *step.colors) return **step.colors;
+  ColorSpread colors = MeasureColors(picture, step.only);
+  if (!step.colors) return colors;
+  for (double& value : colors.mean) value = AsPrinted(value);
+  for (double& value : colors.covariance) value = AsPrinted(value);
+  return *(*step.colors = colors);
 }
 
 // The light that toon cuts or shades by; it lies in `light`. Borders that are not soft are steps.
@@ -147,7 +158,7 @@ std::optional<PointEffect> PointEffectOf(const FinishStep& step, const FinishFra
       return internal::MakeDepth(one, frame);
     }
     std::optional<PointEffect> operator()(const PalettePass& one) {
-      return internal::MakePalette(one, one.source ? *one.source : MeasureColors(picture, step.only));
+      return internal::MakePalette(one, SourceOf(one, step, picture));
     }
     std::optional<PointEffect> operator()(const GradePass& one) { return internal::MakeGrade(one); }
     std::optional<PointEffect> operator()(const FillPass& one) { return internal::MakeFill(one); }
@@ -204,7 +215,7 @@ Status Apply(std::span<const FinishStep* const> steps, const FinishFrame& frame,
     std::vector<PointStep> points;
     const std::size_t begin = i;
     for (; i < steps.size(); ++i) {
-      if (i > begin && LooksAtPicture(steps[i]->pass)) break;
+      if (i > begin && LooksAtPicture(*steps[i])) break;
       std::vector<HardLight> lights;
       std::optional<PointEffect> effect = PointEffectOf(*steps[i], FrameOf(*steps[i], frame), picture, lights);
       if (!effect) break;
@@ -251,6 +262,14 @@ Status CheckDepths(const FinishPass& pass, const FinishMeasures& measures) {
                     pass.name + ".far");
 }
 
+Status CheckThresholds(const FinishPass& pass) {
+  const auto* toon = std::get_if<ToonPass>(&pass.effect);
+  if (!toon || toon->thresholds.empty() || toon->thresholds.size() + 1 == std::size_t(toon->bands)) return Ok();
+  return InputError("finish " + pass.name + ": thresholds has " + std::to_string(toon->thresholds.size()) +
+                    " numbers, and bands is " + std::to_string(toon->bands) + ": set finish." + pass.name +
+                    ".bands to " + std::to_string(toon->thresholds.size() + 1));
+}
+
 Status CheckMask(const FinishPass& pass) {
   const FinishMask& mask = pass.mask;
   if (!(mask.near > 0.0) || !(mask.far > 0.0) || mask.near < mask.far) return Ok();
@@ -281,6 +300,7 @@ Status CheckFinish(std::span<const FinishStep> steps, const GuideSet* guides, co
                         step.pass.name + ".like to a picture's file, or to colours, \"#203050 #f0e0c0\"");
     }
     SCUMBLE_RETURN_IF_ERROR(CheckRamp(step.pass));
+    SCUMBLE_RETURN_IF_ERROR(CheckThresholds(step.pass));
     SCUMBLE_RETURN_IF_ERROR(CheckMask(step.pass));
     const auto* outline = std::get_if<OutlinePass>(&step.pass.effect);
     if (outline && outline->form == OutlinePass::Form::kField && outline->side != OutlinePass::Side::kCentre) {

@@ -12,6 +12,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -43,6 +44,9 @@ inline constexpr double kEnoughToMeasure = 0.005;
 // Of layers that the guides lack, and of nothing covered, the values stay as they are above.
 FinishMeasures MeasureFinish(const GuideSet& guides);
 
+// A measure as it is printed, to six digits, so that a run that is given what another has printed gives the same bytes.
+double AsPrinted(double value);
+
 // The mean and covariance of a picture's colours in Oklab, weighted by alpha: of all, or of the pixels of `only` that
 // are not 0. 0 where there are none. The same on any number of threads.
 ColorSpread MeasureColors(const Picture& picture, std::span<const std::uint8_t> only = {});
@@ -57,6 +61,9 @@ struct FinishStep {
   std::vector<std::uint8_t> only;         // by pixel: 0 is left as it is; empty: none is
   int reference_height = -1;              // of the pass's lengths; 0: they are pixels; -1: the frame's scale counts
   std::vector<std::uint16_t> share = {};  // by pixel: a factor of the strength, 65535 for 1; empty: 1 everywhere
+  // Of a palette without `from`: the colours that it changes, AsPrinted, which it measures and puts here if there are
+  // none yet. Null: it measures each picture. It must outlive the step.
+  std::optional<ColorSpread>* colors = nullptr;
 };
 
 struct FinishFrame {

@@ -30,10 +30,12 @@ bool Looks(const OutlinePass& pass) { return (pass.thin != 0.0 && pass.thin_at =
 bool Looks(const ShadowsPass& pass) { return pass.source != ShadowsPass::Source::kCast; }
 bool Looks(const SmoothPass&) { return false; }
 bool Looks(const EdgesPass& pass) { return pass.tone == EdgesPass::Tone::kLight; }
-bool Looks(const HatchPass& pass) { return pass.tone == HatchPass::Tone::kLight; }
+bool Looks(const HatchPass& pass) {
+  return pass.tone == HatchPass::Tone::kLight || pass.along == HatchPass::Along::kLight;
+}
 bool Looks(const ToonPass& pass) {
-  const bool by_depth = pass.shading == ToonPass::Shading::kRamp && pass.ramp_rows == ToonPass::Rows::kDepth;
-  return pass.light == ToonPass::Light::kLuminance || by_depth;
+  const bool has_rows = pass.shading == ToonPass::Shading::kRamp && pass.ramp_rows != ToonPass::Rows::kFacing;
+  return pass.light == ToonPass::Light::kLuminance || has_rows;
 }
 bool Looks(const RenderPass&) { return true; }
 bool Looks(const DepthPass& pass) { return pass.near == 0.0 || pass.far == 0.0; }
@@ -43,14 +45,13 @@ bool Looks(const GradePass&) { return false; }
 bool Looks(const PigmentPass&) { return false; }
 bool Looks(const FillPass&) { return false; }
 
-// To six digits: as they are printed, so that a run that is given them gives the same bytes.
-double Rounded(double value) {
+}  // namespace
+
+double AsPrinted(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.6g", value);
   return std::strtod(text, nullptr);
 }
-
-}  // namespace
 
 bool LooksAtMeasures(std::span<const FinishPass> passes) {
   return std::any_of(passes.begin(), passes.end(), [](const FinishPass& pass) {
@@ -88,7 +89,7 @@ FinishMeasures MeasureFinish(const GuideSet& guides) {
     if (bright > 0.0) measures.full = bright;
   }
   for (double* value : {&measures.near, &measures.middle, &measures.far, &measures.bright, &measures.full})
-    *value = Rounded(*value);
+    *value = AsPrinted(*value);
   return measures;
 }
 

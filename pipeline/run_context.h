@@ -56,7 +56,7 @@ struct RunContext {
   // The largest need of memory that was noted so far; null: needs are checked and not noted.
   std::shared_ptr<std::atomic<std::uint64_t>> noted_memory = std::make_shared<std::atomic<std::uint64_t>>(0);
 
-  // Whether a note said that light has more noise than is aimed at, so that frames do not repeat it; null: none says so.
+  // Whether a note said that light has more noise than is aimed at: frames do not repeat it. Null: none says so.
   std::shared_ptr<std::atomic<bool>> noted_light_noise = std::make_shared<std::atomic<bool>>(false);
 
   Progress StartProgress(const std::string& label) const { return on_progress ? on_progress(label) : Progress(); }

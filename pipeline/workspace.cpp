@@ -415,6 +415,7 @@ Expected<PaintedFrame> Workspace::State::Paint(SceneRequest scene, const StyleRe
   std::vector<std::shared_ptr<const PreparedExemplar>> before;
   for (const PreparedStyle& one : picture.prepared) before.push_back(one.exemplar);
   const GuideSource source{scene.scene, guides->times, guides->plan, guides->cost, memory};
+  picture.palette_colors = {};  // they are measured on the paint
   SCUMBLE_ASSIGN(PaintedPicture painted,
                  PaintInMemory(*styles, guides->guides, source, request, context, Within(progress, 0.5, 1.0), picture));
   for (std::size_t i = 0; i < picture.prepared.size(); ++i) {

@@ -32,7 +32,9 @@ LayerSet Of(const ToonPass& pass) {
     if (pass.cast > 0.0) layers.Add(Layer::kShadow);
   }
   if (pass.shading == ToonPass::Shading::kRamp) {
-    layers.Add(pass.ramp_rows == ToonPass::Rows::kDepth ? Layer::kDepth : Layer::kNormal);
+    if (pass.ramp_rows == ToonPass::Rows::kDepth) layers.Add(Layer::kDepth);
+    if (pass.ramp_rows == ToonPass::Rows::kFacing) layers.Add(Layer::kNormal);
+    if (pass.ramp_rows == ToonPass::Rows::kHighlight) layers.Add({Layer::kLpeLSE, Layer::kLuminance});
   } else if (pass.base == ToonPass::Color::kAlbedo) {
     layers.Add(Layer::kAlbedo);
   }
@@ -56,8 +58,13 @@ LayerSet Of(const EdgesPass& pass) {
 
 LayerSet Of(const HatchPass& pass) {
   LayerSet layers;
-  if (pass.along != HatchPass::Along::kFixed) layers.Add({Layer::kCoverage, Layer::kObject, Layer::kNormal});
-  if (pass.tone == HatchPass::Tone::kLight) layers.Add({Layer::kCoverage, Layer::kLuminance});
+  using Along = HatchPass::Along;
+  if (pass.along != Along::kFixed) layers.Add({Layer::kCoverage, Layer::kObject});
+  if (pass.along == Along::kAround || pass.along == Along::kAlong) layers.Add(Layer::kNormal);
+  if (pass.along == Along::kDepth) layers.Add(Layer::kDepth);
+  if (pass.along == Along::kLight || pass.tone == HatchPass::Tone::kLight)
+    layers.Add({Layer::kCoverage, Layer::kLuminance});
+  if (pass.stick) layers.Add({Layer::kCoverage, Layer::kObject, Layer::kDepth, Layer::kPref});
   return layers;
 }
 

@@ -72,11 +72,13 @@ struct ToonPass {
   enum class Color { kAlbedo, kPaint };       // of the brightest band: the scene's base colour, or the paint's own
   enum class Light { kLuminance, kWrapped };  // direct light; or the cosine to the key light, wrapped around the form
   enum class Shading { kPlain, kGooch, kRamp };  // one darker tone; from cool to warm; colours of `ramp`
-  enum class Rows { kDepth, kFacing };           // of a ramp: by depth, or by how far surfaces turn from the viewer
-  int bands = 3;                                 // 1 … 64; 1: flat
-  double softness = 0.75;  // 0 … 16 pixels at the reference height: half the width of a band's border
-  double shade = 0.45;     // 0 … 1: the darkest band's lightness, as a share of the brightest's
-  double tint = 0.3;       // 0 … 1: how much of the hue of `color` the darkest band takes on
+  // Of a ramp: by depth, by how far surfaces turn from the viewer, or by highlights (layer lpe.LSE).
+  enum class Rows { kDepth, kFacing, kHighlight };
+  int bands = 3;                   // 1 … 64; 1: flat
+  std::vector<double> thresholds;  // bands - 1 growing tones between 0 and 1; empty: evenly apart
+  double softness = 0.75;          // 0 … 16 pixels at the reference height: half the width of a band's border
+  double shade = 0.45;             // 0 … 1: the darkest band's lightness, as a share of the brightest's
+  double tint = 0.3;               // 0 … 1: how much of the hue of `color` the darkest band takes on
   Rgb16 color = {0x3838, 0x4444, 0x8080};
   Color base = Color::kAlbedo;
   Light light = Light::kLuminance;
@@ -178,18 +180,20 @@ inline constexpr const char* kPlainStrokes = "lines";
 
 // Strokes of ink, denser where it is darker, in patches that follow the surfaces.
 struct HatchPass {
-  enum class Tone { kLight, kPaint };            // what is looked at
-  enum class Along { kAround, kAlong, kFixed };  // in the direction in which the surface bends most; across; `angle`
-  double spacing = 7.0;                          // 2 … 128 pixels at the reference height, from stroke to stroke
-  double patch = 64.0;                           // 8 … 1024 pixels: size of a patch of one direction
+  enum class Tone { kLight, kPaint };  // what is looked at
+  // In the direction in which the surface bends most; across that; `angle`; from light to shade; away from the viewer.
+  enum class Along { kAround, kAlong, kFixed, kLight, kDepth };
+  double spacing = 7.0;     // 2 … 128 pixels at the reference height, from stroke to stroke
+  double patch = 64.0;      // 8 … 1024 pixels: size of a patch of one direction
   double angle = 45.0;      // -180 … 180 degrees, 0 along a row: where the surface has no direction, and of kFixed
   double cross = 60.0;      // 0 … 90 degrees from one layer of strokes to the next
   int layers = 2;           // 1 … 4
   double fullest = 0.6;     // 0.05 … 1: share of ink at which a layer is full, and the next begins
   double bare = 1.0;        // 0 … 1: tone from which on nothing is hatched
-  double deepest = 0.0;     // 0 … 1: tone below which all is hatched alike, so that paper shows in the deepest shade
+  double shade = 1.0;       // 0 … 4: up to 1 the share of missing light that is hatched, above 1 a power of the tone
   double wobble = 0.6;      // 0 … 16 pixels: how far strokes stray
   double jitter_fps = 0.0;  // new strokes a second, up to 1000; 0: none; -1: in each frame
+  bool stick = false;       // strokes stick to surfaces; false: to the picture
   Tone tone = Tone::kLight;
   Along along = Along::kAround;
   Rgb16 ink = {0x1c1c, 0x1a1a, 0x1919};
@@ -212,10 +216,19 @@ struct ColorSpread {
 // The word for a style's own painting.
 inline constexpr const char* kPaintingPalette = "painting";
 
+// Begins a `from` that has the nine numbers of a ColorSpread after it, as a run prints what it has measured.
+inline constexpr std::string_view kMeasuredPalette = "measured ";
+
+// Whether `like` or `from` names a picture's file.
+inline bool IsPaletteFile(const std::string& source) {
+  return !source.empty() && source != kPaintingPalette && source[0] != '#' && source.rfind(kMeasuredPalette, 0) != 0;
+}
+
 // The palette of an example: colours are moved so that their mean and covariance become those of other colours.
 struct PalettePass {
   std::string like = kPaintingPalette;  // the style's painting; or a picture's file; or colours, "#203050 #f0e0c0"
-  std::string from;   // whose colours become those of `like`: a picture's file; empty: the picture's own
+  // Whose colours become those of `like`: a picture's file; or what was measured; empty: the first picture's own.
+  std::string from;
   double gain = 3.0;  // 1 … 16: how much the spread of colours may grow in any direction
   bool keep_lightness = false;
   std::optional<ColorSpread> target, source;  // of `like` and of `from`, once they are read

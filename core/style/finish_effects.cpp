@@ -1,6 +1,8 @@
 // The tables of finish_keys.h.
 #include <algorithm>
 #include <cstdio>
+#include <locale>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -9,6 +11,7 @@
 #include "core/style/color_ramp.h"
 #include "core/style/finish_keys.h"
 #include "core/style/finish_mask_keys.h"
+#include "core/style/nearest_name.h"
 
 namespace scumble {
 namespace {
@@ -100,7 +103,8 @@ FinishKey FinishChoice(const char* name, Field field, std::vector<std::string> c
     for (std::size_t i = 0; i < choices.size(); ++i) {
       expected += (i == 0 ? "\"" : i + 1 < choices.size() ? ", \"" : " or \"") + choices[i] + '"';
     }
-    return UsageError(expected);
+    const std::string meant = text ? NearestName(*text, choices) : "";
+    return UsageError(expected + (meant.empty() ? "" : "; did you mean \"" + meant + "\"?"));
   };
   key.get = [=](const FinishPass& pass) -> KeyValue {
     FinishPass copy = pass;
@@ -218,10 +222,46 @@ FinishKey RampKey() {
   return key;
 }
 
+FinishKey ThresholdsKey() {
+  FinishKey key{"thresholds",
+                KeyKind::kText,
+                0.0,
+                0.0,
+                {},
+                "",
+                "tones at which bands begin, \"0.2 0.6\"; empty: even ones",
+                {},
+                {}};
+  key.set = [](FinishPass& pass, const KeyValue& value) -> Status {
+    const auto* text = std::get_if<std::string>(&value);
+    std::vector<double> thresholds;
+    std::istringstream words(text ? *text : "none");
+    words.imbue(std::locale::classic());
+    for (double number; words >> number;) thresholds.push_back(number);
+    double last = 0.0;
+    bool grows = words.eof();
+    for (const double one : thresholds) grows = grows && one > std::exchange(last, one) && one < 1.0;
+    if (!grows) return UsageError("expected growing numbers between 0 and 1 with blanks between, as \"0.2 0.6\"");
+    std::get<ToonPass>(pass.effect).thresholds = std::move(thresholds);
+    return Ok();
+  };
+  key.get = [](const FinishPass& pass) -> KeyValue {
+    std::string text;
+    for (const double one : std::get<ToonPass>(pass.effect).thresholds) {
+      char number[32];
+      std::snprintf(number, sizeof number, "%s%.9g", text.empty() ? "" : " ", one);
+      text += number;
+    }
+    return text;
+  };
+  return key;
+}
+
 std::vector<FinishKey> ToonKeys() {
   using P = ToonPass;
   return {
       PassWhole("bands", &P::bands, 1, 64, "bands of light"),
+      ThresholdsKey(),
       PassNumber("softness", &P::softness, 0.0, 16.0, "half the width of a band's border, pixels"),
       PassNumber("shade", &P::shade, 0.0, 1.0, "lightness of the darkest band, as a share of the brightest's"),
       PassNumber("tint", &P::tint, 0.0, 1.0, "how much of the colour's hue the darkest band takes on"),
@@ -240,8 +280,8 @@ std::vector<FinishKey> ToonKeys() {
       PassNumber("warm_base", &P::warm_base, 0.0, 1.0, "share of the base colour that is added to warm"),
       PassNumber("cool_base", &P::cool_base, 0.0, 1.0, "the same of cool"),
       RampKey(),
-      PassChoice("ramp_rows", &P::ramp_rows, {"depth", "facing"},
-                 "what a ramp's rows go by: distance, or how far surfaces turn from the viewer")};
+      PassChoice("ramp_rows", &P::ramp_rows, {"depth", "facing", "highlight"},
+                 "what a ramp's rows go by: distance, how far surfaces turn from the viewer, or highlights")};
 }
 
 std::vector<FinishKey> SmoothKeys() {
@@ -278,16 +318,18 @@ std::vector<FinishKey> HatchKeys() {
   using P = HatchPass;
   return {PassNumber("spacing", &P::spacing, 2.0, 128.0, "from stroke to stroke, pixels"),
           PassNumber("patch", &P::patch, 8.0, 1024.0, "size of patches of one direction, pixels"),
-          PassChoice("along", &P::along, {"around", "along", "fixed"},
-                     "around forms, along them, or in the fixed direction `angle`"),
+          PassChoice("along", &P::along, {"around", "along", "fixed", "light", "depth"},
+                     "around forms, along them, in the fixed direction `angle`, from light to shade, or into depth"),
           PassNumber("angle", &P::angle, -180.0, 180.0, "where a surface has no direction, degrees, 0 along a row"),
           PassNumber("cross", &P::cross, 0.0, 90.0, "from one layer of strokes to the next, degrees"),
           PassWhole("layers", &P::layers, 1, 4, "layers of strokes"),
           PassNumber("fullest", &P::fullest, 0.05, 1.0, "share of ink at which the next layer begins"),
           PassNumber("bare", &P::bare, 0.0, 1.0, "tone from which on nothing is hatched"),
-          PassNumber("deepest", &P::deepest, 0.0, 1.0, "tone of the deepest shade: above 0, paper shows there"),
+          PassNumber("shade", &P::shade, 0.0, 4.0,
+                     "how much of the missing light is hatched; 2: the tone's square is left"),
           PassNumber("wobble", &P::wobble, 0.0, 16.0, "how far strokes stray, pixels"),
           PassJitter(&P::jitter_fps),
+          PassFlag("stick", &P::stick, "strokes stick to surfaces"),
           PassText("strokes", &P::strokes, "lines; or of pencil, pen, charcoal; or the file of a threshold texture"),
           PassChoice("tone", &P::tone, {"light", "paint"}, "what is looked at: the light or the paint"),
           PassColor("ink", &P::ink, "the colour of ink")};
@@ -343,7 +385,10 @@ std::vector<FinishKey> PaletteKeys() {
   using P = PalettePass;
   return {
       PassText("like", &P::like, "whose colours: painting, the style's own; a picture's file; or \"#203050 #f0e0c0\""),
-      PassText("from", &P::from, "a picture's file whose colours become those; empty: the picture's own"),
+      PassText(
+          "from", &P::from,
+          "whose colours become those: a picture's file; or what was measured, as a run prints it; empty: the first "
+          "picture's own"),
       PassNumber("gain", &P::gain, 1.0, 16.0, "most that the spread of colours grows"),
       PassFlag("keep_lightness", &P::keep_lightness, "hue and chroma change alone")};
 }

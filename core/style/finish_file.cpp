@@ -25,7 +25,7 @@ void ResolveFiles(const std::filesystem::path& folder, FinishPass& pass) {
   auto* const palette = std::get_if<PalettePass>(&pass.effect);
   if (!palette) return;
   for (std::string* const source : {&palette->like, &palette->from}) {
-    if (!source->empty() && *source != kPaintingPalette && (*source)[0] != '#') *source = (folder / *source).string();
+    if (IsPaletteFile(*source)) *source = (folder / *source).string();
   }
 }
 

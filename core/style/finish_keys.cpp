@@ -140,6 +140,7 @@ void TurnDial(const std::string& dial, double factor, FinishPass& pass) {
     }
     if (auto* const hatch = std::get_if<HatchPass>(&pass.effect)) {
       hatch->bare = UpTo(1.0, hatch->bare * factor);
+      if (factor > 1.0) hatch->spacing = std::max(2.0, hatch->spacing / factor);
       if (factor == 0.0) pass.strength = 0.0;
     }
   } else if (dial == "detail") {
@@ -149,7 +150,8 @@ void TurnDial(const std::string& dial, double factor, FinishPass& pass) {
     auto* const tones = std::get_if<TonesPass>(&pass.effect);
     if (smooth && even > 1.0) smooth->radius = std::min(32.0, smooth->radius * even);
     if (tones && even > 1.0) tones->bins = std::max(2, static_cast<int>(tones->bins / even + 0.5));
-    if (smooth || tones) pass.strength *= std::min(1.0, even);
+    if (smooth) pass.strength = UpTo(1.0, pass.strength * even);
+    if (tones) pass.strength *= std::min(1.0, even);
     // Lines inside objects.
     if (auto* const outline = std::get_if<OutlinePass>(&pass.effect)) {
       for (const LineClass line :
@@ -164,6 +166,7 @@ void TurnDial(const std::string& dial, double factor, FinishPass& pass) {
       if (factor > 1.0)
         shadows->full = UpTo(4.0, shadows->full * factor), shadows->none = UpTo(4.0, shadows->none * factor);
     }
+    if (auto* const hatch = std::get_if<HatchPass>(&pass.effect)) hatch->shade = UpTo(4.0, hatch->shade * factor);
     if (auto* const toon = std::get_if<ToonPass>(&pass.effect)) {
       toon->shade = UpTo(1.0, 1.0 - (1.0 - toon->shade) * factor);
       toon->tint = UpTo(1.0, toon->tint * factor);

@@ -91,7 +91,8 @@ TextureStrokes::TextureStrokes(const HatchTexture& texture, double spacing, doub
   while (level + 1 < texture.levels.size() && static_cast<float>(texture.levels[level + 1].size) >= least) ++level;
   level_ = &texture.levels[level];
   texels_per_pixel_ = static_cast<float>(level_->size) / pixels;
-  samples_ = std::max(2, static_cast<int>(std::ceil(texels_per_pixel_)));
+  // More than one a texel: texels are turned against pixels, and what one sample missed would show in half the size.
+  samples_ = std::max(2, static_cast<int>(std::ceil(1.5f * texels_per_pixel_)));
 }
 
 // The nearest: means of several would lie nearer to the middle, and ink would no longer be what the tone lacks.

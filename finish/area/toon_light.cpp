@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <span>
+#include <vector>
 
 #include "core/filter/wide_loops.h"
 #include "finish/area/area_effects.h"
@@ -30,9 +32,23 @@ SCUMBLE_WIDE_LOOPS void WrapLights(const float* cosines, const float* shadows, f
   for (std::size_t i = 0; i < count; ++i) out[i] = WrappedLightOf(cosines[i], shadows[i], cast, squares);
 }
 
-}  // namespace
+// Light in which bands are evenly apart, made of light in which they begin at these shares of the brightest.
+void EvenOutBands(const std::vector<double>& thresholds, float brightest, FloatPlane& light) {
+  std::vector<float> from{0.0f};
+  for (const double one : thresholds) from.push_back(static_cast<float>(one) * brightest);
+  from.push_back(brightest);
+  const float to = brightest / static_cast<float>(from.size() - 1);
+  ForEachOklabBlock(light.size(), [&](std::size_t first, std::size_t count) {
+    for (float& one : std::span(light).subspan(first, count)) {
+      if (!(one > 0.0f) || !(one < brightest)) continue;
+      std::size_t band = 0;
+      while (one >= from[band + 1]) ++band;
+      one = to * (static_cast<float>(band) + (one - from[band]) / (from[band + 1] - from[band]));
+    }
+  });
+}
 
-FloatPlane ToonLight(const ToonPass& pass, const FinishFrame& frame) {
+FloatPlane LightOf(const ToonPass& pass, const FinishFrame& frame) {
   if (pass.bands == 1 && pass.shading == ToonPass::Shading::kPlain) return {};
   const GuideSet& guides = *frame.guides;
   FloatPlane light(guides.pixel_count());
@@ -52,6 +68,14 @@ FloatPlane ToonLight(const ToonPass& pass, const FinishFrame& frame) {
   if (pass.bands == 1 || !takes_chance) return light;
   return EvenedLight(light, LitSurfaceOf(guides), guides.width(), guides.height(),
                      LightNoiseOf(guides) * static_cast<float>(BrightestOf(pass, frame)), frame.Apart());
+}
+
+}  // namespace
+
+FloatPlane ToonLight(const ToonPass& pass, const FinishFrame& frame) {
+  FloatPlane light = LightOf(pass, frame);
+  if (!pass.thresholds.empty()) EvenOutBands(pass.thresholds, static_cast<float>(BrightestOf(pass, frame)), light);
+  return light;
 }
 
 }  // namespace scumble::internal

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/image/color.h"
 #include "core/image/exact_math.h"
 
 namespace scumble::internal {
@@ -19,7 +20,11 @@ RampRows::RampRows(const ToonPass& pass, const FinishFrame& frame)
     }
     return;
   }
-  for (int c = 0; c < 3; ++c) normal_[c] = guides.Plane(Layer::kNormal, c);
+  const bool by_highlight = pass.ramp_rows == ToonPass::Rows::kHighlight;
+  for (int c = 0; c < 3; ++c) {
+    (by_highlight ? highlight_ : normal_)[c] = guides.Plane(by_highlight ? Layer::kLpeLSE : Layer::kNormal, c);
+  }
+  bright_ = static_cast<float>(frame.measures.bright);
 }
 
 float RampRows::Depth(std::size_t pixel) const {
@@ -31,6 +36,14 @@ float RampRows::Depth(std::size_t pixel) const {
 void RampRows::At(std::size_t first, std::size_t count, float* rows) const {
   if (!depth_.empty()) {
     for (std::size_t i = 0; i < count; ++i) rows[i] = Depth(first + i);
+    return;
+  }
+  if (!highlight_[0].empty()) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t p = first + i;
+      const float row = Luminance(highlight_[0][p], highlight_[1][p], highlight_[2][p]) / bright_;
+      rows[i] = row > 0.0f ? row < 1.0f ? row : 1.0f : 0.0f;  // NaN is no highlight
+    }
     return;
   }
   const int column = static_cast<int>(first % width_), row = static_cast<int>(first / width_);

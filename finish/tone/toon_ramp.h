@@ -26,6 +26,9 @@ class RampRows {
   double near_ = 1.0, far_ = 1.0;
   Curve of_depth_;
 
+  std::span<const float> highlight_[3];
+  float bright_ = 1.0f;  // the luminance of a full highlight
+
   std::span<const float> normal_[3];
   ViewRays rays_;
   std::size_t width_ = 1;

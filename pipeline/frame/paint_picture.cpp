@@ -134,9 +134,10 @@ void WarnOfOtherSize(const GuideSet& guides, const std::string& name, const RunC
 FrameFinish FinishOf(const StyleSet& styles, const GuideSet& given, const GuideSet& guides, const StyleMap* map,
                      bool over, std::optional<int> frame, const RunContext& context, PictureState& state) {
   FrameFinish finish;
-  finish.steps = FinishStepsOf(styles, guides, map, over, [&](const FinishRemark& remark) {
-    state.finish_remarks.Tell(remark, frame, {}, context);
-  });
+  finish.steps = FinishStepsOf(
+      styles, guides, map, over,
+      [&](const FinishRemark& remark) { state.finish_remarks.Tell(remark, frame, {}, context); },
+      &state.palette_colors);
   if (finish.steps.empty()) return finish;
   state.finish_remarks.EndFrame();
   finish.reference_height = styles.first().transfer.reference_height;
@@ -297,6 +298,7 @@ Expected<PaintedPicture> PaintInMemory(StyleSet& styles, const GuideSet& given, 
   inputs.settings = {request.seed, request.frame.value_or(0), RateOf(request.fps, given), *state.exposure,
                      over,         request.KeepsField()};
   SCUMBLE_ASSIGN(PaintedRuns painted, PaintRuns(inputs, request, wanted, context, progress, state));
+  state.palette_colors.TellNew(request.frame, context);
   PaintedPicture made;
   made.layers.layers = std::move(painted.layers.layers);
   if (wanted.all && request.IsShowing()) made.layers.merged = painted.picture;

@@ -24,6 +24,7 @@ struct PictureState {
   std::vector<PreparedStyle> prepared;            // by style; empty: not yet
   std::optional<double> exposure;                 // stops, once given or measured
   std::optional<FinishMeasures> finish_measures;  // once they are measured
+  PaletteColors palette_colors;
   TransferScratch scratch;
   ExemplarHashes hashes;
   std::string over_file;        // that `over` is from

@@ -27,6 +27,8 @@ Expected<PictureRequest> RequestAt(const PictureRequest& request, int frame, con
 
 bool MeasuresFinish(const StyleSet& styles) { return !styles.options.finish_measures && EverLooksAtMeasures(styles); }
 
+bool MeasuresColors(const StyleSet& styles) { return MeasuresColors(AllPasses(styles)); }
+
 }  // namespace
 
 Status PictureSequence::Begin(const Sequence& sequence, int width, int height, const GuidesAt& guides_at,
@@ -34,10 +36,14 @@ Status PictureSequence::Begin(const Sequence& sequence, int width, int height, c
   SCUMBLE_RETURN_IF_ERROR(ReadOverOfAll(width, height));
   if (!MustLookAhead(sequence)) return Ok();
   const auto is_exposed = [&] { return MeasuresExposure(styles_, request_); };  // a scene's styles come with its guides
-  const auto measure = [&](int frame, const GuideSet& guides) -> Status {
+  const auto measure = [&](int frame, const FrameGuides& found) -> Status {
+    const GuideSet& guides = *found.guides;
     SCUMBLE_ASSIGN(const PictureRequest one, RequestAt(request_, frame, request_.output));
     SCUMBLE_RETURN_IF_ERROR(PrepareFrame(styles_, guides, one, context_, state_));
     MeasureFinishOf(styles_, guides, frame, context_, state_);
+    if (MeasuresColors(styles_)) {  // of what is painted: the picture itself is made when its turn comes
+      SCUMBLE_RETURN_IF_ERROR(PaintInMemory(styles_, guides, found.source, one, context_, progress, state_));
+    }
     if (!is_exposed()) return Ok();
     context_.Warn(
         fmt::format("the exposure of all frames was measured on frame {}: where a sequence is cut into several runs, "
@@ -48,20 +54,25 @@ Status PictureSequence::Begin(const Sequence& sequence, int width, int height, c
   FrameToMeasure choice;
   for (const int frame : sequence.frames) {
     const Expected<FrameGuides> found = guides_at(frame, progress);
-    if (!found) return CannotMeasure(found.error(), frame, is_exposed() ? "--exposure STOPS" : "--finish-measures");
-    if (choice.IsEnough(frame, *found->guides)) return measure(frame, *found->guides);
+    if (!found) return CannotMeasure(found.error(), frame, OptionsThatGive(is_exposed(), "--exposure STOPS"));
+    if (choice.IsEnough(frame, *found->guides)) return measure(frame, *found);
   }
   if (choice.best) {
     SCUMBLE_ASSIGN(const FrameGuides found, guides_at(*choice.best, progress));
-    return measure(*choice.best, *found.guides);
+    return measure(*choice.best, found);
   }
   if (is_exposed()) state_.exposure = 0.0;
   if (MeasuresFinish(styles_)) state_.finish_measures.emplace();
-  const char* const options = !is_exposed()             ? "--finish-measures"
-                              : MeasuresFinish(styles_) ? "--exposure and --finish-measures"
-                                                        : "--exposure";
-  context_.Warn(NothingToMeasure(sequence.frames, options));
+  context_.Warn(NothingToMeasure(sequence.frames, OptionsThatGive(is_exposed(), "--exposure")));
   return Ok();
+}
+
+std::string PictureSequence::OptionsThatGive(bool is_exposed, const std::string& exposure) const {
+  std::vector<std::string> options;
+  if (is_exposed) options.push_back(exposure);
+  if (MeasuresFinish(styles_)) options.push_back("--finish-measures");
+  if (MeasuresColors(styles_)) options.push_back("--set finish.NAME.from of a palette");
+  return fmt::format("{}", fmt::join(options, " and "));
 }
 
 Status PictureSequence::ReadOverOfAll(int width, int height) {
@@ -93,7 +104,8 @@ Status PictureSequence::Check(int frame, const std::string& output, int width, i
 }
 
 bool PictureSequence::MustLookAhead(const Sequence& sequence) const {
-  return sequence.frames.size() > 1 && (MeasuresExposure(styles_, request_) || MeasuresFinish(styles_));
+  return sequence.frames.size() > 1 &&
+         (MeasuresExposure(styles_, request_) || MeasuresFinish(styles_) || MeasuresColors(styles_));
 }
 
 Expected<FrameWrite> PictureSequence::Make(int frame, const std::string& output, const GuidesAt& guides_at,

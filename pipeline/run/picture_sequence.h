@@ -51,6 +51,9 @@ class PictureSequence {
   std::vector<std::string> Warnings();
 
  private:
+  // Instead of what must be measured.
+  std::string OptionsThatGive(bool is_exposed, const std::string& exposure) const;
+
   StyleSet& styles_;
   const PictureRequest& request_;
   const RunContext& context_;

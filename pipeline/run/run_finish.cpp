@@ -36,6 +36,7 @@ struct FinishState {
   FinishChain chain;
   LayerSet required;  // in any frame
   std::optional<FinishMeasures> measures;
+  PaletteColors palette_colors;
   FinishRemarks remarks;
 };
 
@@ -148,7 +149,8 @@ Expected<FrameWrite> Finish(const FinishRequest& request, const FrameFiles& file
   const Size size{picture.width, picture.height};
   const std::vector<FinishStep> steps = FinishStepsOf(
       state.chain.passes, size, guides ? &*guides : nullptr,
-      [&](const FinishRemark& remark) { state.remarks.Tell(remark, files.frame, files.guides, context); });
+      [&](const FinishRemark& remark) { state.remarks.Tell(remark, files.frame, files.guides, context); },
+      &state.palette_colors);
   state.remarks.EndFrame();
   if (!state.measures && guides && EverLooksAtMeasures(state.chain))
     state.measures = MeasureAndTell(*guides, guides->layers(), {}, context);
@@ -163,6 +165,7 @@ Expected<FrameWrite> Finish(const FinishRequest& request, const FrameFiles& file
   names.paint = "picture";
   SCUMBLE_ASSIGN(FinishedLayers layers,
                  FinishWithLayers(steps, frame, WantedOf(request), names, context.threads, progress, picture));
+  state.palette_colors.TellNew(files.frame, context);
   times.emplace_back("finish", watch.Lap());
   context.EndStage("finish");
   PaintedPicture made;
@@ -259,35 +262,44 @@ Expected<RunReport> RunFinish(FinishRequest request, const SequenceListener& lis
     if (request.layers_out.empty()) return Ok();
     return CheckWholeLayers(layers.At(frame), header->width, header->height, settings);
   };
+  const auto finish = [&](int frame, const std::string& output, const Progress& progress) {
+    return Finish(request, {frame, picture.At(frame), guides.At(frame), camera.At(frame), output, layers.At(frame)},
+                  context, progress, state);
+  };
   // Where a sequence is resumed, a frame that is kept may be the one to measure.
-  work.begin = [&](std::span<const int>, const Progress&) -> Status {
-    if (state.measures || !EverLooksAtMeasures(state.chain)) return Ok();
+  work.begin = [&](std::span<const int>, const Progress& progress) -> Status {
+    const bool looks = !state.measures && EverLooksAtMeasures(state.chain);
+    const bool measures_colors = MeasuresColors(state.chain.passes);  // of what is painted, which is not written yet
+    if (!looks && !measures_colors) return Ok();
+    if (state.required.empty() || request.guides.empty()) {
+      SCUMBLE_RETURN_IF_ERROR(finish(sequence->frames.front(), "", progress));
+      return Ok();
+    }
+    const std::string options = looks ? "--finish-measures" : "--set finish.NAME.from of a palette";
     const auto guides_at = [&](int frame) {
       const std::string file = guides.At(frame);
       return ReadGuides(file, ReadOptions(request, state.required, file, camera.At(frame)));
     };
-    const auto measure = [&](int frame, const GuideSet& set) {
-      state.measures = MeasureAndTell(set, set.layers(), frame, context);
+    const auto measure = [&](int frame, const GuideSet& set) -> Status {
+      if (looks) state.measures = MeasureAndTell(set, set.layers(), frame, context);
+      if (measures_colors) SCUMBLE_RETURN_IF_ERROR(finish(frame, "", progress));
       return Ok();
     };
     FrameToMeasure choice;
     for (const int frame : sequence->frames) {
       const Expected<GuideSet> set = guides_at(frame);
-      if (!set) return CannotMeasure(set.error(), frame, "--finish-measures");
+      if (!set) return CannotMeasure(set.error(), frame, options);
       if (choice.IsEnough(frame, *set)) return measure(frame, *set);
     }
     if (choice.best) {
       SCUMBLE_ASSIGN(const GuideSet set, guides_at(*choice.best));
       return measure(*choice.best, set);
     }
-    state.measures.emplace();
-    context.Warn(NothingToMeasure(sequence->frames, "--finish-measures"));
+    if (looks) state.measures.emplace();
+    context.Warn(NothingToMeasure(sequence->frames, options));
     return Ok();
   };
-  work.make = [&](int frame, const std::string& output, const Progress& progress) {
-    return Finish(request, {frame, picture.At(frame), guides.At(frame), camera.At(frame), output, layers.At(frame)},
-                  context, progress, state);
-  };
+  work.make = finish;
   SCUMBLE_ASSIGN(report.sequence, RunSequence(*sequence, work, listener, context, context.StartProgress("finish")));
   report.warnings = state.remarks.WarnOfFrames(context);
   return report;

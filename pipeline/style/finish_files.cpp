@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <locale>
 #include <map>
 #include <memory>
 #include <optional>
@@ -39,7 +40,21 @@ Expected<Picture> Swatches(const std::string& text) {
   return row;
 }
 
-bool IsFile(const std::string& source) { return !source.empty() && source != kPaintingPalette && source[0] != '#'; }
+// "measured 0.5 0 0 0.01 0 0 0.01 0 0.01"
+Expected<ColorSpread> MeasuredBefore(const std::string& text) {
+  std::istringstream words(text.substr(kMeasuredPalette.size()));
+  words.imbue(std::locale::classic());
+  std::vector<double> numbers;
+  for (double number; words >> number;) numbers.push_back(number);
+  ColorSpread colors;
+  if (!words.eof() || numbers.size() != colors.mean.size() + colors.covariance.size()) {
+    return InputError(
+        fmt::format("expected nine numbers after \"measured\", as a run prints them, found \"{}\"", text));
+  }
+  std::copy_n(numbers.begin(), colors.mean.size(), colors.mean.begin());
+  std::copy(numbers.begin() + std::ptrdiff_t(colors.mean.size()), numbers.end(), colors.covariance.begin());
+  return colors;
+}
 
 ColorSpread ColorsOfPainting(const Exemplar& exemplar) {
   const Picture& picture = exemplar.picture;
@@ -60,7 +75,11 @@ Expected<std::optional<ColorSpread>> ColorsOf(const std::string& source, const S
     if (!style || !style->unpainted.empty() || style->exemplars.empty()) return std::optional<ColorSpread>();
     return std::optional(ColorsOfPainting(style->exemplars.front()));
   }
-  SCUMBLE_ASSIGN(const Picture picture, IsFile(source) ? ReadPicture(source) : Swatches(source));
+  if (source.rfind(kMeasuredPalette, 0) == 0) {
+    SCUMBLE_ASSIGN(const ColorSpread colors, MeasuredBefore(source));
+    return std::optional(colors);
+  }
+  SCUMBLE_ASSIGN(const Picture picture, IsPaletteFile(source) ? ReadPicture(source) : Swatches(source));
   return std::optional(MeasureColors(picture));
 }
 
@@ -147,7 +166,7 @@ std::vector<std::string> FilesOf(const std::vector<FinishPass>& passes) {
   for (const FinishPass& pass : passes) {
     const auto* palette = std::get_if<PalettePass>(&pass.effect);
     for (const std::string& source : palette ? std::vector{palette->like, palette->from} : std::vector<std::string>()) {
-      if (IsFile(source)) files.push_back(source);
+      if (IsPaletteFile(source)) files.push_back(source);
     }
     const auto* toon = std::get_if<ToonPass>(&pass.effect);
     const bool has_ramp = toon && !toon->ramp.empty();

@@ -71,9 +71,14 @@ void LimitToNames(const FinishPass& pass, const GuideSet& guides, const TellFini
     if (patterns.empty() || !guides.Has(layer)) return;
     const std::set<std::uint32_t> ids = IdsThatFit(patterns, names);
     if (ids.empty()) {
+      std::vector<std::string> known;
+      for (const auto& [id, name] : names) known.push_back(name);
+      std::string meant;
+      for (const std::string& pattern : patterns) meant += meant.empty() ? NearestName(pattern, known) : "";
       tell({{Message::Kind::kWarning,
-             fmt::format("finish {}: no {} has the name {}", pass.name, layer == Layer::kObject ? "object" : "material",
-                         fmt::join(patterns, ", "))}});
+             fmt::format("finish {}: no {} has the name {}{}", pass.name,
+                         layer == Layer::kObject ? "object" : "material", fmt::join(patterns, ", "),
+                         meant.empty() ? "" : "; did you mean " + meant + "?")}});
       return;
     }
     const auto plane = guides.Plane(layer);
@@ -221,9 +226,52 @@ bool EverLooksAtMeasures(const StyleSet& styles) {
   return EverLooksAtMeasures(styles.finish) || std::any_of(styles.styles.begin(), styles.styles.end(), looks);
 }
 
+bool MeasuresColors(std::span<const FinishPass> passes) {
+  return std::any_of(passes.begin(), passes.end(), [](const FinishPass& pass) {
+    const auto* palette = std::get_if<PalettePass>(&pass.effect);
+    return palette && palette->from.empty();
+  });
+}
+
+void PaletteColors::TellNew(std::optional<int> frame, const RunContext& context) {
+  for (auto& [place, one] : palettes_) {
+    if (!one.colors || std::exchange(one.is_told, true)) continue;
+    if (place.second > 0) {
+      context.Note("finish: several palettes go by " + place.first +
+                   ": give each a name, so that what is measured can be given to it");
+      continue;
+    }
+    const std::string where =
+        frame ? fmt::format(" on frame {}: give it to each run where a sequence is cut into several", *frame) : "";
+    const auto& [mean, covariance] = *one.colors;
+    context.Note(fmt::format("finish: --set '{}={}{:.6g} {:.6g}' repeats what was measured{}", place.first,
+                             kMeasuredPalette, fmt::join(mean, " "), fmt::join(covariance, " "), where));
+  }
+}
+
+namespace {
+
+// Lets a palette keep what it measures. `style`: that --set needs before the key, or empty.
+class ColorKeeper {
+ public:
+  explicit ColorKeeper(PaletteColors* colors) : colors_(colors) {}
+  void Fit(const std::string& style, FinishStep& step) {
+    if (!colors_ || !std::holds_alternative<PalettePass>(step.pass.effect)) return;
+    const std::string key = (style.empty() ? "" : style + ":") + kFinishKeys + step.pass.name + ".from";
+    step.colors = colors_->Of(key, counts_[key]++);
+  }
+
+ private:
+  PaletteColors* colors_;
+  std::map<std::string, int> counts_;
+};
+
+}  // namespace
+
 std::vector<FinishStep> FinishStepsOf(const StyleSet& styles, const GuideSet& guides, const StyleMap* map, bool over,
-                                      const TellFinish& tell) {
+                                      const TellFinish& tell, PaletteColors* colors) {
   std::vector<FinishStep> steps;
+  ColorKeeper keeper(colors);
   for (std::size_t i = 0; i < styles.styles.size(); ++i) {
     if (styles.styles[i].finish.empty()) continue;
     std::vector<std::uint8_t> own;
@@ -235,6 +283,7 @@ std::vector<FinishStep> FinishStepsOf(const StyleSet& styles, const GuideSet& gu
       FinishStep& step = steps.emplace_back(FinishStep{pass, own});
       step.reference_height = styles.styles[i].transfer.reference_height;
       Fit(guides, tell, step);
+      keeper.Fit(styles.given[i], step);
       step.share = MaskShares(pass.mask, &guides, guides.width(), guides.height());
     }
   }
@@ -250,17 +299,20 @@ std::vector<FinishStep> FinishStepsOf(const StyleSet& styles, const GuideSet& gu
     FinishStep& step = steps.emplace_back(FinishStep{pass, shows});
     step.reference_height = styles.first().transfer.reference_height;
     Fit(guides, tell, step);
+    keeper.Fit("", step);
     step.share = MaskShares(pass.mask, &guides, guides.width(), guides.height());
   }
   return steps;
 }
 
 std::vector<FinishStep> FinishStepsOf(const std::vector<FinishPass>& passes, const Size& size, const GuideSet* guides,
-                                      const TellFinish& tell) {
+                                      const TellFinish& tell, PaletteColors* colors) {
   std::vector<FinishStep> steps;
+  ColorKeeper keeper(colors);
   for (const FinishPass& pass : passes) {
     FinishStep& step = steps.emplace_back(FinishStep{pass, {}});
     if (guides) Fit(*guides, tell, step);
+    keeper.Fit("", step);
     step.share = MaskShares(pass.mask, guides, size.width, size.height);
   }
   return steps;

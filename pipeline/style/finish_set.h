@@ -66,17 +66,37 @@ class FinishRemarks {
   std::map<std::string, std::set<int>> frames_;
 };
 
+// The colours that the palettes of a run change where they have no `from`: measured on its first picture and kept.
+class PaletteColors {
+ public:
+  // Of one pass, to be filled in by the painting. `key` sets its `from`. `nth`: among passes with that key, from 0.
+  std::optional<ColorSpread>* Of(const std::string& key, int nth) { return &palettes_[{key, nth}].colors; }
+
+  // Notes what repeats those that were measured since the last call. `frame`: of a sequence.
+  void TellNew(std::optional<int> frame, const RunContext& context);
+
+ private:
+  struct One {
+    std::optional<ColorSpread> colors;
+    bool is_told = false;
+  };
+  std::map<std::pair<std::string, int>, One> palettes_;
+};
+
+// Whether colours of a palette are measured in one frame or another.
+bool MeasuresColors(std::span<const FinishPass> passes);
+
 // The passes of these styles and of the run, in their order, each with the pixels that it is for: a style's passes are
 // for its own pixels and lengths, the run's for all that shows: not for shadow catchers, nor for objects that are left
 // as they are where nothing is `over`; `objects`, `materials` and masks limit both. `map`: null where one style paints
 // all. The styles must be at the picture's frame. Without perspective no line gets thinner with distance, unless --set
-// asks for it, which CheckFinish refuses.
+// asks for it, which CheckFinish refuses. `colors`: keeps what palettes measure; null: each picture is measured.
 std::vector<FinishStep> FinishStepsOf(const StyleSet& styles, const GuideSet& guides, const StyleMap* map, bool over,
-                                      const TellFinish& tell);
+                                      const TellFinish& tell, PaletteColors* colors = nullptr);
 
 // One chain of passes without styles, likewise, for a picture of that size. `guides`: null where no pass reads any.
 std::vector<FinishStep> FinishStepsOf(const std::vector<FinishPass>& passes, const Size& size, const GuideSet* guides,
-                                      const TellFinish& tell);
+                                      const TellFinish& tell, PaletteColors* colors = nullptr);
 
 // MeasureFinish of the layers in `read`, and a note of what repeats it; a warning where the guides show no surface.
 // Guides may hold other layers, which earlier requests needed: a run of its own would not have them. `frame`: of a

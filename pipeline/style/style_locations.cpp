@@ -1,7 +1,9 @@
 #include "pipeline/style/style_locations.h"
 
 #include <system_error>
+#include <vector>
 
+#include "core/style/nearest_name.h"
 #include "core/style/style_file.h"
 #include "core/style/style_keys.h"
 
@@ -33,16 +35,20 @@ Expected<fs::path> FindStyle(const std::string& name, const RunContext& context,
   if (fs::exists(base / name, failed)) return base / name;
   if (IsUnpainted(name)) return fs::path(name);
   std::string bundled;
+  std::vector<std::string> names{"toon", "render"};
   for (const fs::path& root : StyleFolders(context)) {
     for (const fs::path& style : FindStyles(root)) {
       if (style.filename() == name) return style;
       bundled += (bundled.empty() ? "" : ", ") + style.filename().string();
+      names.push_back(style.filename().string());
     }
   }
+  const std::string meant = NearestName(name, names);
   return InputError("there is no style '" + name + "': expected a file, a folder, or " +
                     (bundled.empty()
                          ? "a bundled style, of which none are found beside this program"
-                         : "one of the bundled styles " + bundled + ", or toon or render, which need no painting"));
+                         : "one of the bundled styles " + bundled + ", or toon or render, which need no painting") +
+                    (meant.empty() ? "" : "; did you mean " + meant + "?"));
 }
 
 }  // namespace scumble

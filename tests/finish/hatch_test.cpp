@@ -61,11 +61,10 @@ TEST(Hatch, LightAboveTheLimitIsBare) {
 
 TEST(Hatch, DarknessIsFull) { EXPECT_NEAR(Mean(HatchOf({}, FlatInLight(0.0))), 1.0, 1e-3); }
 
-TEST(Hatch, TheDeepestShadeKeepsItsShareOfPaper) {
+TEST(Hatch, LessShadeLeavesPaperInTheDeepest) {
   HatchPass pass;
-  pass.deepest = 0.1;
+  pass.shade = 0.9;
   EXPECT_NEAR(Mean(HatchOf(pass, FlatInLight(0.0))), 0.9, 0.01);
-  EXPECT_EQ(HatchOf(pass, FlatInLight(0.5)), HatchOf({}, FlatInLight(0.5)));
 }
 
 // How much the ink changes from a pixel to one `dx`, `dy` away.
@@ -116,6 +115,74 @@ TEST(Hatch, CylindersThatLeanTheOtherWayAreHatchedTheOtherWay) {
     pass.along = HatchPass::Along::kAround;
     const auto rings = HatchOf(pass, guides);
     EXPECT_LT(Change(rings, 200, 200, 4, -along), 0.2 * Change(rings, 200, 200, 4, along)) << sign;
+  }
+}
+
+// Light that falls off to the right, and a floor that goes away upwards.
+TEST(Hatch, GoesByLightOrDepth) {
+  GuideSet guides = FlatInLight(0.5);
+  for (int y = 0; y < 300; ++y) {
+    for (int x = 0; x < 300; ++x) {
+      const float tone = 0.7f - 0.4f * float(x) / 300.0f;
+      guides.Plane(Layer::kLuminance)[guides.Index(x, y)] = tone * tone * tone;
+      guides.Plane(Layer::kDepth)[guides.Index(x, y)] = 1000.0f / (100.0f + float(y));
+    }
+  }
+  HatchPass pass;
+  pass.layers = 1, pass.wobble = 0.0, pass.spacing = 8.0, pass.angle = 45.0;
+  for (const bool stick : {false, true}) {
+    if (stick) {
+      guides.Add(Layer::kPref);
+      for (std::size_t i = 0; i < guides.pixel_count(); ++i)
+        guides.Plane(Layer::kPref, 0)[i] = float(i % 300), guides.Plane(Layer::kPref, 1)[i] = -float(i / 300);
+    }
+    pass.stick = stick;
+    pass.along = HatchPass::Along::kLight;
+    const auto by_light = HatchOf(pass, guides);
+    EXPECT_LT(Change(by_light, 300, 300, 4, 0), 0.5 * Change(by_light, 300, 300, 0, 4)) << stick;
+    pass.along = HatchPass::Along::kDepth;
+    const auto by_depth = HatchOf(pass, guides);
+    EXPECT_LT(Change(by_depth, 300, 300, 0, 4), 0.5 * Change(by_depth, 300, 300, 4, 0)) << stick;
+  }
+}
+
+// A wall that moves by eleven pixels takes its strokes along.
+TEST(Hatch, SticksToSurfaces) {
+  constexpr int kMove = 11;
+  const auto moved = [](int by) {
+    GuideSet guides = FlatInLight(0.5);
+    guides.Add(Layer::kPref);
+    for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
+      guides.Plane(Layer::kPref, 0)[i] = 0.01f * (float(i % 300) - float(by));
+      guides.Plane(Layer::kPref, 1)[i] = -0.01f * float(i / 300);
+    }
+    return guides;
+  };
+  const GuideSet before = moved(0), after = moved(kMove);
+  const auto difference = [&](const HatchPass& pass) {
+    const auto from = HatchOf(pass, before), to = HatchOf(pass, after);
+    double sum = 0.0;
+    int count = 0;
+    for (int y = 0; y < 300; ++y) {
+      for (int x = 60; x + 60 < 300; ++x, ++count)
+        sum += std::fabs(from[std::size_t(y * 300 + x)] - to[std::size_t(y * 300 + x + kMove)]);
+    }
+    return sum / count;
+  };
+  HatchPass pass;
+  const double loose = difference(pass);
+  pass.stick = true;
+  EXPECT_LT(difference(pass), 0.05 * loose);
+  EXPECT_NEAR(Mean(HatchOf(pass, before)), 0.5, 0.02) << "as much ink as ever";
+}
+
+// Twice as much, or none.
+TEST(Hatch, ShadeIsWhatTheLightLacks) {
+  HatchPass pass;
+  pass.wobble = 0.0, pass.angle = 27.0;
+  for (const auto& [shade, ink] : {std::pair(0.0, 0.0), {0.5, 0.2}, {1.0, 0.4}, {2.0, 1.0 - 0.36}}) {
+    pass.shade = shade;
+    EXPECT_NEAR(Mean(HatchOf(pass, FlatInLight(0.6))), ink, 0.01) << shade;
   }
 }
 

@@ -43,6 +43,26 @@ FinishStep LikeStep(const Picture& target, double gain = 16.0) {
   return StepOf(pass);
 }
 
+// A sequence is measured once: what is seen in later frames does not move the colours of all others.
+TEST(Palette, KeepsTheColorsThatItHasMeasured) {
+  std::optional<ColorSpread> colors;
+  FinishStep step = LikeStep(Cold());
+  step.colors = &colors;
+  const Picture first = Finished(step, nullptr, Warm());
+  ASSERT_TRUE(colors);
+  EXPECT_EQ(colors->mean[0], AsPrinted(colors->mean[0])) << "as a run prints it";
+  Picture later = Warm();
+  std::fill_n(later.rgba.begin(), later.rgba.size() / 4, std::uint16_t(0xffff));  // something white comes in
+  const Picture with_it = Finished(step, nullptr, later);
+  const auto rest = std::ptrdiff_t(first.rgba.size() / 2);
+  EXPECT_TRUE(std::equal(first.rgba.begin() + rest, first.rgba.end(), with_it.rgba.begin() + rest));
+  FinishStep given = LikeStep(Cold());
+  std::get<PalettePass>(given.pass.effect).source = colors;
+  EXPECT_EQ(Finished(given, nullptr, later).rgba, with_it.rgba);
+  step.colors = nullptr;
+  EXPECT_NE(Finished(step, nullptr, later).rgba, with_it.rgba) << "the test could not fail";
+}
+
 TEST(Palette, MeasuresMeanAndCovariance) {
   const Picture picture = Warm();
   std::array<double, 3> mean{};

@@ -118,6 +118,8 @@ TEST(ToonWrapped, NeedsTheCosineAndNoBrightness) {
   pass.ramp_rows = ToonPass::Rows::kFacing;
   EXPECT_TRUE(needs(Layer::kNormal));
   EXPECT_FALSE(looks());
+  pass.ramp_rows = ToonPass::Rows::kHighlight;
+  EXPECT_TRUE(needs(Layer::kLpeLSE) && needs(Layer::kLuminance) && looks());
   pass = ToonPass();
   EXPECT_TRUE(needs(Layer::kLuminance) && looks());
   EXPECT_FALSE(needs(Layer::kCosine) || needs(Layer::kShadow));
@@ -180,6 +182,24 @@ TEST(ToonRamp, ColumnsAreTones) {
   ExpectLab(ToonLab(flat.At(5, 0)), dark, 1e-3f, 5);
   ExpectLab(ToonLab(flat.At(32, 0)), middle, 1e-3f, 32);
   ExpectLab(ToonLab(flat.At(60, 0)), light, 1e-3f, 60);
+}
+
+TEST(ToonRamp, RowsGoByHighlights) {
+  GuideSet guides = ToneRow(64);
+  guides.Add(Layer::kLpeLSE);
+  FinishMeasures measures;
+  measures.bright = 2.0;
+  for (int x = 0; x < 64; ++x) {
+    for (int c = 0; c < 3; ++c) guides.Plane(Layer::kLpeLSE, c)[std::size_t(x)] = static_cast<float>(x) / 16.0f;
+  }
+  guides.Plane(Layer::kLpeLSE, 1)[5] = NAN;
+  const ToonPass pass = RampToon("#000000 / #804020", ToonPass::Rows::kHighlight);
+  const Picture made = Tooned(pass, guides, measures);
+  const glm::vec3 dull = ToonLab(pass.ramp_colors->colors[0]), shiny = ToonLab(pass.ramp_colors->colors[1]);
+  for (int x = 0; x < 64; ++x) {
+    const float share = x == 5 ? 0.0f : std::min(1.0f, static_cast<float>(x) / 32.0f);
+    ExpectLab(ToonLab(made.At(x, 0)), glm::mix(dull, shiny, share), 2e-3f, x);
+  }
 }
 
 TEST(ToonRamp, RowsAreTheLogarithmOfDepth) {

@@ -44,6 +44,25 @@ TEST(Toon, BordersOfBandsLieWhereTheLightSays) {
   }
 }
 
+TEST(Toon, ThresholdsSayWhereBandsBegin) {
+  const GuideSet guides = LitBall(240, 100.0f);
+  ToonPass pass;
+  pass.thresholds = {0.2, 0.75}, pass.tint = 0.0, pass.shade = 0.4;
+  const Picture made = Finished(StepOf(pass), &guides, PlainPicture(240, 240, 9, 9, 9));
+  const double base = std::cbrt(0.5);
+  for (const auto& [middle, at] : {std::pair(base * 0.85, 0.75), {base * 0.55, 0.2}}) {
+    int x = 120;
+    while (LightnessOf(made.At(x, 119)) > middle) ++x;
+    const double from = LightnessOf(made.At(x - 1, 119)), to = LightnessOf(made.At(x, 119));
+    EXPECT_NEAR(x - 0.5 + (from - middle) / (from - to) - 120.0, 100.0 * std::sqrt(1.0 - at * at), 0.5) << at;
+  }
+  pass.bands = 4;
+  const FinishStep step = StepOf(pass);
+  const Status checked = CheckFinish(std::span(&step, 1), &guides);
+  ASSERT_FALSE(checked);
+  EXPECT_THAT(checked.error().message, ::testing::HasSubstr("set finish.it.bands to 3"));
+}
+
 TEST(Toon, InsideABandNothingVaries) {
   const GuideSet guides = LitBall(240, 100.0f);
   ToonPass pass;

@@ -206,6 +206,7 @@ TEST_F(CliBadContent, UnknownStyles) {
   ExpectError(Transfer("g.exr", "bogus"), 3, {"there is no style 'bogus'", "bundled"});
   ExpectError(Transfer("g.exr", std::string(300, 'a')), 3, {"there is no style"});
   ExpectError({"info", "bogus"}, 3, {"there is no style 'bogus'"});
+  ExpectError({"info", "toom"}, 3, {"did you mean toon?"});
   fs::create_directory(At("hollow"));
   ExpectError(Transfer("g.exr", "hollow"), 3, {"hollow", "style.toml"});
   WriteText("bad/style.toml", "[transfer]\nbogus = 1\n");

@@ -88,8 +88,11 @@ TEST_F(FinishFile, MistakesNameFileLineAndRemedy) {
   const auto of_toon = [&](const std::string& line) { return ErrorOf("[[finish]]\neffect = \"toon\"\n" + line); };
   EXPECT_THAT(of_toon("light = \"lambert\"\n"), HasSubstr("expected \"luminance\" or \"wrapped\""));
   EXPECT_THAT(of_toon("shading = \"cool\"\n"), HasSubstr("expected \"plain\", \"gooch\" or \"ramp\""));
+  EXPECT_THAT(of_toon("shading = \"gouch\"\n"), HasSubstr("did you mean \"gooch\"?"));
+  for (const char* const wrong : {"0.6 0.2", "0.2 x", "0 0.5", "0.5 1", "0.2, 0.4"})
+    EXPECT_THAT(of_toon("thresholds = \"" + std::string(wrong) + "\"\n"), HasSubstr("expected growing numbers"));
   EXPECT_THAT(of_toon("wrap_power = 3\n"), HasSubstr("expected a whole number, 1 to 2"));
-  EXPECT_THAT(of_toon("ramp_rows = \"u\"\n"), HasSubstr("expected \"depth\" or \"facing\""));
+  EXPECT_THAT(of_toon("ramp_rows = \"u\"\n"), HasSubstr("expected \"depth\", \"facing\" or \"highlight\""));
   EXPECT_THAT(of_toon("ramp = \"#000000 white\"\n"), HasSubstr("finish.ramp: white is no colour"));
   EXPECT_THAT(of_toon("ramp = \"#000000 #ffffff / \"\n"), HasSubstr("row 2 has 0 colours"));
   EXPECT_THAT(of_toon("ramp = \"#000000 / #ffffff #000000\"\n"),

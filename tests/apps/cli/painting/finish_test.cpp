@@ -158,10 +158,10 @@ TEST_F(CliFinish, OfAStyleTouchesItsOwnPixels) {
   EXPECT_GT(other, 200u);
   WriteText("ball.toml", "[[finish]]\neffect = \"fill\"\ncolor = \"#ffffff\"\nobjects = \"Ball*\"\n");
   EXPECT_EQ(paint({"--finish", "ball.toml"}, "named.png").rgba, picture.rgba);
-  WriteText("none.toml", "[[finish]]\neffect = \"fill\"\nobjects = \"Balloon\"\n");
+  WriteText("none.toml", "[[finish]]\neffect = \"fill\"\nobjects = \"Balll\"\n");
   const CommandResult none =
       RunOk({"stylize", kToys, "--size", "96x64", "--style", "plain", "--finish", "none.toml", "-o", "none.png"});
-  EXPECT_TRUE(Contains(none.err, "no object has the name Balloon")) << none.err;
+  EXPECT_TRUE(Contains(none.err, "no object has the name Balll; did you mean Ball")) << none.err;
 }
 
 // Methods that need no painting, alone and for some objects.

@@ -116,6 +116,36 @@ TEST_F(CliFinishLateWall, TheFirstFrameThatShowsSomethingIsMeasured) {
       << after.err;
 }
 
+TEST_F(CliFinishLateWall, PalettesAreMeasuredOnce) {
+  const Arguments palette = {"--finish", "palette", "--set", "finish.palette.like=#203050 #f0e0c0", "--bits", "16"};
+  const auto measured = [](const std::string& text) {
+    const std::size_t begin = text.find("finish.palette.from=measured");
+    return begin == std::string::npos ? "" : text.substr(begin, text.find('\'', begin) - begin);
+  };
+  const CommandResult all = RunOk(With(With(stylize_, palette), {"--frames", "3-5"}));
+  const std::string set = measured(all.err);
+  ASSERT_NE(set, "") << all.err;
+  EXPECT_TRUE(Contains(all.err, "on frame 4: give it to each run")) << all.err;
+  const auto fifth = Read("p.5.png").rgba;
+  const std::string measures = Behind(all.err, "--finish-measures"), stops = Behind(all.err, "give each --exposure");
+  const Arguments rest = {"--frames", "5-6", "--finish-measures", measures, "--exposure", stops};
+  const CommandResult piece = RunOk(With(With(With(stylize_, palette), rest), {"--set", set}));
+  EXPECT_FALSE(Contains(piece.err, "measured")) << piece.err;
+  EXPECT_EQ(Read("p.5.png").rgba, fifth);
+  // Of files: without guides the first frame is measured, even if it is kept.
+  RunOk({"stylize", kToys, "--frames", "1-3", "--size", "48x32", "--style", "lit", "-o", "in.#.png"});
+  const Arguments finish = With({"finish", "in.#.png", "--frames", "1-3", "-o", "f.#.png"}, palette);
+  const CommandResult files = RunOk(finish);
+  EXPECT_TRUE(Contains(files.err, "on frame 1: give it")) << files.err;
+  const auto third = Read("f.3.png").rgba;
+  std::filesystem::remove(At("f.3.png"));
+  EXPECT_EQ(measured(RunOk(With(finish, {"--resume"})).err), measured(files.err));
+  EXPECT_EQ(Read("f.3.png").rgba, third);
+  const CommandResult other = RunOk(With(finish, {"--resume", "--json", "--set", set}));
+  EXPECT_TRUE(Contains(other.out, "\"kept\": 0")) << other.out;
+  ExpectError(With(finish, {"--set", "finish.palette.from=measured 1 2"}), 3, {"nine numbers", "measured 1 2"});
+}
+
 TEST_F(CliFinishLateWall, NothingToMeasureIsWarnedOf) {
   const CommandResult run = RunOk(With(stylize_, {"--frames", "1-3"}));
   const std::string both = "give --exposure and --finish-measures of a frame that shows one";
