@@ -18,12 +18,12 @@
 #include "bench/finish/rivals.h"
 #include "core/image/stopwatch.h"
 #include "core/style/color_ramp.h"
-#include "core/style/finish_file.h"
 #include "core/style/finish_keys.h"
 #include "finish/area/gaussian_rows.h"
 #include "finish/finish.h"
 #include "pipeline/guide_layers.h"
 #include "scumble/stylizer.h"
+#include "tests/support/finish_chains.h"
 
 namespace scumble {
 namespace {
@@ -202,10 +202,9 @@ int Run(int runs, const std::string& part) {
     std::get<ShadowsPass>(shadows.effect).soften = soften;
     measure("shadows, soften " + std::to_string(int(soften)), {shadows});
   }
-  for (const auto& file : FindFinishPresets(SCUMBLE_SOURCE_DIR "/finish/presets")) {
-    const auto preset = LoadFinishPreset(file);
-    if (preset) measure("preset " + preset->name, preset->passes);
-  }
+  const auto presets = PresetChains(SCUMBLE_SOURCE_DIR);
+  if (!presets) return std::fprintf(stderr, "%s\n", presets.error().message.c_str()), 3;
+  for (const FinishedChain& preset : *presets) measure(preset.name, preset.passes);
   std::vector<float> rgb;
   for (std::size_t i = 0; i < painted->rgba.size(); ++i)
     if (i % 4 != 3) rgb.push_back(static_cast<float>(painted->rgba[i]) / 65535.0f);

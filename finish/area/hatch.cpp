@@ -49,8 +49,8 @@ constexpr float kLeastBend = 0.003f, kLeastCoherence = 0.15f;
 // depth, as a share of it.
 constexpr float kLeastLightStep = 0.001f, kLeastDepthStep = 0.0004f;
 
-// Bends and steps are measured over so many pixels of the reference height to both sides. Beside a crease or a bevel one
-// side is flat: these belong to no face.
+// Bends and steps are measured over so many pixels of the reference height to both sides. Beside a crease or a bevel
+// one side is flat: these belong to no face.
 constexpr double kBendReach = 4.0;
 
 // A patch is flat where it is flat over this share, and in all if over that one.
