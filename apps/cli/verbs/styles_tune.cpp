@@ -164,8 +164,9 @@ Status Write(const std::vector<std::string>& sets, const TunedStyle& chosen, con
 Status CheckTargets(const StylesTune& tune, const fs::path& style_file) {
   if (!style_file.empty()) {
     SCUMBLE_RETURN_IF_ERROR(NewText(style_file, tune.style.sets, {}));
-    // Any key of [transfer] shows whether proposals can be written there.
-    if (!NewText(style_file, {}, {"transfer.threshold=0.1"})) {
+    // Whether the keys of proposals can be written there; values do not matter.
+    if (!NewText(style_file, {},
+                 {"transfer.threshold=0", "transfer.hybrid=0", "transfer.variety=0", "transfer.blend_radius=0"})) {
       return InputError(style_file.string() +
                         ": --write cannot put keys into [transfer] as it is written there; write [transfer] and each "
                         "of its keys on a line of its own");

@@ -100,7 +100,7 @@ TEST_F(StylesTune, RefusesWhatCannotBeTuned) {
   }
   ExpectError(Tune({"--write", "1", "--set", "transfer.scale=[[1, 2], [5, 3]]"}), 2,
               {"transfer.scale", "expected a number"});
-  WriteText("inline/style.toml", "transfer = { scale = 1.0 }\n[[exemplar]]\nimage = \"../alone.png\"\n");
+  WriteText("inline/style.toml", "transfer = { threshold = 0.2 }\n[[exemplar]]\nimage = \"../alone.png\"\n");
   ExpectError({"styles", "tune", "inline", "--scene", "gone.glb", "--write", "1"}, 3,
               {"inline/style.toml", "--write cannot put keys into [transfer]"});
   ExpectError({"styles", "tune", "oil", "--scene", Scene("suzanne.glb"), "--write", "1"}, 2,

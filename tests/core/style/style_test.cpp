@@ -247,7 +247,6 @@ TEST_F(StyleFile, ValuesBeyondThemAreRefusedWithTheRange) {
                                                                   {"method = 'magic'", "\"litsphere\""},
                                                                   {"method = 3", "\"bruteforce\""},
                                                                   {"levels = 7.0", "without a decimal point, 1 to 16"},
-                                                                  {"guide_weights.normal = 0", "nothing is left"},
                                                                   {"levels = [7]", "plain value"},
                                                                   {"levels = {a = 1}", "plain value"},
                                                                   {"levels = 2024-01-01", "plain value"}};
@@ -256,6 +255,8 @@ TEST_F(StyleFile, ValuesBeyondThemAreRefusedWithTheRange) {
     SCOPED_TRACE(line);
     ExpectRefusal(LoadLine(line), ErrorKind::kInput, {"style.toml:2: ", key, words});
   }
+  ExpectRefusal(LoadLine("guide_weights.normal = 0"), ErrorKind::kInput,
+                {"style.toml:2: transfer.guide_weights are all 0", "a weight above 0"});
   ExpectRefusal(Load(std::string("name = 5\n") + kExemplar), ErrorKind::kInput,
                 {"style.toml:1", "name = 5", "text in quotes"});
 }
