@@ -308,8 +308,8 @@ class SharedPixels {
   const Fragments* fragments_ = nullptr;
 };
 
-// The pixels beside hard contours of the light that steps look at. Each takes the steps' change of those that it is
-// beside, by its share beyond the contour: paint keeps its detail, and what no step changes keeps its bytes.
+// The pixels beside hard contours of the light that steps look at. Each takes its share of the colours beyond, unless
+// the steps leave all of them as they are.
 class ContourPixels {
  public:
   // `picture`: before the steps.
@@ -323,10 +323,19 @@ class ContourPixels {
     if (contours.empty()) return;
     rows_.resize(static_cast<std::size_t>(picture.height));
     ForEach([&](std::size_t y) {
+      std::vector<Beside>& row = rows_[y];
       for (const LightContour& contour : contours) {
-        contour.ForEachInRow(static_cast<int>(y), [&](int x, const LightContour::Shares& shares) {
-          rows_[y].push_back({x, shares, ColorsAround(picture.At(x, static_cast<int>(y)), shares, picture.width)});
+        const std::size_t known = row.size();  // from the contours before, in rising order
+        contour.ForEachInRow(static_cast<int>(y), [&](int x) {
+          const auto end = row.begin() + std::ptrdiff_t(known);
+          const auto found =
+              std::lower_bound(row.begin(), end, x, [](const Beside& one, int at) { return one.x < at; });
+          if (found != end && found->x == x) return;
+          const LightContour::Shares shares = contour.SharesBeyond(x, static_cast<int>(y));
+          if ((shares[0] + shares[1]) + (shares[2] + shares[3]) < kLeastShare) return;
+          row.push_back({x, shares, ColorsAround(picture.At(x, static_cast<int>(y)), shares, picture.width)});
         });
+        std::sort(row.begin(), row.end(), [](const Beside& a, const Beside& b) { return a.x < b.x; });
       }
     });
   }
@@ -341,7 +350,8 @@ class ContourPixels {
   }
 
  private:
-  using Colors = std::array<Texel, 5>;  // of a pixel's neighbours in the order of Shares, and its own
+  static constexpr float kLeastShare = 1.0f / 64.0f;  // less does not show
+  using Colors = std::array<Texel, 5>;                // of a pixel's neighbours in the order of Shares, and its own
   struct Beside {
     int x;
     LightContour::Shares shares;
@@ -365,23 +375,18 @@ class ContourPixels {
     return colors;
   }
 
-  // Of two contours in one pixel the later one counts.
   static void AddMixed(const Beside& one, const std::uint16_t* own, const Picture& picture,
                        std::vector<Painted>& mixed) {
-    const Colors after = ColorsAround(own, one.shares, picture.width);
-    if (own[3] == 0 || after == one.before) return;
-    const auto change = [&](std::size_t k, std::size_t c) {
-      return Srgb16ToLinear(after[k][c]) - Srgb16ToLinear(one.before[k][c]);
-    };
+    const Colors colors = ColorsAround(own, one.shares, picture.width);
+    if (own[3] == 0 || colors == one.before) return;
     const auto& [on_left, on_right, above, below] = one.shares;
-    Texel texel = after[4];
+    const float left = 1.0f - ((on_left + on_right) + (above + below));
+    Texel texel = colors[4];
     for (std::size_t c = 0; c < 3; ++c) {
+      const auto light = [&](std::size_t k) { return Srgb16ToLinear(colors[k][c]); };
       // In pairs, so that a mirrored picture has the same bytes.
-      const float beyond =
-          (on_left * change(0, c) + on_right * change(1, c)) + (above * change(2, c) + below * change(3, c));
-      const float left = 1.0f - ((on_left + on_right) + (above + below));
-      const float light = Srgb16ToLinear(one.before[4][c]) + (left * change(4, c) + beyond);
-      texel[c] = Srgb16FromLinear(std::clamp(light, 0.0f, 1.0f));
+      const float beyond = (on_left * light(0) + on_right * light(1)) + (above * light(2) + below * light(3));
+      texel[c] = Srgb16FromLinear(std::min(1.0f, left * light(4) + beyond));
     }
     mixed.push_back({static_cast<std::size_t>(own - picture.rgba.data()) / 4, texel});
   }

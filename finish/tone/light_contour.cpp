@@ -15,6 +15,17 @@ SCUMBLE_WIDE_LOOPS bool Differ(const float* a, const float* b, float least, std:
   return any != 0;
 }
 
+// Adds 1 where pixels differ from others of their object; whether any does.
+SCUMBLE_WIDE_LOOPS bool MarkSteps(const float* tone, const float* other_tone, const float* object,
+                                  const float* other_object, float least, std::size_t count, std::uint32_t* marks) {
+  std::uint32_t any = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t mark = (std::fabs(tone[i] - other_tone[i]) > least) & (object[i] == other_object[i]) ? 1u : 0u;
+    marks[i] |= mark, any |= mark;
+  }
+  return any != 0;
+}
+
 // An end of a step.
 struct End {
   float from = 0.0f;   // from the pixel's centre
@@ -47,6 +58,22 @@ bool LightContour::MayHave(int x0, int x1, int y) const {
   return Differ(row + left, row + left + 1, light_.least, static_cast<std::size_t>(right - left)) ||
          (y > 0 && Differ(here, here - width_, light_.least, count)) ||
          (y + 1 < height_ && Differ(here, here + width_, light_.least, count));
+}
+
+// Marks those that have one, objects considered.
+bool LightContour::Mark(int x0, int x1, int y, std::uint32_t* marks) const {
+  std::fill_n(marks, x1 - x0, 0u);
+  const auto mark = [&](int from, int to, std::ptrdiff_t other) {
+    const std::ptrdiff_t at = std::ptrdiff_t(y) * width_ + from;
+    const float* const tone = light_.tone.data() + at;
+    const float* const object = object_.empty() ? tone : object_.data() + at;
+    const float* const other_object = object_.empty() ? tone : object + other;
+    return MarkSteps(tone, tone + other, object, other_object, light_.least, std::size_t(std::max(0, to - from)),
+                     marks + from - x0);
+  };
+  const bool sideways[2] = {mark(std::max(x0, 1), x1, -1), mark(x0, std::min(x1, width_ - 1), 1)};
+  const bool above = y > 0 && mark(x0, x1, -width_), below = y + 1 < height_ && mark(x0, x1, width_);
+  return sideways[0] || sideways[1] || above || below;
 }
 
 // Beyond the side that lies one pixel that way, along x or along y.
