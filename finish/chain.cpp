@@ -88,15 +88,12 @@ std::vector<HardLight> LightsOf(const ToonPass& pass, const FinishFrame& frame, 
   return {{light, internal::kHardStep * bright, pass.bands, static_cast<float>(pass.bands) / bright}};
 }
 
-// The light that shade is made of.
+// The light whose contours shade has: those of cast shadows, where it has any. Form shade ends softly but for creases.
 std::vector<HardLight> LightsOf(const ShadowsPass& pass, const FinishFrame& frame) {
   const GuideSet& guides = *frame.guides;
   const float hard = HasExactLight(guides) ? internal::kHardStep : internal::kHardStepInNoise;
-  std::vector<HardLight> lights;
-  if (pass.source != ShadowsPass::Source::kForm) lights.push_back({guides.Plane(Layer::kShadow), hard});
-  if (pass.source != ShadowsPass::Source::kCast)
-    lights.push_back({guides.Plane(Layer::kLuminance), hard * static_cast<float>(frame.measures.bright)});
-  return lights;
+  if (pass.source != ShadowsPass::Source::kForm) return {{guides.Plane(Layer::kShadow), hard}};
+  return {{guides.Plane(Layer::kLuminance), hard * static_cast<float>(frame.measures.bright)}};
 }
 
 // Of green light, most of luminance.

@@ -308,36 +308,34 @@ class SharedPixels {
   const Fragments* fragments_ = nullptr;
 };
 
-// The pixels beside hard contours of the light that steps look at. Each takes its share of the colours beyond, unless
-// the steps leave all of them as they are.
+// The pixels beside hard contours of the light that steps look at. Each takes its share of the colours beyond, if a step
+// may change it.
 class ContourPixels {
  public:
-  // `picture`: before the steps.
-  ContourPixels(std::span<const PointStep> steps, const FinishFrame& frame, const Picture& picture) {
-    std::vector<LightContour> contours;
+  ContourPixels(std::span<const PointStep> steps, const FinishFrame& frame, const Picture& picture)
+      : steps_(steps), width_(static_cast<std::size_t>(picture.width)) {
     for (const PointStep& one : steps) {
       for (const HardLight& light : one.lights) {
-        if (!IsOfGuides(*one.step)) contours.emplace_back(light, *frame.guides);
+        if (!IsOfGuides(*one.step)) contours_.emplace_back(light, *frame.guides);
       }
     }
-    if (contours.empty()) return;
-    rows_.resize(static_cast<std::size_t>(picture.height));
-    ForEach([&](std::size_t y) {
-      std::vector<Beside>& row = rows_[y];
-      for (const LightContour& contour : contours) {
-        const std::size_t known = row.size();  // from the contours before, in rising order
-        contour.ForEachInRow(static_cast<int>(y), [&](int x) {
-          const auto end = row.begin() + std::ptrdiff_t(known);
-          const auto found =
-              std::lower_bound(row.begin(), end, x, [](const Beside& one, int at) { return one.x < at; });
-          if (found != end && found->x == x) return;
-          const LightContour::Shares shares = contour.SharesBeyond(x, static_cast<int>(y));
-          if ((shares[0] + shares[1]) + (shares[2] + shares[3]) < kLeastShare) return;
-          row.push_back({x, shares, ColorsAround(picture.At(x, static_cast<int>(y)), shares, picture.width)});
-        });
-        std::sort(row.begin(), row.end(), [](const Beside& a, const Beside& b) { return a.x < b.x; });
-      }
-    });
+    if (!contours_.empty()) rows_.resize(static_cast<std::size_t>(picture.height));
+  }
+
+  // Finds those of a row. Different rows may be found by different threads.
+  void Find(int y) {
+    for (const LightContour& contour : contours_) {
+      std::vector<Beside>& row = rows_[std::size_t(y)];
+      const std::size_t known = row.size();  // from the contours before, in rising order
+      contour.ForEachInRow(y, [&](int x) {
+        const auto end = row.begin() + std::ptrdiff_t(known);
+        const auto found = std::lower_bound(row.begin(), end, x, [](const Beside& one, int at) { return one.x < at; });
+        if ((found != end && found->x == x) || !MayChange(std::size_t(y) * width_ + std::size_t(x))) return;
+        const LightContour::Shares shares = contour.SharesBeyond(x, y);
+        if ((shares[0] + shares[1]) + (shares[2] + shares[3]) >= kLeastShare) row.push_back({x, shares});
+      });
+      if (known > 0) std::sort(row.begin(), row.end(), [](const Beside& a, const Beside& b) { return a.x < b.x; });
+    }
   }
 
   // `picture`: after the steps.
@@ -350,13 +348,18 @@ class ContourPixels {
   }
 
  private:
-  static constexpr float kLeastShare = 1.0f / 64.0f;  // less does not show
-  using Colors = std::array<Texel, 5>;                // of a pixel's neighbours in the order of Shares, and its own
+  static constexpr float kLeastShare = 1.0f / 32.0f;  // less does not show
   struct Beside {
     int x;
     LightContour::Shares shares;
-    Colors before;
   };
+
+  bool MayChange(std::size_t pixel) const {
+    return std::any_of(steps_.begin(), steps_.end(), [&](const PointStep& one) {
+      const FinishStep& step = *one.step;
+      return (step.only.empty() || step.only[pixel] != 0) && (step.share.empty() || step.share[pixel] != 0);
+    });
+  }
 
   template <class Visit>
   void ForEach(const Visit& visit) const {
@@ -365,32 +368,31 @@ class ContourPixels {
     });
   }
 
-  static Colors ColorsAround(const std::uint16_t* own, const LightContour::Shares& shares, int width) {
-    const std::ptrdiff_t row = 4 * std::ptrdiff_t(width), beside[4] = {-4, 4, -row, row};
-    Colors colors{};
-    for (std::size_t k = 0; k < 4; ++k) {
-      if (shares[k] > 0.0f) std::copy_n(own + beside[k], 4, colors[k].begin());
-    }
-    std::copy_n(own, 4, colors[4].begin());
-    return colors;
-  }
-
   static void AddMixed(const Beside& one, const std::uint16_t* own, const Picture& picture,
                        std::vector<Painted>& mixed) {
-    const Colors colors = ColorsAround(own, one.shares, picture.width);
-    if (own[3] == 0 || colors == one.before) return;
+    const std::ptrdiff_t row = 4 * std::ptrdiff_t(picture.width), beside[4] = {-4, 4, -row, row};
+    bool differs = false;
+    for (std::size_t k = 0; k < 4; ++k)
+      differs = differs || (one.shares[k] > 0.0f && !std::equal(own, own + 3, own + beside[k]));
+    if (own[3] == 0 || !differs) return;
     const auto& [on_left, on_right, above, below] = one.shares;
     const float left = 1.0f - ((on_left + on_right) + (above + below));
-    Texel texel = colors[4];
+    Texel texel;
+    std::copy_n(own, 4, texel.begin());
     for (std::size_t c = 0; c < 3; ++c) {
-      const auto light = [&](std::size_t k) { return Srgb16ToLinear(colors[k][c]); };
+      const auto light = [&](std::size_t k) {
+        return one.shares[k] > 0.0f ? one.shares[k] * Srgb16ToLinear(own[beside[k] + std::ptrdiff_t(c)]) : 0.0f;
+      };
       // In pairs, so that a mirrored picture has the same bytes.
-      const float beyond = (on_left * light(0) + on_right * light(1)) + (above * light(2) + below * light(3));
-      texel[c] = Srgb16FromLinear(std::min(1.0f, left * light(4) + beyond));
+      const float beyond = (light(0) + light(1)) + (light(2) + light(3));
+      texel[c] = Srgb16FromLinear(std::min(1.0f, left * Srgb16ToLinear(own[c]) + beyond));
     }
     mixed.push_back({static_cast<std::size_t>(own - picture.rgba.data()) / 4, texel});
   }
 
+  std::span<const PointStep> steps_;
+  std::size_t width_;
+  std::vector<LightContour> contours_;
   std::vector<std::vector<Beside>> rows_;
 };
 
@@ -400,7 +402,7 @@ bool IsOfGuides(const FinishStep& step) { return step.pass.at == FinishPass::Sta
 
 bool PaintPoints(std::span<const PointStep> steps, const FinishFrame& frame, RowProgress& progress, Picture& picture) {
   const SharedPixels shared(steps, frame);
-  const ContourPixels contours(steps, frame, picture);
+  ContourPixels contours(steps, frame, picture);
   const bool finished = ForEachRow({0, 0, picture.width, picture.height}, progress, [&](int y) {
     const std::vector<Painted> painted = shared.Paint(y, picture);
     const auto width = static_cast<std::size_t>(picture.width);
@@ -410,6 +412,7 @@ bool PaintPoints(std::span<const PointStep> steps, const FinishFrame& frame, Row
       PaintBlock(steps, {first, std::min(kOklabBlock, width - x), texels}, texels);
     }
     Put(painted, picture);
+    contours.Find(y);
   });
   if (finished) contours.Mix(picture);
   return finished;

@@ -85,7 +85,7 @@ float LightContour::ShareBeyond(int x, int y, int side_x, int side_y) const {
     const auto place = static_cast<std::size_t>(i);
     return object_.empty() ? coverage_[place] > 0.0f : object_[place] == object_[std::size_t(pixel)];
   };
-  if (!(coverage_[std::size_t(pixel)] > 0.0f) || !is_one(pixel + side)) return 0.0f;
+  if (!is_one(pixel) || !is_one(pixel + side)) return 0.0f;
   const float own = tone[pixel] * light_.per_tone, other = tone[pixel + side] * light_.per_tone;
   float border = 0.5f * (own + other);
   if (light_.bands > 1) {
