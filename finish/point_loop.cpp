@@ -308,8 +308,8 @@ class SharedPixels {
   const Fragments* fragments_ = nullptr;
 };
 
-// The pixels beside hard contours of the light that steps look at. Each takes its share of the colours beyond, if a step
-// may change it.
+// The pixels beside hard contours of the light that steps look at. Each takes its share of the colours beyond, if a
+// step may change it.
 class ContourPixels {
  public:
   ContourPixels(std::span<const PointStep> steps, const FinishFrame& frame, const Picture& picture)
