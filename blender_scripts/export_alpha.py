@@ -12,6 +12,7 @@ CUT = 0.5
 MOSTLY = (0.1, 0.9)  # between them an alpha is neither hole nor surface
 MOST_PIXELS = 2048 * 2048  # of an image that is looked at
 SOFT_SHARE = 0.1  # of an image's pixels: more is no soft rim
+MASK, INVERTED = "scumble_mask", "scumble_inverted"  # properties of an image, by output: the mask that stands for it
 
 
 def is_transparent(source):
@@ -31,22 +32,40 @@ def inverted_by(node):
     return None
 
 
-def inverted(tree, source):
-    """The output of an image's copy that is 1 where the image is 0; the image's own where that has a fault."""
+def mask_of(source, invert):
+    """A white image whose alpha is that output of an image, or 1 minus it; None where the image cannot be read."""
+    image, key = source.node.image, f"{INVERTED if invert else MASK}.{source.name}"
+    if key not in image:
+        values = values_of(source).ravel()
+        if not values.size:
+            return None
+        pixels = np.ones((values.size, 4), np.float32)
+        pixels[:, 3] = np.clip(1.0 - values if invert else values, 0.0, 1.0)
+        copy = bpy.data.images.new(image.name, *image.size, alpha=True)
+        copy.pixels.foreach_set(pixels.ravel())
+        copy.pack()
+        copy[f"{MASK}.Alpha"] = 0
+        image[key] = copy
+    return image[key] or image
+
+
+def masked(tree, source, invert):
+    """The alpha of a node like the image's whose picture is that output's mask; `source` where it has to stay."""
     node = source.node
-    alphas = alphas_of(source)
-    if not alphas.size or image_fault(node, "alpha") is not None:
+    mask = mask_of(source, invert)
+    if mask in (None, node.image):
         return source
-    copy = bpy.data.images.new(node.image.name, *node.image.size, alpha=True)
-    values = np.repeat(1.0 - np.clip(alphas, 0.0, 1.0).reshape(-1, 1), 4, axis=1)
-    copy.pixels.foreach_set(values.ravel())
-    copy.pack()
     other = tree.nodes.new("ShaderNodeTexImage")
-    other.image, other.interpolation, other.extension = copy, node.interpolation, node.extension
+    other.image, other.interpolation, other.extension = mask, node.interpolation, node.extension
     below = previous(node.inputs["Vector"])
     if below is not None:
         tree.links.new(below, other.inputs["Vector"])
     return other.outputs["Alpha"]
+
+
+def inverted(tree, source):
+    """The output of an image's copy that is 1 where the image is 0; the image's own where that has a fault."""
+    return source if image_fault(source.node, "alpha") is not None else masked(tree, source, True)
 
 
 def without_transparent(tree, surface):
@@ -96,13 +115,11 @@ def put(tree, node, alpha, reader):
         tree.links.new(alpha, socket)
 
 
-def alphas_of(source):
+def values_of(source):
     """The values of an image's output as the exporter takes them, a row for each of the picture; empty where it cannot
-    be read, or is so large that to look at it would take longer than to export the rest."""
+    be read."""
     image = source.node.image
     width, height = image.size if image is not None else (0, 0)
-    if width * height > MOST_PIXELS:
-        return np.empty((0, 0), np.float32)
     values = np.empty(len(image.pixels) if width else 0, np.float32)
     if not values.size or values.size != width * height * image.channels:
         return np.empty((0, 0), np.float32)
@@ -111,6 +128,13 @@ def alphas_of(source):
     if source.name == "Alpha":
         return values[..., 3] if image.channels == 4 else np.ones((height, width), np.float32)
     return values[..., 0]
+
+
+def alphas_of(source):
+    """The same; empty also where the image is so large that to look at it would take longer than to export the rest."""
+    image = source.node.image
+    is_large = image is not None and image.size[0] * image.size[1] > MOST_PIXELS
+    return np.empty((0, 0), np.float32) if is_large else values_of(source)
 
 
 def close_clipped(source, alphas, reader):
@@ -160,4 +184,6 @@ def read(tree, node, color, reader):
     if soft > SOFT_SHARE * alphas.size:
         reader.complain(f"image '{source.node.image.name}' is its alpha and half transparent in wide parts, which are "
                         "cut at one half")
+    if color is None and source.name == "Alpha":  # else the exporter would write its RGB as the colour
+        tree.links.new(masked(tree, source, False), socket)
     return True

@@ -1,11 +1,9 @@
 #include "finish/point_loop.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstdint>
 #include <cstdlib>
 #include <glm/glm.hpp>
 #include <iterator>
@@ -145,25 +143,25 @@ void PaintBlock(std::span<const PointStep> steps, const Pixels& pixels, std::uin
   PutBlock(given, 1.0f, nullptr, count, block, texels);
 }
 
-// Colours by their shares of a pixel, in linear light.
+// Colours by their shares of a pixel, in linear light. In doubles their order does not show.
 class Mixture {
  public:
   void Add(const Texel& texel, float share) {
-    const float weight = share * (static_cast<float>(texel[3]) / 65535.0f);
-    for (std::size_t c = 0; c < 3; ++c) sum_[c] += weight * Srgb16ToLinear(texel[c]);
+    const double weight = double(share) * texel[3];
+    for (std::size_t c = 0; c < 3; ++c) sum_[c] += weight * double(Srgb16ToLinear(texel[c]));
     alpha_ += weight;
     is_one_ = is_one_ && (count_ == 0 || std::equal(texel.begin(), texel.begin() + 3, first_.begin()));
     if (count_++ == 0) first_ = texel;
   }
   Texel Color() const {
     Texel color = first_;
-    for (std::size_t c = 0; c < 3 && alpha_ > 0.0f && !is_one_; ++c)
-      color[c] = Srgb16FromLinear(std::min(1.0f, sum_[c] / alpha_));
+    for (std::size_t c = 0; c < 3 && alpha_ > 0.0 && !is_one_; ++c)
+      color[c] = Srgb16FromLinear(static_cast<float>(std::min(1.0, sum_[c] / alpha_)));
     return color;
   }
 
  private:
-  float sum_[3] = {}, alpha_ = 0.0f;
+  double sum_[3] = {}, alpha_ = 0.0;
   int count_ = 0;
   bool is_one_ = true;
   Texel first_ = {};
@@ -177,6 +175,35 @@ struct Painted {
 void Put(std::span<const Painted> painted, Picture& picture) {
   for (const auto& [pixel, texel] : painted)
     std::copy_n(texel.begin(), 3, picture.rgba.begin() + 4 * std::ptrdiff_t(pixel));
+}
+
+// The parts of pixels one after the other, and the paint of each without the steps.
+struct Batch {
+  std::vector<Part> parts;
+  std::vector<Texel> paint;
+};
+
+// The pixels whose parts the steps change.
+std::vector<Painted> PaintParts(std::span<const PointStep> steps, const Batch& batch, const Picture& picture) {
+  const std::size_t count = batch.parts.size();
+  std::vector<Texel> made = batch.paint, alphas(count);
+  for (std::size_t i = 0; i < count; ++i) alphas[i][3] = picture.rgba[4 * batch.parts[i].pixel + 3];
+  for (std::size_t i = 0; i < count; i += kOklabBlock) {
+    const Pixels some{0, std::min(kOklabBlock, count - i), alphas[i].data(), batch.parts.data() + i};
+    PaintBlock(steps, some, made[i].data());
+  }
+  std::vector<Painted> painted;
+  for (std::size_t i = 0; i < count;) {
+    const std::size_t pixel = batch.parts[i].pixel;
+    Mixture mixture;
+    bool changes = false;
+    for (; i < count && batch.parts[i].pixel == pixel; ++i) {
+      changes = changes || made[i] != batch.paint[i];
+      mixture.Add(made[i], batch.parts[i].share);
+    }
+    if (changes) painted.push_back({pixel, mixture.Color()});
+  }
+  return painted;
 }
 
 // The pixels that several surfaces share.
@@ -204,19 +231,13 @@ class SharedPixels {
       first = shared.end;
       if (picture.rgba[4 * shared.pixel + 3] != 0) AddParts(shared, picture.rgba.data() + 4 * shared.pixel, batch);
     }
-    return Mixed(batch, picture);
+    return PaintParts(steps_, batch, picture);
   }
 
  private:
   struct Shared {
     std::size_t pixel, first, end;  // with its fragments
   };
-  // The parts of pixels one after the other, and the paint of each without the steps.
-  struct Batch {
-    std::vector<Part> parts;
-    std::vector<Texel> paint;
-  };
-
   // The pixel around whose centre shows the fragment's surface, the nearest to its cells; none: the picture has no such
   // pixel nearby.
   std::optional<std::size_t> LikeOf(std::size_t fragment) const {
@@ -280,120 +301,71 @@ class SharedPixels {
     add(colors ? colors->centre[shared.first] : given, pixel, left);
   }
 
-  // The pixels whose parts the steps change.
-  std::vector<Painted> Mixed(const Batch& batch, const Picture& picture) const {
-    const std::size_t count = batch.parts.size();
-    std::vector<Texel> made = batch.paint, alphas(count);
-    for (std::size_t i = 0; i < count; ++i) alphas[i][3] = picture.rgba[4 * batch.parts[i].pixel + 3];
-    for (std::size_t i = 0; i < count; i += kOklabBlock) {
-      const Pixels some{0, std::min(kOklabBlock, count - i), alphas[i].data(), batch.parts.data() + i};
-      PaintBlock(steps_, some, made[i].data());
-    }
-    std::vector<Painted> painted;
-    for (std::size_t i = 0; i < count;) {
-      const std::size_t pixel = batch.parts[i].pixel;
-      Mixture mixture;
-      bool changes = false;
-      for (; i < count && batch.parts[i].pixel == pixel; ++i) {
-        changes = changes || made[i] != batch.paint[i];
-        mixture.Add(made[i], batch.parts[i].share);
-      }
-      if (changes) painted.push_back({pixel, mixture.Color()});
-    }
-    return painted;
-  }
-
   std::span<const PointStep> steps_;
   const FinishFrame& frame_;
   const Fragments* fragments_ = nullptr;
 };
 
-// The pixels beside hard contours of the light that steps look at. Each takes its share of the colours beyond, if a
-// step may change it.
+// The pixels beside hard contours of the light that steps look at. In the share that lies beyond, the steps see the
+// guides of the pixel on that side.
 class ContourPixels {
  public:
-  ContourPixels(std::span<const PointStep> steps, const FinishFrame& frame, const Picture& picture)
-      : steps_(steps), width_(static_cast<std::size_t>(picture.width)) {
+  ContourPixels(std::span<const PointStep> steps, const FinishFrame& frame) : steps_(steps) {
     for (const PointStep& one : steps) {
       for (const HardLight& light : one.lights) {
-        if (!IsOfGuides(*one.step)) contours_.emplace_back(light, *frame.guides);
+        if (!IsOfGuides(*one.step)) contours_.push_back({one, LightContour(light, *frame.guides)});
       }
     }
-    if (!contours_.empty()) rows_.resize(static_cast<std::size_t>(picture.height));
   }
 
-  // Finds those of a row. Different rows may be found by different threads.
-  void Find(int y) {
-    for (const LightContour& contour : contours_) {
-      std::vector<Beside>& row = rows_[std::size_t(y)];
-      const std::size_t known = row.size();  // from the contours before, in rising order
-      contour.ForEachInRow(y, [&](int x) {
-        const auto end = row.begin() + std::ptrdiff_t(known);
-        const auto found = std::lower_bound(row.begin(), end, x, [](const Beside& one, int at) { return one.x < at; });
-        if ((found != end && found->x == x) || !MayChange(std::size_t(y) * width_ + std::size_t(x))) return;
-        const LightContour::Shares shares = contour.SharesBeyond(x, y);
-        if ((shares[0] + shares[1]) + (shares[2] + shares[3]) >= kLeastShare) row.push_back({x, shares});
+  // What they become in a row.
+  std::vector<Painted> Paint(int y, const Picture& picture) const {
+    Batch batch;
+    std::vector<std::uint8_t> is_known(contours_.size() > 1 ? static_cast<std::size_t>(picture.width) : 0);
+    for (const Contour& contour : contours_) {
+      contour.light.ForEachInRow(y, [&](int x) {
+        const std::size_t pixel = std::size_t(y) * static_cast<std::size_t>(picture.width) + std::size_t(x);
+        if (!MayChange(*contour.step.step, pixel) || picture.rgba[4 * pixel + 3] == 0) return;
+        if (!is_known.empty() && is_known[std::size_t(x)] != 0) return;
+        const LightContour::Shares shares = contour.light.SharesBeyond(x, y);
+        const float beyond = (shares[0] + shares[1]) + (shares[2] + shares[3]);
+        if (beyond < kLeastShare) return;
+        if (!is_known.empty()) is_known[std::size_t(x)] = 1;
+        AddParts(pixel, shares, 1.0f - beyond, picture, batch);
       });
-      if (known > 0) std::sort(row.begin(), row.end(), [](const Beside& a, const Beside& b) { return a.x < b.x; });
     }
-  }
-
-  // `picture`: after the steps.
-  void Mix(Picture& picture) const {
-    std::vector<std::vector<Painted>> mixed(rows_.size());
-    ForEach([&](std::size_t y) {
-      for (const Beside& one : rows_[y]) AddMixed(one, picture.At(one.x, static_cast<int>(y)), picture, mixed[y]);
-    });
-    ForEach([&](std::size_t y) { Put(mixed[y], picture); });
+    return PaintParts(steps_, batch, picture);
   }
 
  private:
   static constexpr float kLeastShare = 1.0f / 32.0f;  // less does not show
-  struct Beside {
-    int x;
-    LightContour::Shares shares;
+  struct Contour {
+    const PointStep& step;
+    LightContour light;
   };
 
-  bool MayChange(std::size_t pixel) const {
-    return std::any_of(steps_.begin(), steps_.end(), [&](const PointStep& one) {
-      const FinishStep& step = *one.step;
-      return (step.only.empty() || step.only[pixel] != 0) && (step.share.empty() || step.share[pixel] != 0);
-    });
+  static bool MayChange(const FinishStep& step, std::size_t pixel) {
+    return (step.only.empty() || step.only[pixel] != 0) && (step.share.empty() || step.share[pixel] != 0);
   }
 
-  template <class Visit>
-  void ForEach(const Visit& visit) const {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rows_.size(), 16), [&](const auto& part) {
-      for (std::size_t y = part.begin(); y != part.end(); ++y) visit(y);
-    });
-  }
-
-  static void AddMixed(const Beside& one, const std::uint16_t* own, const Picture& picture,
-                       std::vector<Painted>& mixed) {
-    const std::ptrdiff_t row = 4 * std::ptrdiff_t(picture.width), beside[4] = {-4, 4, -row, row};
-    bool differs = false;
-    for (std::size_t k = 0; k < 4; ++k)
-      differs = differs || (one.shares[k] > 0.0f && !std::equal(own, own + 3, own + beside[k]));
-    if (own[3] == 0 || !differs) return;
-    const auto& [on_left, on_right, above, below] = one.shares;
-    const float left = 1.0f - ((on_left + on_right) + (above + below));
-    Texel texel;
-    std::copy_n(own, 4, texel.begin());
-    for (std::size_t c = 0; c < 3; ++c) {
-      const auto light = [&](std::size_t k) {
-        return one.shares[k] > 0.0f ? one.shares[k] * Srgb16ToLinear(own[beside[k] + std::ptrdiff_t(c)]) : 0.0f;
-      };
-      // In pairs, so that a mirrored picture has the same bytes.
-      const float beyond = (light(0) + light(1)) + (light(2) + light(3));
-      texel[c] = Srgb16FromLinear(std::min(1.0f, left * Srgb16ToLinear(own[c]) + beyond));
+  static void AddParts(std::size_t pixel, const LightContour::Shares& shares, float left, const Picture& picture,
+                       Batch& batch) {
+    const auto width = static_cast<std::size_t>(picture.width);
+    const std::size_t beside[4] = {pixel - 1, pixel + 1, pixel - width, pixel + width};
+    Texel paint;
+    std::copy_n(picture.rgba.begin() + 4 * std::ptrdiff_t(pixel), 4, paint.begin());
+    const auto add = [&](std::size_t like, float share) {
+      batch.parts.push_back({pixel, like, share});
+      batch.paint.push_back(paint);
+    };
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (shares[k] > 0.0f) add(beside[k], shares[k]);
     }
-    mixed.push_back({static_cast<std::size_t>(own - picture.rgba.data()) / 4, texel});
+    add(pixel, left);
   }
 
   std::span<const PointStep> steps_;
-  std::size_t width_;
-  std::vector<LightContour> contours_;
-  std::vector<std::vector<Beside>> rows_;
+  std::vector<Contour> contours_;
 };
 
 }  // namespace
@@ -402,20 +374,18 @@ bool IsOfGuides(const FinishStep& step) { return step.pass.at == FinishPass::Sta
 
 bool PaintPoints(std::span<const PointStep> steps, const FinishFrame& frame, RowProgress& progress, Picture& picture) {
   const SharedPixels shared(steps, frame);
-  ContourPixels contours(steps, frame, picture);
-  const bool finished = ForEachRow({0, 0, picture.width, picture.height}, progress, [&](int y) {
-    const std::vector<Painted> painted = shared.Paint(y, picture);
+  const ContourPixels contours(steps, frame);
+  return ForEachRow({0, 0, picture.width, picture.height}, progress, [&](int y) {
+    const std::vector<Painted> beside = contours.Paint(y, picture), painted = shared.Paint(y, picture);
     const auto width = static_cast<std::size_t>(picture.width);
     for (std::size_t x = 0; x < width; x += kOklabBlock) {
       const std::size_t first = std::size_t(y) * width + x;
       std::uint16_t* const texels = picture.At(static_cast<int>(x), y);
       PaintBlock(steps, {first, std::min(kOklabBlock, width - x), texels}, texels);
     }
+    Put(beside, picture);
     Put(painted, picture);
-    contours.Find(y);
   });
-  if (finished) contours.Mix(picture);
-  return finished;
 }
 
 }  // namespace scumble::internal

@@ -2,7 +2,7 @@
 //
 // A pixel may show several surfaces (core/image/fragments.h). It is painted once for each, by the guides of a pixel
 // beside it that shows the surface, and the colours are mixed by coverage, in linear light. A pixel beside a hard
-// contour of light (finish/tone/light_contour.h) takes its share of the colours beyond. So all borders are smooth.
+// contour of light (finish/tone/light_contour.h) sees the light beyond in its share of it. So all borders are smooth.
 #pragma once
 
 #include <span>

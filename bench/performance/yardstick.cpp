@@ -64,14 +64,26 @@ bool Yardstick::Usable(Pixel u) const {
   return dx * dx + dy * dy <= usable_squared_;
 }
 
+// A sphere shows normals up to its rim; those beyond become the rim's.
+Yardstick::Normal Yardstick::OnDisc(Normal n) const {
+  const float length = std::sqrt(n.x * n.x + n.y * n.y);
+  if (n.z < 0.0f && !(length > 0.0f)) return {0.0f, usable_radius_, n.z};
+  if (!(n.z < 0.0f || length > usable_radius_)) return n;
+  return {n.x / length * usable_radius_, n.y / length * usable_radius_, n.z};
+}
+
+Yardstick::Normal Yardstick::ComparedAt(const YardstickGuides& guides, std::size_t i) const {
+  Normal n{guides.normal_x[i], guides.normal_y[i], guides.normal_z[i]};
+  if (!(n.x * n.x + n.y * n.y > usable_radius_ * usable_radius_) && !(n.z < 0.0f)) return n;
+  n = OnDisc(n);
+  n.z = std::sqrt(std::max(0.0f, 1.0f - n.x * n.x - n.y * n.y));
+  return n;
+}
+
 // argmin over u of ‖normal - G_S(u)‖: on a sphere the place with that normal.
-Yardstick::Pixel Yardstick::BestSource(float nx, float ny, float nz) const {
-  const float length = std::sqrt(nx * nx + ny * ny);
-  if (nz < 0.0f && !(length > 0.0f)) {
-    nx = 0.0f, ny = usable_radius_;
-  } else if (nz < 0.0f || length > usable_radius_) {
-    nx = nx / length * usable_radius_, ny = ny / length * usable_radius_;
-  }
+Yardstick::Pixel Yardstick::BestSource(Normal n) const {
+  n = OnDisc(n);
+  const float nx = n.x, ny = n.y;
   const float half = 0.5f * static_cast<float>(exemplar_.size);
   const int last = exemplar_.size - 1;
   const Pixel u{std::clamp(static_cast<int>(std::ceil(nx * half + half)) - 1, 0, last),
@@ -99,7 +111,7 @@ Yardstick::Pixel Yardstick::NearestUsable(float nx, float ny, Pixel from) const 
 
 Yardstick::Pixel Yardstick::MatchPixel(const YardstickGuides& guides, Pixel p) const {
   const std::size_t i = std::size_t(p.y) * width_ + p.x;
-  const float nx = guides.normal_x[i], ny = guides.normal_y[i], nz = guides.normal_z[i];
+  const Normal n = ComparedAt(guides, i);
   const float bound = settings_.threshold * settings_.threshold;
   const float size = static_cast<float>(exemplar_.size);
   for (int level = settings_.levels - 1; level >= 1; --level) {
@@ -108,16 +120,16 @@ Yardstick::Pixel Yardstick::MatchPixel(const YardstickGuides& guides, Pixel p) c
     if (q.x < 0 || q.y < 0 || q.x >= width_ || q.y >= height_) continue;
     const std::size_t k = std::size_t(q.y) * width_ + q.x;
     if (!(guides.coverage[k] > 0.0f)) continue;
-    const Pixel best = BestSource(guides.normal_x[k], guides.normal_y[k], guides.normal_z[k]);
+    const Pixel best = BestSource(ComparedAt(guides, k));
     const Pixel u{best.x + (p.x - q.x), best.y + (p.y - q.y)};
     if (!Usable(u)) continue;
     const float sx = static_cast<float>(2 * u.x + 1 - exemplar_.size) / size;
     const float sy = -(static_cast<float>(2 * u.y + 1 - exemplar_.size) / size);
     const float sz = std::sqrt(std::max(0.0f, 1.0f - sx * sx - sy * sy));
-    const float error = (nx - sx) * (nx - sx) + (ny - sy) * (ny - sy) + (nz - sz) * (nz - sz);
+    const float error = (n.x - sx) * (n.x - sx) + (n.y - sy) * (n.y - sy) + (n.z - sz) * (n.z - sz);
     if (error < bound) return u;
   }
-  return BestSource(nx, ny, nz);
+  return BestSource(n);
 }
 
 // The mean of the texels that the chunks of the nine pixels around p would put there.

@@ -12,6 +12,7 @@
 // bit. It is independent: no code of the engine is built with that file's flags.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -66,6 +67,9 @@ class Yardstick {
     int x = 0;
     int y = 0;
   };
+  struct Normal {
+    float x = 0.0f, y = 0.0f, z = 0.0f;
+  };
   struct Place {
     float x = 0.0f;
     float y = 0.0f;
@@ -80,7 +84,9 @@ class Yardstick {
   Place SeedPoint(Place p, float h, const JitterTable& table) const;
   Place NearestSeed(Place p, int level) const;
   bool Usable(Pixel u) const;
-  Pixel BestSource(float nx, float ny, float nz) const;
+  Normal OnDisc(Normal n) const;  // only x and y are
+  Normal ComparedAt(const YardstickGuides& guides, std::size_t i) const;
+  Pixel BestSource(Normal n) const;
   Pixel NearestUsable(float nx, float ny, Pixel from) const;
   Pixel MatchPixel(const YardstickGuides& guides, Pixel p) const;
   void VotePixel(Pixel p, std::uint16_t* rgb) const;

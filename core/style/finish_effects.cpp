@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <locale>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -234,8 +235,10 @@ FinishKey ThresholdsKey() {
                 {}};
   key.set = [](FinishPass& pass, const KeyValue& value) -> Status {
     const auto* text = std::get_if<std::string>(&value);
+    const std::optional<double> only = AsNumber(value);  // of two bands, quotes left off
     std::vector<double> thresholds;
-    std::istringstream words(text ? *text : "none");
+    if (only) thresholds.push_back(*only);
+    std::istringstream words(text ? *text : only ? "" : "none");
     words.imbue(std::locale::classic());
     for (double number; words >> number;) thresholds.push_back(number);
     double last = 0.0;

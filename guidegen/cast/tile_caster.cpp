@@ -173,11 +173,10 @@ void TileCaster::Light(const Tile& tile, AreaLightTile& area_light_tile, TileScr
     const double most = unoccluded[pixel] + one.light.unoccluded;
     // Each light is within float's range; their sum need not be.
     constexpr double kMaxFloat = std::numeric_limits<float>::max();
-    if (planes_.luminance) {
-      const double shines = EmissionOf(hits.object[pixel], hits.primitive[pixel], points[pixel].barycentric);
-      planes_.luminance[one.index] = float(std::min(lit + shines, kMaxFloat));
-    }
-    if (planes_.shadow && most > 0.0) planes_.shadow[one.index] = float(1.0 - lit / most);
+    const double shines = EmissionOf(hits.object[pixel], hits.primitive[pixel], points[pixel].barycentric);
+    if (planes_.luminance) planes_.luminance[one.index] = float(std::min(lit + shines, kMaxFloat));
+    // Nothing blocks what a surface emits itself.
+    if (planes_.shadow && most > 0.0) planes_.shadow[one.index] = float(1.0 - (lit + shines) / (most + shines));
   }
 }
 

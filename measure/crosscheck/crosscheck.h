@@ -35,6 +35,8 @@ struct CrosscheckFigure {
   // Within the limit even with twice the error added.
   bool Proved() const { return value + 2.0 * error <= LimitInForce(); }
   bool kept() const { return must_prove ? Proved() : !broken(); }
+  // Kept for want of a proof: its noise is too large to judge it.
+  bool Unjudged() const { return kept() && !Proved(); }
   // Neither: more samples would decide.
   bool TooNoisy() const { return !kept() && !broken(); }
 };

@@ -104,7 +104,8 @@ std::string FigureTable(const CrosscheckReport& report) {
         figure.kept() ? "" : " class=\"broken\"", figure.layer == above ? "again" : "first", EscapeHtml(figure.layer),
         EscapeHtml(figure.name), figure.value, figure.error > 0.0 ? fmt::format("{:.2g}", figure.error) : "",
         figure.LimitInForce(), EscapeHtml(figure.unit),
-        figure.kept()       ? "✓ kept"
+        figure.Unjudged()   ? "– not judged"
+        : figure.kept()     ? "✓ kept"
         : figure.TooNoisy() ? "? too noisy"
                             : "✗ broken",
         EscapeHtml(remark));

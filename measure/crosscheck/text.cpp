@@ -27,7 +27,8 @@ std::string SetupText(const CrosscheckSetup& setup) {
 }
 
 std::string State(const CrosscheckFigure& figure) {
-  return figure.kept() ? "kept" : figure.TooNoisy() ? "TOO NOISY" : "BROKEN";
+  if (figure.kept()) return figure.Unjudged() ? "not judged" : "kept";
+  return figure.TooNoisy() ? "TOO NOISY" : "BROKEN";
 }
 
 std::string FigureLine(const CrosscheckFigure& figure) {
@@ -68,6 +69,7 @@ Json FigureJson(const CrosscheckFigure& figure) {
             {"built_in_limit", JsonNumber(figure.limit)},
             {"from_baseline", figure.TightenedByBaseline()},
             {"kept", figure.kept()},
+            {"judged", !figure.Unjudged()},
             {"too_noisy", figure.TooNoisy()}};
   if (!figure.note.empty()) json["note"] = figure.note;
   return json;

@@ -313,6 +313,26 @@ Bytes OfSmooth(const SmoothPass& pass) {
   return 0;
 }
 
+// Bytes of a pixel: the tone of light, and while it is evened out what it lies on, its keys, two lights and the result.
+constexpr Bytes kToneOfLight = 6 * kFloat;
+
+Bytes OfHatch(const HatchPass& pass) {
+  const bool of_light = pass.tone == HatchPass::Tone::kLight;
+  const bool has_second = !of_light && pass.along == HatchPass::Along::kLight;
+  const Bytes planes = kFloat + (pass.stick ? kFloat : 0);  // the tone, and the surfaces' scale
+  // A number of each pixel's patch, and whether it is flat; on surfaces a key besides.
+  const Bytes patches = kFloat + 1 + (pass.stick ? 8 : 0) + (has_second ? kFloat : 0);
+  const Bytes evening = of_light ? kToneOfLight : has_second ? planes + kToneOfLight : 0;
+  return std::max(planes + patches, evening);
+}
+
+// As kToneOfLight, but what light lies on is the guides'.
+Bytes OfToon(const ToonPass& pass) {
+  if (pass.bands == 1 && pass.shading == ToonPass::Shading::kPlain) return 0;
+  const bool is_sampled = pass.light == ToonPass::Light::kLuminance || pass.cast > 0.0;
+  return pass.bands > 1 && is_sampled ? 5 * kFloat : Bytes(kFloat);
+}
+
 // Bytes of a pixel, or of a file.
 struct FinishBytes {
   Bytes masks = 0;      // the pixels that it is for
@@ -334,7 +354,7 @@ FinishBytes OfPass(const FinishPass& pass, bool has_map) {
   if (pass.mask.picture) bytes.picture = kPaint * pass.mask.picture->rgba.size() / 4;
   if (!pass.mask.empty()) bytes.mixes = pass.mask.picture ? 2 * kPaint : Bytes(kPaint);
   if (const auto* smooth = std::get_if<SmoothPass>(&pass.effect)) transient = OfSmooth(*smooth);
-  if (std::holds_alternative<HatchPass>(pass.effect)) transient = 2 * kFloat;  // tone and patches
+  if (const auto* hatch = std::get_if<HatchPass>(&pass.effect)) transient = OfHatch(*hatch);
   // The tone and the response; with flow the tone and the tensor, plain and blurred, and the directions.
   if (const auto* edges = std::get_if<EdgesPass>(&pass.effect))
     transient = edges->flow > 0.0 ? kFloat + 3 * kLab : (edges->borders ? 6 : 2) * kFloat;
@@ -347,6 +367,9 @@ FinishBytes OfPass(const FinishPass& pass, bool has_map) {
   const auto* pigment = std::get_if<PigmentPass>(&pass.effect);
   if (pigment) transient = 2 + kFloat + 8 + (pigment->stick ? 3 : 1) * kFloat + kPaint;
   const auto* toon = std::get_if<ToonPass>(&pass.effect);
+  if (toon) transient = OfToon(*toon);
+  const auto* tones = std::get_if<TonesPass>(&pass.effect);
+  if (tones && tones->tone == TonesPass::Tone::kLight) transient = kToneOfLight;
   if (toon && toon->ramp_colors) bytes.ramp = (sizeof(Rgb16) + kLab) * toon->ramp_colors->colors.size();
   const auto* outline = std::get_if<OutlinePass>(&pass.effect);
   if (!outline) return bytes;

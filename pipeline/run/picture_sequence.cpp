@@ -14,6 +14,8 @@
 namespace scumble {
 namespace {
 
+constexpr const char* kColorsOption = "--set finish.NAME.from of a palette";  // gives the colours that are measured
+
 // The request of one frame of a sequence: its own names, its own number.
 Expected<PictureRequest> RequestAt(const PictureRequest& request, int frame, const std::string& output) {
   PictureRequest one = request;
@@ -42,7 +44,8 @@ Status PictureSequence::Begin(const Sequence& sequence, int width, int height, c
     SCUMBLE_RETURN_IF_ERROR(PrepareFrame(styles_, guides, one, context_, state_));
     MeasureFinishOf(styles_, guides, frame, context_, state_);
     if (MeasuresColors(styles_)) {  // of what is painted: the picture itself is made when its turn comes
-      SCUMBLE_RETURN_IF_ERROR(PaintInMemory(styles_, guides, found.source, one, context_, progress, state_));
+      const auto painted = PaintInMemory(styles_, guides, found.source, one, context_, progress, state_);
+      if (!painted) return CannotMeasure(painted.error(), frame, kColorsOption);
     }
     if (!is_exposed()) return Ok();
     context_.Warn(
@@ -71,7 +74,7 @@ std::string PictureSequence::OptionsThatGive(bool is_exposed, const std::string&
   std::vector<std::string> options;
   if (is_exposed) options.push_back(exposure);
   if (MeasuresFinish(styles_)) options.push_back("--finish-measures");
-  if (MeasuresColors(styles_)) options.push_back("--set finish.NAME.from of a palette");
+  if (MeasuresColors(styles_)) options.push_back(kColorsOption);
   return fmt::format("{}", fmt::join(options, " and "));
 }
 

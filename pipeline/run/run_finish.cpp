@@ -271,19 +271,20 @@ Expected<RunReport> RunFinish(FinishRequest request, const SequenceListener& lis
     const bool looks = !state.measures && EverLooksAtMeasures(state.chain);
     const bool measures_colors = MeasuresColors(state.chain.passes);  // of what is painted, which is not written yet
     if (!looks && !measures_colors) return Ok();
-    if (state.required.empty() || request.guides.empty()) {
-      SCUMBLE_RETURN_IF_ERROR(finish(sequence->frames.front(), "", progress));
-      return Ok();
-    }
-    const std::string options = looks ? "--finish-measures" : "--set finish.NAME.from of a palette";
+    const std::string colors_option = "--set finish.NAME.from of a palette";
+    const auto measure_colors = [&](int frame) -> Status {
+      const Expected<FrameWrite> finished = finish(frame, "", progress);
+      return finished ? Ok() : Status(CannotMeasure(finished.error(), frame, colors_option));
+    };
+    if (state.required.empty() || request.guides.empty()) return measure_colors(sequence->frames.front());
+    const std::string options = looks ? "--finish-measures" : colors_option;
     const auto guides_at = [&](int frame) {
       const std::string file = guides.At(frame);
       return ReadGuides(file, ReadOptions(request, state.required, file, camera.At(frame)));
     };
     const auto measure = [&](int frame, const GuideSet& set) -> Status {
       if (looks) state.measures = MeasureAndTell(set, set.layers(), frame, context);
-      if (measures_colors) SCUMBLE_RETURN_IF_ERROR(finish(frame, "", progress));
-      return Ok();
+      return measures_colors ? measure_colors(frame) : Ok();
     };
     FrameToMeasure choice;
     for (const int frame : sequence->frames) {

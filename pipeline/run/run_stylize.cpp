@@ -86,7 +86,11 @@ Expected<RunReport> StylizeSequence(const StylizeRequest& request, const Sequenc
     const bool look = sequence.frames.size() > 1 && (may_want || pictures.MustLookAhead(sequence));
     if (look && wanted.front() != first) wanted.insert(wanted.begin(), first);
     SCUMBLE_RETURN_IF_ERROR(scene.Start(wanted, progress));
-    if (look && !pictures.MustLookAhead(sequence) && !guides_ahead(first, {})) return Ok();  // reported when it is made
+    if (look && !pictures.MustLookAhead(sequence)) {
+      const Expected<FrameGuides> seen = guides_ahead(first, {});
+      if (!seen && seen.error().kind != ErrorKind::kInput) return seen.error();
+      if (!seen) return Ok();  // reported when it is made
+    }
     SCUMBLE_RETURN_IF_ERROR(pictures.Begin(sequence, width, height, guides_ahead, {}));
     return looks_further ? scene.Restart(frames) : Ok();
   };

@@ -111,7 +111,7 @@ class FrameCounters {
     ++totals_.kept;
     if (listener_.kept) listener_.kept(frame, sequence_.output.At(frame));
   }
-  bool HasAny() const { return totals_.made + totals_.kept > 0; }
+  bool HasAny() const { return totals_.made + totals_.kept > 0 || !totals_.failed.empty(); }
   // The error that ends the sequence, unless the other frames may go better.
   Status Fail(int frame, const Error& error) {
     if (error.kind != ErrorKind::kInput) return Error{error.kind, fmt::format("frame {}: {}", frame, error.message)};
@@ -208,23 +208,27 @@ Expected<SequenceTotals> RunSequence(const Sequence& sequence, const SequenceWor
                                      const Progress& progress) {
   Stopwatch watch;
   FrameCounters counters(sequence, listener, context);
-  std::vector<int> frames;
-  for (const int frame : sequence.frames) {
-    bool keep = false;
-    if (sequence.resume) {
-      SCUMBLE_ASSIGN(keep, CanKeep(sequence, work, frame, context));
-    }
-    if (keep) {
-      counters.Kept(frame);
-    } else {
+  const auto run = [&]() -> Status {
+    std::vector<int> frames;
+    for (const int frame : sequence.frames) {
+      bool keep = false;
+      if (sequence.resume) {
+        SCUMBLE_ASSIGN(keep, CanKeep(sequence, work, frame, context));
+      }
+      if (keep) {
+        counters.Kept(frame);
+        continue;
+      }
       const std::string output = sequence.output.At(frame);
       if (IsWriteProtected(output)) SCUMBLE_RETURN_IF_ERROR(CheckWritable(output));  // which says so
       frames.push_back(frame);
     }
-  }
-  if (!frames.empty())
-    SCUMBLE_RETURN_IF_ERROR(work.begin(frames, Within(progress, 0.0, 1.0 / static_cast<double>(frames.size() + 1))));
-  const Status made = MakeFrames(frames, sequence, work, counters, context, progress);
+    if (frames.empty()) return Ok();
+    const double beginning = 1.0 / static_cast<double>(frames.size() + 1);
+    SCUMBLE_RETURN_IF_ERROR(work.begin(frames, Within(progress, 0.0, beginning)));
+    return MakeFrames(frames, sequence, work, counters, context, progress);
+  };
+  const Status made = run();
   if (!made && !counters.HasAny()) return made.error();
   SequenceTotals totals = counters.Totals(watch.Lap());
   if (!made) totals.ended_by = made.error();

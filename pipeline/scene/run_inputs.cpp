@@ -92,13 +92,15 @@ void RunInputs::ReadsStyles(const StyleSet& styles) {
 }
 
 Status RunInputs::CheckOutputs(std::span<const std::string> outputs, const std::string& option, bool resumes) {
-  checked_ = inputs_.size();
+  const std::size_t read = inputs_.size();
+  checked_ = kNever;  // until all of them have passed
   for (const std::string& output : outputs) {
     const auto identity = IdentityOf(output);
     const auto found = identity ? inputs_.find(*identity) : inputs_.end();
     if (found == inputs_.end()) continue;
     const Input& input = found->second;
-    const std::string also = input.path == output ? "" : ", by the name " + input.path;
+    const bool is_named_so = fs::path(input.path).lexically_normal() == fs::path(output).lexically_normal();
+    const std::string also = is_named_so ? "" : ", by the name " + input.path;
     return UsageError(option + " " + output + " would overwrite " + input.what + also + ": give another name");
   }
   std::error_code failed;
@@ -111,6 +113,7 @@ Status RunInputs::CheckOutputs(std::span<const std::string> outputs, const std::
     if (look) SCUMBLE_RETURN_IF_ERROR(CheckWritable(output));
     knows_folder = true;
   }
+  checked_ = read;
   return Ok();
 }
 

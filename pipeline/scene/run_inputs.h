@@ -41,12 +41,13 @@ class RunInputs {
   // Files that a text names in quotes, from a folder.
   void ReadsQuoted(const std::string& what, const std::string& file, const std::string& folder);
 
+  static constexpr std::size_t kNever = static_cast<std::size_t>(-1);
   struct Input {
     std::string what, path;
   };
   std::map<std::pair<unsigned long, unsigned long>, Input> inputs_;  // by device and file number
   std::size_t styles_ = 0;                                           // opened when they were read
-  std::size_t checked_ = 0;                                          // inputs when outputs were checked
+  std::size_t checked_ = 0;                                          // inputs when outputs passed, or kNever
 };
 
 }  // namespace scumble

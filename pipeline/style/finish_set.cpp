@@ -296,7 +296,9 @@ std::vector<FinishStep> FinishStepsOf(const StyleSet& styles, const GuideSet& gu
     if (std::find(shows.begin(), shows.end(), 0) == shows.end()) shows.clear();
   }
   for (const FinishPass& pass : styles.finish.passes) {
-    FinishStep& step = steps.emplace_back(FinishStep{pass, shows});
+    // What lies on the sheet and reads no guides is also of what shows behind.
+    const bool is_of_all = pass.at == FinishPass::Stage::kSheet && RequiredLayers(pass).empty();
+    FinishStep& step = steps.emplace_back(FinishStep{pass, is_of_all ? std::vector<std::uint8_t>() : shows});
     step.reference_height = styles.first().transfer.reference_height;
     Fit(guides, tell, step);
     keeper.Fit("", step);

@@ -18,7 +18,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 import odd_materials  # noqa: E402  (Blender does not put a script's own folder on the path)
 import odd_objects  # noqa: E402
 
-COLUMNS, ROWS = 8, 5
+COLUMNS, ROWS = 8, 6
 
 
 def save(folder, name):

@@ -225,8 +225,9 @@ def holes():
         plane("Holes " + name, 24 + number, material)
 
 
-def mixed(name, kind, transparent, image=None, output="Alpha", factor=1.0, invert=""):
-    """A Mix Shader of a shader and Transparent, which is its first or second input. `invert`: a node on the way."""
+def mixed(name, kind, transparent, image=None, output="Alpha", factor=1.0, invert="", colored=True):
+    """A Mix Shader of a shader and Transparent, which is its first or second input. `invert`: a node on the way.
+    `colored`: by an image whose alpha is the factor, too."""
     material, tree, mix = shader(name, "ShaderNodeMixShader")
     mix.inputs["Fac"].default_value = factor
     clear, other = (tree.nodes.new("ShaderNode" + one) for one in ("BsdfTransparent", kind))
@@ -236,7 +237,7 @@ def mixed(name, kind, transparent, image=None, output="Alpha", factor=1.0, inver
         texture = tree.nodes.new("ShaderNodeTexImage")
         texture.image, texture.interpolation = image, "Closest"
         source = texture.outputs[output]
-        if output == "Alpha" and invert != "Math":  # Cycles forgets colours where alpha is 0
+        if output == "Alpha" and colored and invert != "Math":  # Cycles forgets colours where alpha is 0
             tree.links.new(texture.outputs["Color"], other.inputs[0])
         if invert:
             node = tree.nodes.new("ShaderNode" + invert)
@@ -259,6 +260,7 @@ def leaves():
     plane("LeafSwapped", 34, mixed("leaf swapped", "BsdfPrincipled", 1, leaf, invert="Invert"))
     plane("LeafMask", 31, mixed("leaf mask", "BsdfDiffuse", 1, mask, "Color"))
     plane("LeafMath", 36, mixed("leaf math", "BsdfDiffuse", 0, leaf, invert="Math"))
+    plane("LeafShape", 40, mixed("leaf shape", "BsdfPrincipled", 0, leaf, colored=False))
     plane("Unseen", 37, shader("unseen", "ShaderNodeBsdfTransparent")[0])
     plane("UnseenMix", 38, mixed("unseen mix", "BsdfDiffuse", 0, factor=0.0))
 

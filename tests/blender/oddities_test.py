@@ -72,7 +72,7 @@ def check_odd(document, extras):
     shared = {primitives(name)[0]["material"] for name in nodes if name.startswith("Order ")}
     expect(len(shared) == 1, "one material for all orders of UV maps", shared)
     modes = {material["name"]: material.get("alphaMode", "OPAQUE") for material in document["materials"]}
-    for name in ("leaf", "leaf swapped", "leaf mask", "leaf math", "unseen", "unseen mix"):
+    for name in ("leaf", "leaf swapped", "leaf mask", "leaf math", "leaf shape", "unseen", "unseen mix"):
         expect(modes[name] == "BLEND", "holes by a Mix Shader with Transparent", name, modes[name])
     expect(materials["leaf"]["type"] == "DIFFUSE" and materials["leaf swapped"]["type"] == "PRINCIPLED", materials)
     expect(abs(materials["glow"]["strength"] - 0.7152) < 1e-6, materials["glow"])
@@ -81,7 +81,7 @@ def check_odd(document, extras):
 
 
 def check_against_cycles(program, blender, scene):
-    done = run([program, "crosscheck", scene, "--blender", blender, "--size", "320x200", "--samples", "1", "-q",
+    done = run([program, "crosscheck", scene, "--blender", blender, "--size", "320x240", "--samples", "1", "-q",
                 "--json"])
     expect(done.stdout, done.stderr)
     report = json.loads(done.stdout)

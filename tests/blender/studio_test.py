@@ -72,7 +72,7 @@ def main():
         expect(status == 200, status, body[:500])
         state = studio.json("GET", "/api/state")
         expect(state["objects"] == ["Cube"] and state["cameras"] == ["Camera"], state)
-        expect(state["animation"] == {"first": 1, "last": 20, "fps": 24.0}, state["animation"])
+        expect(state["animation"] == {"first": 1, "last": 20, "fps": 24.0, "saved": 1}, state["animation"])
         seen = {"at first": picture(studio)}
         expect(by_command(program, studio, folder) == seen["at first"], "the first picture is not the command's")
         studio.json("PATCH", "/api/state", {"frame": 20})

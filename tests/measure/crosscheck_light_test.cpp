@@ -95,6 +95,7 @@ TEST(CrosscheckLight, AFigureIsKeptOnlyIfItsErrorLeavesNoDoubt) {
   EXPECT_FALSE(figure.TooNoisy());
   figure.must_prove = false, figure.error = 0.1;
   EXPECT_TRUE(figure.kept()) << "1.4 is possible";
+  EXPECT_TRUE(figure.Unjudged());
   figure.value = std::nan("");
   EXPECT_FALSE(figure.kept());
 }

@@ -64,6 +64,7 @@ TEST_F(MemoryNeedTest, NothingTakesMoreThanItSays) {
   ExpectHonest(With(stylize, {"-o", "p.png", "--finish", "storybook", "--finish", "smooth", "--finish", "edges"}));
   ExpectHonest(With(stylize, {"-o", "p.png", "--finish", "comic", "--layers-out", "l.ora"}));
   ExpectHonest(With(stylize, {"-o", "p.png", "--finish", "hatch", "--show", "finish:hatch"}));
+  ExpectHonest(With(stylize, {"-o", "p.png", "--finish", "hatch", "--set", "finish.hatch.stick=true"}));
   ExpectHonest({"guidegen", Scene("snail.glb"), "--size", "800", "--layers", "luminance,shadow", "-o", "s.exr"});
   ExpectHonest({"transfer", "s.exr", "--style", "style", "--finish", "charcoal-lines", "-o", "p.png"});
   ExpectHonest({"finish", "p.png", "s.exr", "--finish", "charcoal-lines", "-o", "f.png"});

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string>
+#include <vector>
 
 #include "core/io/channel_file.h"
 #include "core/io/guide_file.h"
@@ -11,6 +12,18 @@ namespace {
 
 bool ShareAName(const ChannelImage& a, const ChannelImage& b) {
   return std::any_of(a.names.begin(), a.names.end(), [&](const std::string& name) { return b.Find(name); });
+}
+
+// A grey picture has the channel Y: beside a coloured one it stands for all three.
+void SpreadGrey(const ChannelImage& other, ChannelImage& image) {
+  const std::vector<float>* const grey = image.Find("Y");
+  if (!grey || image.Find("R") || other.Find("Y") || !other.Find("R")) return;
+  const auto at = std::size_t(std::find(image.names.begin(), image.names.end(), "Y") - image.names.begin());
+  image.names[at] = "R";
+  for (const char* const name : {"G", "B"}) {
+    image.names.push_back(name);
+    image.planes.push_back(image.planes[at]);
+  }
 }
 
 struct GuideFile {
@@ -82,6 +95,8 @@ Expected<ComparedFiles> ReadToCompare(const CompareVerb& verb, const Globals& gl
   ComparedFiles files;
   SCUMBLE_ASSIGN(files.a, ReadChannels(verb.a));
   SCUMBLE_ASSIGN(files.b, ReadChannels(verb.b));
+  SpreadGrey(files.b, files.a);
+  SpreadGrey(files.a, files.b);
   if (ShareAName(files.a, files.b)) return files;
   const Expected<GuideFileInfo> a = InspectGuides(verb.a), b = InspectGuides(verb.b);
   if (!a || !b) return files;  // pictures: Compare says that they have no name in common

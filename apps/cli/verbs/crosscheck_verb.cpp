@@ -176,11 +176,14 @@ void JudgeByBaseline(const std::string& file, const Baseline& baseline, const Gl
   for (const std::string& note : ApplyBaseline(baseline, name, report)) globals.Warn(file + ": " + note);
 }
 
-// An error stops every other scene too: Blender is missing.
-Expected<CheckedScenes> CheckAllScenes(const CrosscheckVerb& verb, const Baseline& baseline, const Globals& globals) {
+// An error stops every other scene too: Blender is missing. `files` is told what each scene consists of.
+Expected<CheckedScenes> CheckAllScenes(const CrosscheckVerb& verb, const Baseline& baseline, const Globals& globals,
+                                       RunInputs& files) {
   CheckedScenes checked;
+  CrosscheckRequest request = verb.request;
   for (const std::string& scene : verb.scenes) {
-    Expected<CrosscheckReport> made = CrosscheckScene(verb.request, scene, globals);
+    request.on_file = files.ReadsScene(scene);
+    Expected<CrosscheckReport> made = CrosscheckScene(request, scene, globals);
     CrosscheckReport report;
     if (made) {
       report = std::move(*made);
@@ -218,14 +221,14 @@ Expected<ExitCode> RunCrosscheckVerb(CrosscheckVerb verb, const Globals& globals
   verb.request.heat_maps = !verb.html.empty();
   SCUMBLE_RETURN_IF_ERROR(CheckScenes(verb));
   RunInputs files;
-  for (const std::string& scene : verb.scenes) verb.request.on_file = files.ReadsScene(scene);
+  for (const std::string& scene : verb.scenes) files.Reads("the scene", scene);
   SCUMBLE_RETURN_IF_ERROR(CheckTargets(verb, files));
   Baseline baseline;
   if (!verb.baseline.empty()) {
     SCUMBLE_ASSIGN(baseline, ReadBaseline(verb.baseline));
     SCUMBLE_RETURN_IF_ERROR(CheckBaselineFits(verb, baseline, globals));
   }
-  SCUMBLE_ASSIGN(const CheckedScenes checked, CheckAllScenes(verb, baseline, globals));
+  SCUMBLE_ASSIGN(const CheckedScenes checked, CheckAllScenes(verb, baseline, globals, files));
   if (globals.json) Print(CrosscheckToJson(checked.reports));
   // Once more: what the scenes consist of is known now.
   if (!verb.html.empty()) SCUMBLE_RETURN_IF_ERROR(files.CheckOutput(verb.html));

@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "apps/cli/app/command.h"
 #include "apps/cli/app/json_text.h"
@@ -122,7 +123,7 @@ Json ToJson(const KeyValue& value) {
   return std::visit([](const auto& held) { return Json(held); }, value);
 }
 
-// The effect, and the keys that differ from its defaults.
+// The effect, the keys that differ from its defaults, its name where it has another one, and what it is for.
 std::string Describe(const FinishPass& pass) {
   std::string text = EffectOf(pass).name;
   const FinishPass plain{"", EffectOf(pass).defaults, FinishPass::Stage::kPaint, 1.0, {}, {}};
@@ -132,6 +133,12 @@ std::string Describe(const FinishPass& pass) {
       if (value != key.get(plain)) text += fmt::format(" {}={}", key.name, ToText(value));
     }
   }
+  if (pass.name != EffectOf(pass).name) text += fmt::format(" name=\"{}\"", pass.name);
+  const auto lists = [&](const char* key, const std::vector<std::string>& names) {
+    if (!names.empty()) text += fmt::format(" {}=[\"{}\"]", key, fmt::join(names, "\", \""));
+  };
+  lists("objects", pass.objects);
+  lists("materials", pass.materials);
   return text;
 }
 

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <string>
 
 #include "core/io/file/pending_temporaries.h"
 
@@ -84,6 +85,15 @@ struct Target {
   bool is_special = false;
 };
 
+// The mode of a file is its owner's to change, or root's.
+std::string RemedyForProtected(const fs::path& target) {
+  struct stat file;
+  const uid_t user = ::geteuid();
+  const bool is_of_another = user != 0 && ::stat(target.c_str(), &file) == 0 && file.st_uid != user;
+  return is_of_another ? "it belongs to another user: give another name"
+                       : "make it writable, as chmod u+w does, or give another name";
+}
+
 Expected<Target> CheckTarget(const fs::path& path) {
   SCUMBLE_ASSIGN(const fs::path target, FollowLinks(path));
   std::error_code ignored;
@@ -91,8 +101,9 @@ Expected<Target> CheckTarget(const fs::path& path) {
   if (fs::is_directory(status)) return OutputError("cannot write " + path.string() + ": it is a folder");
   if (fs::exists(status) && !fs::is_regular_file(status)) return Target{target, status, true};
   if (fs::exists(status) && IsWriteProtected(target)) {
-    return OutputError("cannot write " + path.string() + ": it is write-protected (" + std::strerror(errno) +
-                       "): make it writable, as chmod u+w does, or give another name");
+    const std::string reason = std::strerror(errno);  // before the remedy looks at the file
+    return OutputError("cannot write " + path.string() + ": it is write-protected (" + reason +
+                       "): " + RemedyForProtected(target));
   }
   const fs::path folder = target.parent_path();
   if (!folder.empty() && !fs::exists(folder, ignored)) {

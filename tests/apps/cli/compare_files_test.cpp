@@ -44,6 +44,18 @@ TEST_F(CliCompareFiles, TheViewLayerIsChosen) {
   RunOk({"compare", "layers.exr", "layers.exr", "--view-layer", "Far"});
 }
 
+TEST_F(CliCompareFiles, GreyIsAllThreeColours) {
+  const OIIO::ImageSpec spec(2, 1, 1, OIIO::TypeDesc::FLOAT);
+  const auto tone = [](std::size_t i) { return i == 0 ? 0.25f : 0.5f; };
+  const auto same = [&](std::size_t, std::size_t i) { return tone(i); };
+  WriteExr(At("grey.exr"), spec, {"Y"}, same);
+  WriteExr(At("same.exr"), spec, {"R", "G", "B"}, same);
+  WriteExr(At("other.exr"), spec, {"R", "G", "B"},
+           [&](std::size_t c, std::size_t i) { return tone(i) + (c == 0 ? 0.25f : 0.0f); });
+  RunOk({"compare", "grey.exr", "same.exr"});
+  EXPECT_EQ(Run({"compare", "other.exr", "grey.exr"}).code, 1);
+}
+
 TEST_F(CliCompareFiles, WhatCannotBeChosenIsRefused) {
   WriteLayers("layers.exr", {"Near", "Far"});
   ExpectError({"compare", "ours.exr", "layers.exr"}, 3, {"layers.exr", "'Far', 'Near'", "--view-layer"});

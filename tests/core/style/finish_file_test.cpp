@@ -91,6 +91,10 @@ TEST_F(FinishFile, MistakesNameFileLineAndRemedy) {
   EXPECT_THAT(of_toon("shading = \"gouch\"\n"), HasSubstr("did you mean \"gooch\"?"));
   for (const char* const wrong : {"0.6 0.2", "0.2 x", "0 0.5", "0.5 1", "0.2, 0.4"})
     EXPECT_THAT(of_toon("thresholds = \"" + std::string(wrong) + "\"\n"), HasSubstr("expected growing numbers"));
+  EXPECT_THAT(of_toon("thresholds = 1.5\n"), HasSubstr("expected growing numbers"));
+  FinishPass two_bands = *MakeFinishPass("toon");
+  EXPECT_TRUE(SetFinishKey(two_bands, "thresholds", KeyValue(0.5))) << "one needs no quotes";
+  EXPECT_THAT(std::get<ToonPass>(two_bands.effect).thresholds, ::testing::ElementsAre(0.5));
   EXPECT_THAT(of_toon("wrap_power = 3\n"), HasSubstr("expected a whole number, 1 to 2"));
   EXPECT_THAT(of_toon("ramp_rows = \"u\"\n"), HasSubstr("expected \"depth\", \"facing\" or \"highlight\""));
   EXPECT_THAT(of_toon("ramp = \"#000000 white\"\n"), HasSubstr("finish.ramp: white is no colour"));

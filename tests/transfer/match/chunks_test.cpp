@@ -46,7 +46,7 @@ void ExpectAcceptanceRule(const GuideSet& guides, const Style& style, const Sour
     ASSERT_EQ(field.level[i] != SourceField::kNoSource, covered);
     if (!covered) continue;
     ASSERT_TRUE(exemplar.Usable(field.x[i], field.y[i]));
-    const glm::vec3 n = guides.Vec3(Layer::kNormal, i);
+    const glm::vec3 n = exemplar.WithinRim(guides.Vec3(Layer::kNormal, i));
     if (exemplar.NearestNeighbour(n) == Source{field.x[i], field.y[i]}) continue;
     const glm::dvec3 d = glm::dvec3(n) - glm::dvec3(exemplar.Normal(field.x[i], field.y[i]));
     ASSERT_LT(std::sqrt(glm::dot(d, d)), threshold + 1e-6);

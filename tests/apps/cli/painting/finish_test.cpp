@@ -220,6 +220,20 @@ TEST_F(CliFinish, CatchersHaveNoLines) {
   EXPECT_EQ(std::count(nothing.rgba.begin(), nothing.rgba.end(), 0), std::ptrdiff_t(nothing.rgba.size()));
 }
 
+// Black and white is the whole sheet, where a catcher shows what is behind, too.
+TEST_F(CliFinish, WhatIsOfTheSheetAndReadsNoGuidesIsAlsoOfCatchers) {
+  WriteStyle("paper", "[transfer]\npaper = \"#8090ff\"\nshadow = \"paint\"\n");
+  for (const char* const place : {"catcher", "rendered"}) {
+    RunOk({"stylize", kToys, "--size", "96x54", "--style", "paper", "--assign", std::string("Table=") + place,
+           "--finish", "noir", "-o", "p.png"});
+    const Picture picture = Read("p.png");
+    for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
+      const auto [least, most] = std::minmax({picture.rgba[i], picture.rgba[i + 1], picture.rgba[i + 2]});
+      ASSERT_LE(most - least, 2 * 257) << place << ", pixel " << i / 4;
+    }
+  }
+}
+
 // Light that a pass has flattened is matched as flat light is, and base colours tint as they are then.
 TEST_F(CliFinish, ChangesGuidesBeforePaintIsMatched) {
   WriteStyle("tinted", "[transfer]\ncolorize = 1\n");
