@@ -38,7 +38,7 @@ struct PlainSource {
 inline PlainSource PlainSourceAt(const GuideSet& guides, const PreparedExemplar& exemplar,
                                  const TransferSettings& settings, int x, int y, std::uint64_t seed = kPlainSeed) {
   const auto coverage = guides.Plane(Layer::kCoverage);
-  const glm::vec3 normal = guides.Vec3(Layer::kNormal, guides.Index(x, y));
+  const glm::vec3 normal = exemplar.WithinRim(guides.Vec3(Layer::kNormal, guides.Index(x, y)));
   for (int level = settings.levels - 1; level >= 1; --level) {
     PixelPosition q;
     std::int64_t nearest = std::numeric_limits<std::int64_t>::max();
@@ -52,7 +52,7 @@ inline PlainSource PlainSourceAt(const GuideSet& guides, const PreparedExemplar&
     }
     if (q.x < 0 || q.y < 0 || q.x >= guides.width() || q.y >= guides.height()) continue;
     if (!(coverage[guides.Index(q.x, q.y)] > 0.0f)) continue;
-    const Source u = exemplar.NearestNeighbour(guides.Vec3(Layer::kNormal, guides.Index(q.x, q.y)));
+    const Source u = exemplar.NearestNeighbour(exemplar.WithinRim(guides.Vec3(Layer::kNormal, guides.Index(q.x, q.y))));
     const PlainSource candidate{u.x + x - q.x, u.y + y - q.y, level};
     if (!exemplar.Usable(candidate.x, candidate.y)) continue;
     if (PlainAlike(normal - exemplar.Normal(candidate.x, candidate.y), settings)) return candidate;

@@ -293,6 +293,8 @@ Status CheckScanSize(int width, int height, double dpi, const std::string& name)
 }
 
 std::optional<TemplateFit> FindTemplate(Picture picture) {
+  // Smaller templates have no marks, and the search is not made for a few pixels.
+  if (!FiducialsFit(std::min(picture.width, picture.height))) return std::nullopt;
   LayOnWhite(picture);
   return FitTemplate(FindMarks(picture, kCoarsestSearch), picture.width, picture.height);
 }
