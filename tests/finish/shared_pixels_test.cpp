@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <memory>
 #include <vector>
 
@@ -138,6 +139,19 @@ TEST(SharedPixels, ContoursKeepTheBytesThatNoStepChanges) {
   step.only.assign(guides.pixel_count(), 0);
   const Picture paint = ColorfulPicture(64, 64);
   EXPECT_EQ(Finished(step, &guides, paint).rgba, paint.rgba);
+}
+
+// Beside a contour, too, a step changes the pixel's own paint, by its strength.
+TEST(SharedPixels, ContoursChangeNoMoreThanTheStepsDo) {
+  const GuideSet guides = SlantedShadow(64, 20.4, 0.23);
+  FinishStep step = StepOf(ShadowsPass());
+  step.pass.strength = 0.01;
+  const Picture paint = ColorfulPicture(64, 64), made = Finished(step, &guides, paint);
+  int most = 0;
+  for (std::size_t i = 0; i < paint.rgba.size(); ++i)
+    most = std::max(most, std::abs(int(made.rgba[i]) - int(paint.rgba[i])));
+  EXPECT_GT(most, 0);
+  EXPECT_LT(most, 3 * 257);
 }
 
 // Two objects, the first above a line, with the fragments of exact areas.
