@@ -99,7 +99,7 @@ Status RunInputs::CheckOutputs(std::span<const std::string> outputs, const std::
     const auto found = identity ? inputs_.find(*identity) : inputs_.end();
     if (found == inputs_.end()) continue;
     const Input& input = found->second;
-    const bool is_named_so = fs::path(input.path).lexically_normal() == fs::path(output).lexically_normal();
+    const bool is_named_so = fs::path(input.path).lexically_normal() == fs::path(output);
     const std::string also = is_named_so ? "" : ", by the name " + input.path;
     return UsageError(option + " " + output + " would overwrite " + input.what + also + ": give another name");
   }
