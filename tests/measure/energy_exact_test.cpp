@@ -6,7 +6,7 @@
 #include <limits>
 #include <tuple>
 
-#include "tests/support/energy_fixtures.h"
+#include "tests/measure/energy_fixtures.h"
 
 namespace scumble::testing {
 namespace {

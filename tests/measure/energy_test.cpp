@@ -9,7 +9,7 @@
 #include <optional>
 #include <string>
 
-#include "tests/support/energy_fixtures.h"
+#include "tests/measure/energy_fixtures.h"
 #include "tests/support/transfer_fixtures.h"
 
 namespace scumble::testing {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/support/energy_fixtures.h"
+#include "tests/measure/energy_fixtures.h"
 
 namespace scumble::testing {
 namespace {

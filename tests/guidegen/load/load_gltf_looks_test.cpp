@@ -1,7 +1,7 @@
 // Materials, vertex colours, cameras and lights of glTF.
 #include <cmath>
 
-#include "tests/support/load_gltf.h"
+#include "tests/guidegen/load/load_gltf.h"
 #include "tests/support/numbers.h"
 
 namespace scumble {

@@ -1,5 +1,5 @@
 // Meshes, objects and files of glTF. load_gltf_looks_test.cpp has materials, cameras and lights.
-#include "tests/support/load_gltf.h"
+#include "tests/guidegen/load/load_gltf.h"
 
 #include <cmath>
 
