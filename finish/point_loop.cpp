@@ -167,15 +167,35 @@ class Mixture {
   Texel first_ = {};
 };
 
+// What the steps make of parts of a pixel; the rest of it is as they leave the pixel itself.
 struct Painted {
   std::size_t pixel;
-  Texel texel;
+  Mixture parts;
+  float rest;
 };
 
 void Put(std::span<const Painted> painted, Picture& picture) {
-  for (const auto& [pixel, texel] : painted)
-    std::copy_n(texel.begin(), 3, picture.rgba.begin() + 4 * std::ptrdiff_t(pixel));
+  for (const Painted& one : painted) {
+    const auto texel = picture.rgba.begin() + 4 * std::ptrdiff_t(one.pixel);
+    Mixture mixture = one.parts;
+    if (one.rest > 0.0f) mixture.Add({texel[0], texel[1], texel[2], texel[3]}, one.rest);
+    const Texel color = mixture.Color();
+    std::copy_n(color.begin(), 3, texel);
+  }
 }
+
+// A row of a picture as it was before the steps.
+struct GivenRow {
+  int y;
+  std::size_t first;  // pixel
+  std::vector<std::uint16_t> texels;
+
+  std::size_t width() const { return texels.size() / 4; }
+  Texel Of(std::size_t pixel) const {
+    const std::uint16_t* const texel = texels.data() + 4 * (pixel - first);
+    return {texel[0], texel[1], texel[2], texel[3]};
+  }
+};
 
 // The parts of pixels one after the other, and the paint of each without the steps.
 struct Batch {
@@ -183,27 +203,16 @@ struct Batch {
   std::vector<Texel> paint;
 };
 
-// The pixels whose parts the steps change.
-std::vector<Painted> PaintParts(std::span<const PointStep> steps, const Batch& batch, const Picture& picture) {
+// What the steps make of each part.
+std::vector<Texel> PaintParts(std::span<const PointStep> steps, const Batch& batch, const GivenRow& row) {
   const std::size_t count = batch.parts.size();
   std::vector<Texel> made = batch.paint, alphas(count);
-  for (std::size_t i = 0; i < count; ++i) alphas[i][3] = picture.rgba[4 * batch.parts[i].pixel + 3];
+  for (std::size_t i = 0; i < count; ++i) alphas[i][3] = row.Of(batch.parts[i].pixel)[3];
   for (std::size_t i = 0; i < count; i += kOklabBlock) {
     const Pixels some{0, std::min(kOklabBlock, count - i), alphas[i].data(), batch.parts.data() + i};
     PaintBlock(steps, some, made[i].data());
   }
-  std::vector<Painted> painted;
-  for (std::size_t i = 0; i < count;) {
-    const std::size_t pixel = batch.parts[i].pixel;
-    Mixture mixture;
-    bool changes = false;
-    for (; i < count && batch.parts[i].pixel == pixel; ++i) {
-      changes = changes || made[i] != batch.paint[i];
-      mixture.Add(made[i], batch.parts[i].share);
-    }
-    if (changes) painted.push_back({pixel, mixture.Color()});
-  }
-  return painted;
+  return made;
 }
 
 // The pixels that several surfaces share.
@@ -220,21 +229,35 @@ class SharedPixels {
   }
 
   // What they become in a row.
-  std::vector<Painted> Paint(int y, const Picture& picture) const {
+  std::vector<Painted> Paint(const GivenRow& row) const {
     if (!fragments_) return {};
-    const std::size_t width = static_cast<std::size_t>(picture.width), begin = std::size_t(y) * width;
-    const std::size_t end = fragments_->From(begin + width);
+    const std::size_t end = fragments_->From(row.first + row.width());
     Batch batch;
-    for (std::size_t first = fragments_->From(begin); first < end;) {
+    for (std::size_t first = fragments_->From(row.first); first < end;) {
       Shared shared{fragments_->pixel[first], first, first};
       while (shared.end < end && fragments_->pixel[shared.end] == shared.pixel) ++shared.end;
       first = shared.end;
-      if (picture.rgba[4 * shared.pixel + 3] != 0) AddParts(shared, picture.rgba.data() + 4 * shared.pixel, batch);
+      if (row.Of(shared.pixel)[3] != 0) AddParts(shared, row.Of(shared.pixel), batch);
     }
-    return PaintParts(steps_, batch, picture);
+    return Changed(batch, PaintParts(steps_, batch, row));
   }
 
  private:
+  // The pixels that a step changes a part of: others keep their bits.
+  static std::vector<Painted> Changed(const Batch& batch, std::span<const Texel> made) {
+    std::vector<Painted> painted;
+    for (std::size_t i = 0; i < made.size();) {
+      Painted one{batch.parts[i].pixel, {}, 0.0f};
+      bool changes = false;
+      for (; i < made.size() && batch.parts[i].pixel == one.pixel; ++i) {
+        changes = changes || made[i] != batch.paint[i];
+        one.parts.Add(made[i], batch.parts[i].share);
+      }
+      if (changes) painted.push_back(one);
+    }
+    return painted;
+  }
+
   struct Shared {
     std::size_t pixel, first, end;  // with its fragments
   };
@@ -274,18 +297,17 @@ class SharedPixels {
   }
 
   // The paint of the surfaces of a pixel before they were mixed; null: it is not known.
-  const FragmentColors* ColorsOf(const Shared& shared, const std::uint16_t* texel) const {
+  const FragmentColors* ColorsOf(const Shared& shared, const Texel& texel) const {
     const FragmentColors* const colors = frame_.colors;
     if (!colors || colors->own.size() != fragments_->count()) return nullptr;
     const Texel& mixed = colors->mixed[shared.first];
-    return std::equal(mixed.begin(), mixed.begin() + 3, texel) ? colors : nullptr;  // else something has changed it
+    return std::equal(mixed.begin(), mixed.begin() + 3, texel.begin()) ? colors
+                                                                       : nullptr;  // else something has changed it
   }
 
-  void AddParts(const Shared& shared, const std::uint16_t* texel, Batch& batch) const {
+  void AddParts(const Shared& shared, const Texel& given, Batch& batch) const {
     const std::size_t pixel = shared.pixel;
-    Texel given;
-    std::copy_n(texel, 4, given.begin());
-    const FragmentColors* const colors = ColorsOf(shared, texel);
+    const FragmentColors* const colors = ColorsOf(shared, given);
     const auto add = [&](const Texel& paint, std::size_t like, float share) {
       batch.parts.push_back({pixel, like, share});
       batch.paint.push_back(paint);
@@ -319,22 +341,29 @@ class ContourPixels {
   }
 
   // What they become in a row.
-  std::vector<Painted> Paint(int y, const Picture& picture) const {
+  std::vector<Painted> Paint(const GivenRow& row) const {
     Batch batch;
-    std::vector<std::uint8_t> is_known(contours_.size() > 1 ? static_cast<std::size_t>(picture.width) : 0);
+    std::vector<std::uint8_t> is_known(contours_.size() > 1 ? row.width() : 0);
     for (const Contour& contour : contours_) {
-      contour.light.ForEachInRow(y, [&](int x) {
-        const std::size_t pixel = std::size_t(y) * static_cast<std::size_t>(picture.width) + std::size_t(x);
-        if (!MayChange(*contour.step.step, pixel) || picture.rgba[4 * pixel + 3] == 0) return;
+      contour.light.ForEachInRow(row.y, [&](int x, std::uint32_t sides) {
+        const std::size_t pixel = row.first + std::size_t(x);
+        if (!MayChange(*contour.step.step, pixel) || row.Of(pixel)[3] == 0) return;
         if (!is_known.empty() && is_known[std::size_t(x)] != 0) return;
-        const LightContour::Shares shares = contour.light.SharesBeyond(x, y);
-        const float beyond = (shares[0] + shares[1]) + (shares[2] + shares[3]);
-        if (beyond < kLeastShare) return;
+        const LightContour::Beyond beyond = contour.light.BeyondOf(x, row.y, sides);
+        if (beyond.share < kLeastShare) return;
         if (!is_known.empty()) is_known[std::size_t(x)] = 1;
-        AddParts(pixel, shares, 1.0f - beyond, picture, batch);
+        batch.parts.push_back({pixel, beyond.pixel, beyond.share});
+        batch.paint.push_back(row.Of(pixel));
       });
     }
-    return PaintParts(steps_, batch, picture);
+    const std::vector<Texel> made = PaintParts(steps_, batch, row);
+    std::vector<Painted> painted;
+    for (std::size_t i = 0; i < made.size(); ++i) {
+      const Part& part = batch.parts[i];
+      painted.push_back({part.pixel, {}, 1.0f - part.share});
+      painted.back().parts.Add(made[i], part.share);
+    }
+    return painted;
   }
 
  private:
@@ -346,22 +375,6 @@ class ContourPixels {
 
   static bool MayChange(const FinishStep& step, std::size_t pixel) {
     return (step.only.empty() || step.only[pixel] != 0) && (step.share.empty() || step.share[pixel] != 0);
-  }
-
-  static void AddParts(std::size_t pixel, const LightContour::Shares& shares, float left, const Picture& picture,
-                       Batch& batch) {
-    const auto width = static_cast<std::size_t>(picture.width);
-    const std::size_t beside[4] = {pixel - 1, pixel + 1, pixel - width, pixel + width};
-    Texel paint;
-    std::copy_n(picture.rgba.begin() + 4 * std::ptrdiff_t(pixel), 4, paint.begin());
-    const auto add = [&](std::size_t like, float share) {
-      batch.parts.push_back({pixel, like, share});
-      batch.paint.push_back(paint);
-    };
-    for (std::size_t k = 0; k < 4; ++k) {
-      if (shares[k] > 0.0f) add(beside[k], shares[k]);
-    }
-    add(pixel, left);
   }
 
   std::span<const PointStep> steps_;
@@ -376,15 +389,14 @@ bool PaintPoints(std::span<const PointStep> steps, const FinishFrame& frame, Row
   const SharedPixels shared(steps, frame);
   const ContourPixels contours(steps, frame);
   return ForEachRow({0, 0, picture.width, picture.height}, progress, [&](int y) {
-    const std::vector<Painted> beside = contours.Paint(y, picture), painted = shared.Paint(y, picture);
-    const auto width = static_cast<std::size_t>(picture.width);
+    const auto width = static_cast<std::size_t>(picture.width), begin = std::size_t(y) * width;
+    const GivenRow row{y, begin, {picture.At(0, y), picture.At(0, y) + 4 * width}};
     for (std::size_t x = 0; x < width; x += kOklabBlock) {
-      const std::size_t first = std::size_t(y) * width + x;
       std::uint16_t* const texels = picture.At(static_cast<int>(x), y);
-      PaintBlock(steps, {first, std::min(kOklabBlock, width - x), texels}, texels);
+      PaintBlock(steps, {begin + x, std::min(kOklabBlock, width - x), texels}, texels);
     }
-    Put(beside, picture);
-    Put(painted, picture);
+    Put(contours.Paint(row), picture);
+    Put(shared.Paint(row), picture);
   });
 }
 

@@ -517,12 +517,12 @@ void DrawHatch(const HatchPass& pass, double strength, std::span<const std::uint
   }
   const auto width = static_cast<std::size_t>(picture.width);
   tbb::parallel_for(tbb::blocked_range<int>(0, picture.height, 8), [&](const auto& rows) {
-    std::vector<float> surface(of_light ? width : 0);  // light is the surface's, paint the whole pixel's
+    std::vector<float> of_surface(of_light ? width : 0);  // light is the surface's, paint the whole pixel's
     for (int y = rows.begin(); y != rows.end(); ++y) {
       const std::size_t row = std::size_t(y) * width;
       if (of_light) {
         const auto coverage = frame.guides->Plane(Layer::kCoverage);
-        SurfaceShares(coverage.data() + row, picture.rgba.data() + 4 * row, of_guides, width, surface.data());
+        SurfaceShares(coverage.data() + row, picture.rgba.data() + 4 * row, of_guides, width, of_surface.data());
       }
       for (std::size_t x = 0; x < width; ++x) {
         const std::size_t p = std::size_t(y) * width + x;
@@ -549,7 +549,7 @@ void DrawHatch(const HatchPass& pass, double strength, std::span<const std::uint
           left = share < 1.0f ? left / (1.0f - share) : 1.0f;
         }
         std::uint16_t ink[4] = {pass.ink[0], pass.ink[1], pass.ink[2], 0};
-        const float share = static_cast<float>(strength) * (of_light ? surface[x] : 1.0f);
+        const float share = static_cast<float>(strength) * (of_light ? of_surface[x] : 1.0f);
         ink[3] = static_cast<std::uint16_t>((1.0f - bare) * share * 65535.0f + 0.5f);
         if (ink[3] == 0) continue;
         const std::uint16_t kept = pixel[3];

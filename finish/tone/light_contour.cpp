@@ -1,6 +1,7 @@
 #include "finish/tone/light_contour.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 
@@ -15,12 +16,14 @@ SCUMBLE_WIDE_LOOPS bool Differ(const float* a, const float* b, float least, std:
   return any != 0;
 }
 
-// Adds 1 where pixels differ from others of their object; whether any does.
+// Adds a side where pixels differ from others of their object; whether any does.
 SCUMBLE_WIDE_LOOPS bool MarkSteps(const float* tone, const float* other_tone, const float* object,
-                                  const float* other_object, float least, std::size_t count, std::uint32_t* marks) {
+                                  const float* other_object, float least, std::uint32_t side, std::size_t count,
+                                  std::uint32_t* marks) {
   std::uint32_t any = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    const std::uint32_t mark = (std::fabs(tone[i] - other_tone[i]) > least) & (object[i] == other_object[i]) ? 1u : 0u;
+    const bool differs = (std::fabs(tone[i] - other_tone[i]) > least) & (object[i] == other_object[i]);
+    const std::uint32_t mark = differs ? side : 0u;
     marks[i] |= mark, any |= mark;
   }
   return any != 0;
@@ -63,16 +66,16 @@ bool LightContour::MayHave(int x0, int x1, int y) const {
 // Marks those that have one, objects considered.
 bool LightContour::Mark(int x0, int x1, int y, std::uint32_t* marks) const {
   std::fill_n(marks, x1 - x0, 0u);
-  const auto mark = [&](int from, int to, std::ptrdiff_t other) {
+  const auto mark = [&](int from, int to, std::ptrdiff_t other, std::uint32_t side) {
     const std::ptrdiff_t at = std::ptrdiff_t(y) * width_ + from;
     const float* const tone = light_.tone.data() + at;
     const float* const object = object_.empty() ? tone : object_.data() + at;
     const float* const other_object = object_.empty() ? tone : object + other;
-    return MarkSteps(tone, tone + other, object, other_object, light_.least, std::size_t(std::max(0, to - from)),
+    return MarkSteps(tone, tone + other, object, other_object, light_.least, side, std::size_t(std::max(0, to - from)),
                      marks + from - x0);
   };
-  const bool sideways[2] = {mark(std::max(x0, 1), x1, -1), mark(x0, std::min(x1, width_ - 1), 1)};
-  const bool above = y > 0 && mark(x0, x1, -width_), below = y + 1 < height_ && mark(x0, x1, width_);
+  const bool sideways[2] = {mark(std::max(x0, 1), x1, -1, kLeft), mark(x0, std::min(x1, width_ - 1), 1, kRight)};
+  const bool above = y > 0 && mark(x0, x1, -width_, kAbove), below = y + 1 < height_ && mark(x0, x1, width_, kBelow);
   return sideways[0] || sideways[1] || above || below;
 }
 
@@ -81,9 +84,10 @@ float LightContour::ShareBeyond(int x, int y, int side_x, int side_y) const {
   const float* const tone = light_.tone.data();
   const std::ptrdiff_t pixel = std::ptrdiff_t(y) * width_ + x, side = std::ptrdiff_t(side_y) * width_ + side_x;
   if (!(std::fabs(tone[pixel] - tone[pixel + side]) > light_.least)) return 0.0f;
+  const auto own_object = std::bit_cast<std::uint32_t>(object_.empty() ? 0.0f : object_[std::size_t(pixel)]);
   const auto is_one = [&](std::ptrdiff_t i) {
     const auto place = static_cast<std::size_t>(i);
-    return object_.empty() ? coverage_[place] > 0.0f : object_[place] == object_[std::size_t(pixel)];
+    return object_.empty() ? coverage_[place] > 0.0f : std::bit_cast<std::uint32_t>(object_[place]) == own_object;
   };
   if (!is_one(pixel) || !is_one(pixel + side)) return 0.0f;
   const float own = tone[pixel] * light_.per_tone, other = tone[pixel + side] * light_.per_tone;
@@ -94,7 +98,8 @@ float LightContour::ShareBeyond(int x, int y, int side_x, int side_y) const {
     border = std::max(band(own), band(other));
   }
   const bool is_bright = own >= border;
-  const auto is_own_side = [&](std::ptrdiff_t i) { return (tone[i] * light_.per_tone >= border) == is_bright; };
+  const float border_tone = border / light_.per_tone;
+  const auto is_own_side = [&](std::ptrdiff_t i) { return (tone[i] >= border_tone) == is_bright; };
   const bool along_x = side_x == 0;
   const std::ptrdiff_t along = along_x ? 1 : width_;
   const bool has_row_behind =
@@ -124,14 +129,16 @@ float LightContour::ShareBeyond(int x, int y, int side_x, int side_y) const {
   return area(before) + area(after);
 }
 
-LightContour::Shares LightContour::SharesBeyond(int x, int y) const {
-  Shares shares = {x > 0 ? ShareBeyond(x, y, -1, 0) : 0.0f, x + 1 < width_ ? ShareBeyond(x, y, 1, 0) : 0.0f,
-                   y > 0 ? ShareBeyond(x, y, 0, -1) : 0.0f, y + 1 < height_ ? ShareBeyond(x, y, 0, 1) : 0.0f};
-  // Near 45 degrees two sides see one line: their areas overlap.
-  const float sum = (shares[0] + shares[1]) + (shares[2] + shares[3]);
-  const float most = std::max(std::max(shares[0], shares[1]), std::max(shares[2], shares[3]));
-  for (float& share : shares) share = sum > 0.0f ? share * (most / sum) : 0.0f;
-  return shares;
+LightContour::Beyond LightContour::BeyondOf(int x, int y, std::uint32_t sides) const {
+  const std::ptrdiff_t pixel = std::ptrdiff_t(y) * width_ + x;
+  Beyond most;
+  const auto look = [&](std::uint32_t side, bool has_side, int side_x, int side_y) {
+    const float share = (sides & side) && has_side ? ShareBeyond(x, y, side_x, side_y) : 0.0f;
+    if (share > most.share) most = {share, static_cast<std::size_t>(pixel + std::ptrdiff_t(side_y) * width_ + side_x)};
+  };
+  look(kLeft, x > 0, -1, 0), look(kRight, x + 1 < width_, 1, 0);
+  look(kAbove, y > 0, 0, -1), look(kBelow, y + 1 < height_, 0, 1);
+  return most;
 }
 
 }  // namespace scumble::internal

@@ -31,16 +31,24 @@ struct HardLight {
 class LightContour {
  public:
   static constexpr int kReach = 16;
-  // Of a pixel, by neighbour: on the left, on the right, above, below.
-  using Shares = std::array<float, 4>;
+  // The share of a pixel that lies beyond a contour, and the neighbour whose light it has. Less than 1.
+  struct Beyond {
+    float share = 0.0f;
+    std::size_t pixel = 0;
+  };
 
   // Keeps references to the light and the guides. Without objects all that is covered is one.
   LightContour(const HardLight& light, const GuideSet& guides);
 
-  // The shares of a pixel that lie beyond the contours beside it: less than 1 in all. All 0 where there is none.
-  Shares SharesBeyond(int x, int y) const;
+  // Sides of a pixel.
+  static constexpr std::uint32_t kLeft = 1, kRight = 2, kAbove = 4, kBelow = 8, kAllSides = 15;
 
-  // Calls visit(x) for the pixels of a row that have a contour beside them. Fast where there is none.
+  // Of the contours on some sides of a pixel the one that takes the largest share. Near 45 degrees two sides see one
+  // line, so shares are not added. 0 where there is none.
+  Beyond BeyondOf(int x, int y, std::uint32_t sides = kAllSides) const;
+
+  // Calls visit(x, sides) for the pixels of a row that may have a contour beside them, on those sides. Fast where there
+  // is none.
   template <class Visit>
   void ForEachInRow(int y, const Visit& visit) const {
     std::array<std::uint32_t, kSome> marks;
@@ -48,7 +56,7 @@ class LightContour {
       const int end = x + kSome < width_ ? x + kSome : width_;
       if (!MayHave(x, end, y) || !Mark(x, end, y, marks.data())) continue;
       for (int u = x; u < end; ++u) {
-        if (marks[std::size_t(u - x)]) visit(u);
+        if (marks[std::size_t(u - x)]) visit(u, marks[std::size_t(u - x)]);
       }
     }
   }

@@ -62,8 +62,7 @@ TEST(LightContour, SlantedShadowsHaveTheAreaOfALine) {
     const GuideSet guides = SlantedShadow(64, at, slope);
     const internal::LightContour contour({guides.Plane(Layer::kShadow), 0.1f}, guides);
     const auto shade = [&](int x, int y) {
-      const auto [left, right, above, below] = contour.SharesBeyond(x, y);
-      const double beyond = left + right + above + below;
+      const double beyond = contour.BeyondOf(x, y).share;
       return guides.Plane(Layer::kShadow)[guides.Index(x, y)] > 0.5f ? 1.0 - beyond : beyond;
     };
     const Errors steps = ErrorsAlong(
@@ -83,9 +82,8 @@ TEST(LightContour, UprightShadowsStayAndCornersAreCutByHalfAPixel) {
   const internal::LightContour contour({shadow, 0.1f}, guides);
   for (int y = 0; y < 32; ++y) {
     for (int x = 0; x < 32; ++x) {
-      const auto [left, right, above, below] = contour.SharesBeyond(x, y);
       const bool is_corner = (x == 8 || x == 23) && (y == 10 || y == 19);
-      EXPECT_NEAR(left + right + above + below, is_corner ? 0.125 : 0.0, 1e-6) << x << " " << y;
+      EXPECT_NEAR(contour.BeyondOf(x, y).share, is_corner ? 0.125 : 0.0, 1e-6) << x << " " << y;
     }
   }
 }
@@ -101,7 +99,7 @@ TEST(LightContour, GradientsAndObjectsMakeNone) {
   const internal::LightContour contour({guides.Plane(Layer::kLuminance), 0.1f}, guides);
   for (int y = 0; y < 32; ++y) {
     for (int x = 0; x < 32; ++x) {
-      for (const float share : contour.SharesBeyond(x, y)) EXPECT_EQ(share, 0.0f) << x << " " << y;
+      EXPECT_EQ(contour.BeyondOf(x, y).share, 0.0f) << x << " " << y;
     }
   }
 }
