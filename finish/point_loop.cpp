@@ -8,12 +8,14 @@
 #include <glm/glm.hpp>
 #include <iterator>
 #include <optional>
+#include <variant>
 #include <vector>
 
 #include "core/filter/oklab_rows.h"
 #include "core/filter/wide_loops.h"
 #include "core/image/color.h"
 #include "core/image/fragments.h"
+#include "core/image/scalar_lane.h"
 #include "finish/area/oklab_blocks.h"
 #include "finish/tone/surface_share.h"
 
@@ -34,6 +36,15 @@ void MixColors(const float* shares, std::size_t count, const OklabBlock& from, O
   Mix(shares, from.b.data(), count, to.b.data());
 }
 
+// Codes of 16 bits towards others, in linear light, as far as the share says.
+SCUMBLE_WIDE_LOOPS void MixCodes(const float* shares, const std::uint16_t* others, std::size_t count,
+                                 std::uint16_t* codes) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const float from = scalar::LinearFromCode(codes[i]), to = scalar::LinearFromCode(others[i]);
+    codes[i] = scalar::Rounded(scalar::ClampedCode(from + (to - from) * shares[i]));
+  }
+}
+
 using Texel = FragmentColors::Texel;
 
 // A surface that shows in a share of a pixel, and a pixel whose guides are like its own.
@@ -51,13 +62,29 @@ struct Pixels {
   std::size_t Of(std::size_t i) const { return parts ? parts[i].like : first + i; }
 };
 
-void ApplyEffect(const PointEffect& effect, const Pixels& pixels, OklabBlock& block) {
-  if (!pixels.parts) return effect(pixels.first, pixels.count, block);
-  OklabBlock one;
-  for (std::size_t i = 0; i < pixels.count; ++i) {
-    one.lightness[0] = block.lightness[i], one.a[0] = block.a[i], one.b[0] = block.b[i];
-    effect(pixels.parts[i].like, 1, one);
-    block.lightness[i] = one.lightness[0], block.a[i] = one.a[0], block.b[i] = one.b[0];
+// Whether the step does the same to a colour wherever it is.
+bool IsOfColors(const FinishStep& step) {
+  const auto* const tones = std::get_if<TonesPass>(&step.pass.effect);
+  return (tones && tones->tone == TonesPass::Tone::kPaint) || std::holds_alternative<PalettePass>(step.pass.effect) ||
+         std::holds_alternative<GradePass>(step.pass.effect) || std::holds_alternative<FillPass>(step.pass.effect);
+}
+
+void Copy(const OklabBlock& from, std::size_t first, std::size_t count, std::size_t place, OklabBlock& to) {
+  std::copy_n(from.lightness.begin() + std::ptrdiff_t(first), count, to.lightness.begin() + std::ptrdiff_t(place));
+  std::copy_n(from.a.begin() + std::ptrdiff_t(first), count, to.a.begin() + std::ptrdiff_t(place));
+  std::copy_n(from.b.begin() + std::ptrdiff_t(first), count, to.b.begin() + std::ptrdiff_t(place));
+}
+
+// `effect` is one of the step's.
+void ApplyEffect(const PointEffect& effect, const FinishStep& step, const Pixels& pixels, OklabBlock& block) {
+  if (!pixels.parts || IsOfColors(step)) return effect(pixels.first, pixels.count, block);
+  OklabBlock run;  // of neighbours
+  for (std::size_t i = 0, end = 0; i < pixels.count; i = end) {
+    const std::size_t like = pixels.parts[i].like;
+    while (end < pixels.count && pixels.parts[end].like == like + (end - i)) ++end;
+    Copy(block, i, end - i, 0, run);
+    effect(like, end - i, run);
+    Copy(run, 0, end - i, i, block);
   }
 }
 
@@ -117,7 +144,7 @@ void MixBehind(const PointStep& one, const Pixels& pixels, Surface& surface, con
                OklabBlock& block) {
   Surface::Shares shares = surface.Of(one, pixels);
   OklabBlock behind = before;
-  ApplyEffect(one.behind, pixels, behind);
+  ApplyEffect(one.behind, *one.step, pixels, behind);
   for (std::size_t i = 0; i < pixels.count; ++i) shares[i] = shares[i] > 0.0f ? shares[i] : 1.0f;
   MixColors(shares.data(), pixels.count, behind, block);
 }
@@ -136,7 +163,7 @@ void PaintBlock(std::span<const PointStep> steps, const Pixels& pixels, std::uin
     if (one.behind) surface.Of(one, pixels);
     const bool mixes_behind = one.behind && surface.kinds().is_mixed;
     if (weight == Weight::kParts || mixes_behind) before = block;
-    ApplyEffect(one.apply, pixels, block);
+    ApplyEffect(one.apply, *one.step, pixels, block);
     if (mixes_behind) MixBehind(one, pixels, surface, before, block);
     if (weight == Weight::kParts) MixColors(shares.data(), count, before, block);
   }
@@ -166,23 +193,6 @@ class Mixture {
   bool is_one_ = true;
   Texel first_ = {};
 };
-
-// What the steps make of parts of a pixel; the rest of it is as they leave the pixel itself.
-struct Painted {
-  std::size_t pixel;
-  Mixture parts;
-  float rest;
-};
-
-void Put(std::span<const Painted> painted, Picture& picture) {
-  for (const Painted& one : painted) {
-    const auto texel = picture.rgba.begin() + 4 * std::ptrdiff_t(one.pixel);
-    Mixture mixture = one.parts;
-    if (one.rest > 0.0f) mixture.Add({texel[0], texel[1], texel[2], texel[3]}, one.rest);
-    const Texel color = mixture.Color();
-    std::copy_n(color.begin(), 3, texel);
-  }
-}
 
 // A row of a picture as it was before the steps.
 struct GivenRow {
@@ -228,9 +238,10 @@ class SharedPixels {
     if (fragments_ && (fragments_->count() == 0 || !fragments_->values.Has(Layer::kObject))) fragments_ = nullptr;
   }
 
-  // What they become in a row.
-  std::vector<Painted> Paint(const GivenRow& row) const {
-    if (!fragments_) return {};
+  bool any() const { return fragments_ != nullptr; }
+
+  // The row has been painted without them.
+  void PaintRow(const GivenRow& row, Picture& picture) const {
     const std::size_t end = fragments_->From(row.first + row.width());
     Batch batch;
     for (std::size_t first = fragments_->From(row.first); first < end;) {
@@ -239,23 +250,23 @@ class SharedPixels {
       first = shared.end;
       if (row.Of(shared.pixel)[3] != 0) AddParts(shared, row.Of(shared.pixel), batch);
     }
-    return Changed(batch, PaintParts(steps_, batch, row));
+    Put(batch, PaintParts(steps_, batch, row), picture);
   }
 
  private:
-  // The pixels that a step changes a part of: others keep their bits.
-  static std::vector<Painted> Changed(const Batch& batch, std::span<const Texel> made) {
-    std::vector<Painted> painted;
+  // Pixels none of whose parts a step changes keep their bits.
+  static void Put(const Batch& batch, std::span<const Texel> made, Picture& picture) {
     for (std::size_t i = 0; i < made.size();) {
-      Painted one{batch.parts[i].pixel, {}, 0.0f};
+      const std::size_t pixel = batch.parts[i].pixel;
+      Mixture mixture;
       bool changes = false;
-      for (; i < made.size() && batch.parts[i].pixel == one.pixel; ++i) {
+      for (; i < made.size() && batch.parts[i].pixel == pixel; ++i) {
         changes = changes || made[i] != batch.paint[i];
-        one.parts.Add(made[i], batch.parts[i].share);
+        mixture.Add(made[i], batch.parts[i].share);
       }
-      if (changes) painted.push_back(one);
+      const Texel color = mixture.Color();
+      if (changes) std::copy_n(color.begin(), 3, picture.rgba.begin() + 4 * std::ptrdiff_t(pixel));
     }
-    return painted;
   }
 
   struct Shared {
@@ -340,8 +351,10 @@ class ContourPixels {
     }
   }
 
-  // What they become in a row.
-  std::vector<Painted> Paint(const GivenRow& row) const {
+  bool any() const { return !contours_.empty(); }
+
+  // The row has been painted without them.
+  void PaintRow(const GivenRow& row, Picture& picture) const {
     Batch batch;
     std::vector<std::uint8_t> is_known(contours_.size() > 1 ? row.width() : 0);
     for (const Contour& contour : contours_) {
@@ -356,14 +369,7 @@ class ContourPixels {
         batch.paint.push_back(row.Of(pixel));
       });
     }
-    const std::vector<Texel> made = PaintParts(steps_, batch, row);
-    std::vector<Painted> painted;
-    for (std::size_t i = 0; i < made.size(); ++i) {
-      const Part& part = batch.parts[i];
-      painted.push_back({part.pixel, {}, 1.0f - part.share});
-      painted.back().parts.Add(made[i], part.share);
-    }
-    return painted;
+    Put(batch, PaintParts(steps_, batch, row), picture);
   }
 
  private:
@@ -372,6 +378,20 @@ class ContourPixels {
     const PointStep& step;
     LightContour light;
   };
+
+  static void Put(const Batch& batch, std::span<const Texel> made, Picture& picture) {
+    std::vector<std::uint16_t> own, beyond;
+    std::vector<float> shares;
+    for (std::size_t i = 0; i < made.size(); ++i) {
+      const auto texel = picture.rgba.begin() + 4 * std::ptrdiff_t(batch.parts[i].pixel);
+      own.insert(own.end(), texel, texel + 3);
+      beyond.insert(beyond.end(), made[i].begin(), made[i].begin() + 3);
+      shares.insert(shares.end(), 3, batch.parts[i].share);
+    }
+    MixCodes(shares.data(), beyond.data(), own.size(), own.data());
+    for (std::size_t i = 0; i < made.size(); ++i)
+      std::copy_n(own.data() + 3 * i, 3, picture.rgba.data() + 4 * batch.parts[i].pixel);
+  }
 
   static bool MayChange(const FinishStep& step, std::size_t pixel) {
     return (step.only.empty() || step.only[pixel] != 0) && (step.share.empty() || step.share[pixel] != 0);
@@ -390,13 +410,14 @@ bool PaintPoints(std::span<const PointStep> steps, const FinishFrame& frame, Row
   const ContourPixels contours(steps, frame);
   return ForEachRow({0, 0, picture.width, picture.height}, progress, [&](int y) {
     const auto width = static_cast<std::size_t>(picture.width), begin = std::size_t(y) * width;
-    const GivenRow row{y, begin, {picture.At(0, y), picture.At(0, y) + 4 * width}};
+    GivenRow row{y, begin, {}};
+    if (contours.any() || shared.any()) row.texels.assign(picture.At(0, y), picture.At(0, y) + 4 * width);
     for (std::size_t x = 0; x < width; x += kOklabBlock) {
       std::uint16_t* const texels = picture.At(static_cast<int>(x), y);
       PaintBlock(steps, {begin + x, std::min(kOklabBlock, width - x), texels}, texels);
     }
-    Put(contours.Paint(row), picture);
-    Put(shared.Paint(row), picture);
+    if (contours.any()) contours.PaintRow(row, picture);
+    if (shared.any()) shared.PaintRow(row, picture);
   });
 }
 
