@@ -19,7 +19,7 @@ namespace scumble {
 #ifdef SCUMBLE_BENCH_OPENCV
 namespace {
 
-// The guided filter of finish/area/smooth_guided.cpp without borders, put together from box filters.
+// The guided filter of finish/smooth/smooth_guided.cpp without borders, put together from box filters.
 void GuidedByBoxes(const cv::Mat& picture, int side, float flat, cv::Mat& out) {
   const auto box = [&](const cv::Mat& from) {
     cv::Mat to;

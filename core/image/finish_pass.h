@@ -135,7 +135,7 @@ struct DepthPass {
   std::string focus_on;  // a pattern of object names: the focus is their middle depth; empty: `focus` is
 };
 
-// Detail below a contrast is evened out; edges stay. finish/area/smooth_filters.h has the filters' papers.
+// Detail below a contrast is evened out; edges stay. finish/smooth/smooth_filters.h has the filters' papers.
 struct SmoothPass {
   // By rows, then by columns; patches along the edges, as brushes leave them; box means, whatever the radius; wavelets
   // that stop at normals and depths, too.

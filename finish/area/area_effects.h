@@ -11,7 +11,7 @@ namespace scumble::internal {
 
 // `strength` and `only` as FinishPass and FinishStep have them. The frame's guides must hold the pass's layers.
 //
-// The pass's filter of Oklab colours (finish/area/smooth_filters.h), several times. Filters that weigh by difference
+// The pass's filter of Oklab colours (finish/smooth/smooth_filters.h), several times. Filters that weigh by difference
 // begin without pixels that are unlike all of their neighbours.
 void Smooth(const SmoothPass& pass, double strength, std::span<const std::uint8_t> only, const FinishFrame& frame,
             Picture& picture);

@@ -1,4 +1,4 @@
-#include "finish/area/hatch_texture.h"
+#include "finish/hatch/hatch_texture.h"
 
 #include <algorithm>
 #include <cmath>

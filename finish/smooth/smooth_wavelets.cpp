@@ -5,10 +5,10 @@
 #include <cmath>
 #include <vector>
 
-#include "finish/area/smooth_filters.h"
+#include "finish/smooth/smooth_filters.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "finish/area/smooth_wavelets.cpp"
+#define HWY_TARGET_INCLUDE "finish/smooth/smooth_wavelets.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <vector>
 
-#include "finish/area/smooth_filters.h"
 #include "finish/area/structure_tensor.h"
+#include "finish/smooth/smooth_filters.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "finish/area/smooth_kuwahara.cpp"
+#define HWY_TARGET_INCLUDE "finish/smooth/smooth_kuwahara.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "core/image/exact_math.h"
-#include "finish/area/smooth_filters.h"
+#include "finish/smooth/smooth_filters.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "finish/area/smooth_bilateral.cpp"
+#define HWY_TARGET_INCLUDE "finish/smooth/smooth_bilateral.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "finish/area/smooth_filters.h"
+#include "finish/smooth/smooth_filters.h"
 
 namespace scumble::internal {
 namespace {

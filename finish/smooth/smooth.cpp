@@ -9,7 +9,7 @@
 
 #include "finish/area/area_effects.h"
 #include "finish/area/oklab_blocks.h"
-#include "finish/area/smooth_filters.h"
+#include "finish/smooth/smooth_filters.h"
 
 namespace scumble::internal {
 namespace {
