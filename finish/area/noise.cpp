@@ -6,7 +6,6 @@
 #include <cmath>
 #include <map>
 
-#include "core/image/exact_math.h"
 #include "core/image/hash.h"
 
 namespace scumble::internal {
@@ -127,11 +126,10 @@ float NoiseField::At(int x, int y) const {
   const std::size_t p = std::size_t(y) * std::size_t(width_) + std::size_t(x);
   const float wave = surface_ ? surface_->At(p) * wave_ : 0.0f;
   if (!(wave > 1e-30f)) return InPicture(x, y);
-  const double level = Log2(wave), octave = std::floor(level);
-  const auto share = static_cast<float>(level - octave);
-  const auto per_octave = static_cast<float>(Exp2(-octave));
-  const glm::vec3 place = surface_->guides().Vec3(Layer::kPref, p) * per_octave;
-  const auto number = static_cast<std::int64_t>(octave);
+  int octave = 0;
+  const float share = 2.0f * std::frexp(wave, &octave) - 1.0f;  // of the way from half of 2^octave to all of it
+  const glm::vec3 place = surface_->guides().Vec3(Layer::kPref, p) * std::ldexp(1.0f, 1 - octave);
+  const std::int64_t number = octave - 1;
   const std::uint64_t object = static_cast<std::uint64_t>(IdOf(surface_->guides().Plane(Layer::kObject)[p]));
   const float finer = Noise(Hash(seed_, object, number), place);
   const float coarser = Noise(Hash(seed_, object, number + 1), place * 0.5f);

@@ -133,10 +133,11 @@ void Patches::FindPatches(const GuideSet& guides) {
   }
   std::vector<std::uint64_t> keys(guides.pixel_count());
   tbb::parallel_for(0, height_, [&](int y) {
+    NearPoints near;
     for (int x = 0; x < width_; ++x) {
       const std::size_t p = guides.Index(x, y);
       const float size = surface_->At(p) * cell_;
-      keys[p] = size > 1e-30f ? SurfacePatch(guides, p, size) : std::uint64_t(NearestPoint(x, y));
+      keys[p] = size > 1e-30f ? SurfacePatch(guides, p, size, near) : std::uint64_t(NearestPoint(x, y));
     }
   });
   std::unordered_map<std::uint64_t, int> numbers;
@@ -152,32 +153,33 @@ void Patches::FindPatches(const GuideSet& guides) {
 
 // The point of a grid on the object that is nearest to the pixel. The grid's cells have about that size, in units of
 // pref: a power of two, so that they change only where the size does so by half.
-std::uint64_t Patches::SurfacePatch(const GuideSet& guides, std::size_t p, float size) const {
-  const auto octave = static_cast<std::int64_t>(std::floor(Log2(size) + 0.5));
-  const glm::vec3 at = guides.Vec3(Layer::kPref, p) * static_cast<float>(Exp2(double(-octave)));
+std::uint64_t Patches::SurfacePatch(const GuideSet& guides, std::size_t p, float size, NearPoints& near) const {
+  int octave = 0;
+  if (std::frexp(size, &octave) < std::sqrt(0.5f)) --octave;
+  const glm::vec3 at = guides.Vec3(Layer::kPref, p) * std::ldexp(1.0f, -octave);
   constexpr float kMost = 1e9f;
   if (!(std::fabs(at.x) < kMost && std::fabs(at.y) < kMost && std::fabs(at.z) < kMost)) return 0;
-  const std::uint64_t grid = Hash(seed_, 10, IdOf(object_[p]), octave);
-  const glm::vec3 corner(std::floor(at.x), std::floor(at.y), std::floor(at.z)), inside = at - corner;
-  const auto beyond = [](int step, float place) { return step > 0 ? 1.0f - place : step < 0 ? place : 0.0f; };
-  std::uint64_t nearest = 0;
-  float least = 1e9f;
-  for (const int dz : {0, -1, 1}) {
-    for (const int dy : {0, -1, 1}) {
-      for (const int dx : {0, -1, 1}) {
-        const glm::vec3 gap(beyond(dx, inside.x), beyond(dy, inside.y), beyond(dz, inside.z));
-        if (glm::dot(gap, gap) >= least) continue;
-        const std::uint64_t cell =
-            Hash(grid, std::int64_t(corner.x) + dx, std::int64_t(corner.y) + dy, std::int64_t(corner.z) + dz);
-        const std::uint64_t second = Mix64(cell), third = Mix64(second);
-        const glm::vec3 off =
-            glm::vec3(dx, dy, dz) + glm::vec3(UnitFloat(cell), UnitFloat(second), UnitFloat(third)) - inside;
-        const float distance = glm::dot(off, off);
-        if (distance < least) least = distance, nearest = cell;
-      }
+  const glm::vec3 corner = glm::floor(at), inside = at - corner;
+  if (near.object != object_[p] || near.octave != octave || near.corner != corner) {
+    near.object = object_[p], near.octave = octave, near.corner = corner;
+    const std::uint64_t grid = Hash(seed_, 10, IdOf(object_[p]), octave);
+    for (int k = 0; k < 27; ++k) {
+      const glm::ivec3 step(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+      const std::uint64_t cell =
+          Hash(grid, std::int64_t(corner.x) + step.x, std::int64_t(corner.y) + step.y, std::int64_t(corner.z) + step.z);
+      const std::uint64_t second = Mix64(cell), third = Mix64(second);
+      near.cells[std::size_t(k)] = cell;
+      near.points[std::size_t(k)] = glm::vec3(step) + glm::vec3(UnitFloat(cell), UnitFloat(second), UnitFloat(third));
     }
   }
-  return nearest;
+  std::size_t nearest = 0;
+  float least = 1e9f;
+  for (std::size_t k = 0; k < near.points.size(); ++k) {
+    const glm::vec3 off = near.points[k] - inside;
+    const float distance = glm::dot(off, off);
+    if (distance < least) least = distance, nearest = k;
+  }
+  return near.cells[nearest];
 }
 
 int Patches::NearestPoint(int x, int y) const {

@@ -48,6 +48,14 @@ class Patches {
     float steps = 0.0f;                // so many
     Track track = {}, flat_track = {};
   };
+  // A pixel's cell of a grid on an object, and the points in that and the cells around it, from the cell's corner.
+  struct NearPoints {
+    float object = -1.0f;
+    int octave = 0;
+    glm::vec3 corner = {};
+    std::array<glm::vec3, 27> points;
+    std::array<std::uint64_t, 27> cells;
+  };
   using Parts = std::vector<std::vector<Part>>;  // by patch
 
   static constexpr int kDirections = 24;  // of strokes: see AllDirections
@@ -56,7 +64,7 @@ class Patches {
   static Axis MainAxis(const Tensor& sum, float least, std::span<const Axis> directions, Axis fixed);
   glm::vec2 PointOf(int column, int row) const;
   void FindPatches(const GuideSet& guides);
-  std::uint64_t SurfacePatch(const GuideSet& guides, std::size_t p, float size) const;
+  std::uint64_t SurfacePatch(const GuideSet& guides, std::size_t p, float size, NearPoints& near) const;
   int NearestPoint(int x, int y) const;
   void Sum(const GuideSet& guides);
   Parts SumOf(const GuideSet& guides, int first, int last);
