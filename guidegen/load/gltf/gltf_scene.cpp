@@ -12,6 +12,7 @@
 #include "guidegen/load/gltf/accessor.h"
 #include "guidegen/load/gltf/camera_light.h"
 #include "guidegen/load/gltf/gltf_extras.h"
+#include "guidegen/load/gltf/gpu_instances.h"
 #include "guidegen/load/gltf/materials.h"
 #include "guidegen/load/gltf/meshes.h"
 #include "guidegen/load/gltf/nodes.h"
@@ -29,6 +30,9 @@ constexpr std::uint64_t kMaxZerosOfTargets = 4 * kMaxZeroElements;
 constexpr std::uint64_t kMaxParts = 64'000'000;
 // A skin needs as many inverse bind matrices as joints; further ones are allowed, and ignored.
 constexpr std::size_t kMaxSpareMatrices = 1024;
+
+// Of all copies that EXT_mesh_gpu_instancing lists.
+constexpr std::uint64_t kMaxNamesOfCopies = std::uint64_t(1) << 28;
 
 class GltfLoader {
  public:
@@ -94,7 +98,7 @@ class GltfLoader {
   Status LoadWhatNodeHolds(std::size_t index) {
     const RigNode& visit = rig_.nodes[index];
     const tinygltf::Node& node = model_.nodes[std::size_t(visit.node)];
-    if (node.mesh >= 0) SCUMBLE_RETURN_IF_ERROR(LoadInstances(index));
+    if (node.mesh >= 0 && !visit.is_hidden) SCUMBLE_RETURN_IF_ERROR(LoadInstances(index));
     if (node.camera >= 0) {
       SCUMBLE_ASSIGN(Camera camera, ReadCamera(model_, file_, visit));
       camera.name = camera_names_.Take(camera.name);
@@ -102,7 +106,7 @@ class GltfLoader {
       rig_.camera_nodes.push_back(static_cast<int>(index));
     }
     SCUMBLE_ASSIGN(std::optional<Light> light, ReadLight(model_, file_, visit, warnings_));
-    if (light) scene_.lights.push_back(*std::move(light));
+    if (light && !visit.is_hidden) scene_.lights.push_back(*std::move(light));
     return Ok();
   }
 
@@ -112,9 +116,6 @@ class GltfLoader {
     if (std::size_t(node.mesh) >= model_.meshes.size()) {
       return InputError(file_ + ": " + Label(visit.node) + " uses mesh " + std::to_string(node.mesh) +
                         ", the file has " + std::to_string(model_.meshes.size()) + ": export it again");
-    }
-    if (node.extensions.count("EXT_mesh_gpu_instancing") > 0) {
-      warnings_.Add("EXT_mesh_gpu_instancing is ignored, such a mesh is seen once", Label(visit.node));
     }
     // A skeleton places its mesh anew, and an animation may restore a mesh that is flat at rest.
     if (Flattens(visit.world) && !visit.moves && node.skin < 0) {
@@ -127,7 +128,10 @@ class GltfLoader {
     SCUMBLE_ASSIGN(const std::vector<double> weights, MorphWeights(visit.node));
     const bool morphs = rig_.animation.Morphs(visit.node) ||
                         std::any_of(weights.begin(), weights.end(), [](double weight) { return weight != 0.0; });
+    SCUMBLE_ASSIGN(const std::vector<glm::dmat4> copies, ReadGpuInstances(model_, file_, visit.node, zeros_));
     if (node.skin >= 0 || morphs) {
+      if (!copies.empty())
+        warnings_.Add("copies of a mesh that is deformed are ignored, it is seen once", Label(visit.node));
       return LoadDeformed(static_cast<int>(index), std::move(instance), morphs ? weights : std::vector<double>());
     }
     const auto [loaded, is_new] = loaded_meshes_.try_emplace(node.mesh);
@@ -136,12 +140,36 @@ class GltfLoader {
       SCUMBLE_ASSIGN(loaded->second,
                      LoadGltfMesh({model_, file_, scene_, budget_, warnings_, choice_, missing_}, node.mesh));
     }
-    for (int mesh : loaded->second) {
-      SCUMBLE_RETURN_IF_ERROR(budget_.TakeInstance(file_, scene_.meshes[std::size_t(mesh)], is_new));
-      instance.mesh = mesh;
-      AddInstance({instance, static_cast<int>(index), -1});
+    bool is_first = is_new;
+    const auto add = [&](const glm::dmat4& of_copy) -> Status {
+      for (int mesh : loaded->second) {
+        SCUMBLE_RETURN_IF_ERROR(budget_.TakeInstance(file_, scene_.meshes[std::size_t(mesh)], is_first));
+        instance.mesh = mesh;
+        AddInstance({instance, static_cast<int>(index), -1, of_copy});
+      }
+      is_first = false;
+      return Ok();
+    };
+    if (copies.empty()) return add(glm::dmat4(1.0));
+    SCUMBLE_RETURN_IF_ERROR(TakeCopyNames(index, copies.size()));
+    for (std::size_t i = 0; i < copies.size(); ++i) {
+      if (i > 0) instance.object = copy_names_.Take(names_[index]);
+      instance.world_from_object = visit.world * copies[i];
+      SCUMBLE_RETURN_IF_ERROR(add(copies[i]));
     }
     return Ok();
+  }
+
+  // Each copy is an object of its own, "Tree", "Tree#2", …: names that no node has.
+  Status TakeCopyNames(std::size_t index, std::size_t copies) {
+    if (!has_copies_) {
+      for (const std::string& name : names_) copy_names_.Take(name);
+    }
+    has_copies_ = true;
+    bytes_of_copies_ += copies * names_[index].size();
+    if (bytes_of_copies_ <= kMaxNamesOfCopies) return Ok();
+    return InputError(file_ + ": the names of copied meshes come to more than " + std::to_string(kMaxNamesOfCopies) +
+                      " bytes, at " + Label(rig_.nodes[index].node) + ": give a shorter name");
   }
 
   Status TakeParts(std::uint64_t more) {
@@ -324,6 +352,9 @@ class GltfLoader {
   ZeroBudget zeros_of_targets_{kMaxZerosOfTargets};
   WarningCounter warnings_;
   GltfRig rig_;
+  UniqueNames copy_names_;
+  bool has_copies_ = false;
+  std::uint64_t bytes_of_copies_ = 0;
   std::vector<std::string> names_;  // of the object at each visit; empty where there is no mesh
   std::map<int, std::vector<int>> loaded_meshes_;
   std::map<int, int> loaded_skins_;

@@ -3,7 +3,8 @@
 //
 // Read: the default scene's node hierarchy; triangles, strips and fans; every component type, sparse accessors and
 // strides; base colour, its texture, vertex colours, normal maps, alpha modes; both kinds of camera;
-// KHR_lights_punctual, KHR_texture_transform, KHR_mesh_quantization; skins, morph targets and animations;
+// KHR_lights_punctual, KHR_texture_transform, KHR_mesh_quantization, KHR_node_visibility; EXT_mesh_gpu_instancing, each
+// copy an object of its own; skins, morph targets and animations;
 // KHR_materials_pbrSpecularGlossiness in part, with a warning. Ignored with a warning: points, lines, the range of
 // lights (Blender's lights have none). A mesh without normals, or with none that has a direction, is flat, as glTF
 // demands, unless the user says otherwise. A file that *requires* another extension is refused by the extension's name.

@@ -24,6 +24,13 @@ std::string NodeName(const tinygltf::Model& model, int node) {
   return name.empty() ? "node_" + std::to_string(node) : name;
 }
 
+bool IsHidden(const tinygltf::Node& node) {
+  const auto found = node.extensions.find("KHR_node_visibility");
+  if (found == node.extensions.end() || !found->second.Has("visible")) return false;
+  const tinygltf::Value& visible = found->second.Get("visible");
+  return visible.IsBool() && !visible.Get<bool>();
+}
+
 class NodeReader {
  public:
   NodeReader(const tinygltf::Model& model, const std::string& file, const GltfAnimation& animation,
@@ -92,6 +99,7 @@ class NodeReader {
         visit.moves = true;
         visit.pose = RestPose(visit.node);
       }
+      visit.is_hidden = visit.is_hidden || IsHidden(model_.nodes[std::size_t(visit.node)]);
       const int index = static_cast<int>(nodes_.size());
       nodes_.push_back(visit);
       const std::vector<int>& children = model_.nodes[std::size_t(visit.node)].children;
@@ -100,6 +108,7 @@ class NodeReader {
                          .parent = index,
                          .depth = visit.depth + 1,
                          .moves = visit.moves,
+                         .is_hidden = visit.is_hidden,
                          .world = visit.world});
       }
     }

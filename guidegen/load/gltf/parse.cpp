@@ -93,8 +93,8 @@ constexpr std::size_t kMostNamed = 16;
 // Extensions that a file may require: those read here, at least in part, and those that change only shading outside the
 // guides.
 bool IsKnownExtension(std::string_view name) {
-  constexpr std::string_view kKnown[] = {"KHR_lights_punctual", "KHR_texture_transform", "KHR_mesh_quantization",
-                                         "EXT_texture_webp"};
+  constexpr std::string_view kKnown[] = {"KHR_lights_punctual", "KHR_texture_transform",   "KHR_mesh_quantization",
+                                         "EXT_texture_webp",    "EXT_mesh_gpu_instancing", "KHR_node_visibility"};
   return std::find(std::begin(kKnown), std::end(kKnown), name) != std::end(kKnown) ||
          name.rfind("KHR_materials_", 0) == 0;
 }

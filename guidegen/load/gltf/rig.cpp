@@ -105,7 +105,8 @@ class Poser {
     for (const RigInstance& from : rig_.instances) {
       Instance instance = from.instance;
       const int skin = from.rig_mesh < 0 ? -1 : rig_.meshes[std::size_t(from.rig_mesh)].skin;
-      instance.world_from_object = skin < 0 ? world_[std::size_t(from.node)] : skins_[std::size_t(skin)].frame;
+      instance.world_from_object =
+          skin < 0 ? world_[std::size_t(from.node)] * from.of_copy : skins_[std::size_t(skin)].frame;
       if (!Flattens(instance.world_from_object)) scene_.instances.push_back(std::move(instance));
     }
   }

@@ -17,8 +17,9 @@ struct RigNode {
   int node = 0;     // in the file
   int parent = -1;  // in the rig
   int depth = 0;
-  bool moves = false;  // itself or one above it is animated
-  NodePose pose{};     // at rest; used only where it is animated
+  bool moves = false;      // itself or one above it is animated
+  bool is_hidden = false;  // itself or one above it, by KHR_node_visibility; cameras are not
+  NodePose pose{};         // at rest; used only where it is animated
   glm::dmat4 local{1.0};
   glm::dmat4 world{1.0};  // at rest
 };
@@ -33,9 +34,10 @@ struct RigMesh {
 };
 
 struct RigInstance {
-  Instance instance;  // as at rest
-  int node = 0;       // in the rig
-  int rig_mesh = -1;  // where the mesh is deformed
+  Instance instance;        // as at rest
+  int node = 0;             // in the rig
+  int rig_mesh = -1;        // where the mesh is deformed
+  glm::dmat4 of_copy{1.0};  // from a copy of a mesh to its node
 };
 
 struct GltfRig {
