@@ -1,4 +1,4 @@
-// What a run takes, term by term: the formula of docs/memory.md. Every term is the most that its part takes, for
+// What a run takes, term by term; docs/memory.md explains the parts. Every term is the most that its part takes, for
 // pictures that are covered from edge to edge and paint that does not pack at all;
 // tests/pipeline/memory_estimate_test.cpp holds it against what the system counted.
 #pragma once

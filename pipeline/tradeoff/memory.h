@@ -1,4 +1,4 @@
-// What `scumble tradeoff` takes at its peak, before any of it is taken; docs/memory.md explains it.
+// What `scumble tradeoff` takes at its peak, before any of it is taken. docs/memory.md explains estimates.
 #pragma once
 
 #include <cstddef>
