@@ -1,4 +1,4 @@
-// What surfaces mean in the Cycles of a version of Blender, where versions differ (docs/materials.md has the formulas):
+// What surfaces mean in the Cycles of a version of Blender, where versions differ (docs/materials.md compares them):
 //
 // - Cycles 3 turns every shading normal that would reflect the eye's ray into the surface, Cycles 4 that of specular
 //   lobes alone (surface/shading_normal.h).
