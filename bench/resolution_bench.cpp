@@ -1,6 +1,6 @@
 // The cost and the effect of coarse matching and upsampled guides, against matching every pixel of a picture of equal
-// size: time of the match, guide error, and the number of pixels with an equal source. The first table is
-// in docs/resolution.md.
+// size: time of the match, guide error, and the number of pixels with an equal source. Prints the figures of
+// docs/resolution.md.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
