@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "core/image/edge_strokes.h"
 #include "core/image/finish_pass.h"
 #include "core/image/fragments.h"
 #include "core/image/guides.h"
@@ -80,6 +81,9 @@ struct FinishFrame {
   // Of the picture as it is given, by fragment of the guides; null: not known. Effects that treat each pixel by itself
   // then change each surface of a pixel by its own paint, else by the pixel's.
   const FragmentColors* colors = nullptr;
+  // Of the picture as it is given, pixels rising. Effects that treat each pixel by itself change a stroke by the guides
+  // of its owner, and the rest of its pixel by that pixel's; they change what is named, masked or of a style likewise.
+  std::span<const EdgeStroke> strokes = {};
   // Pixels of `guides` from one sample to the next.
   int Apart() const { return small_guides ? guides->width() / small_guides->width() : 1; }
 };

@@ -51,6 +51,8 @@ using Texel = FragmentColors::Texel;
 struct Part {
   std::size_t pixel, like;
   float share;
+  std::uint16_t alpha;     // of the pixel, without its stroke
+  bool is_stroke = false;  // of a painted edge: all of it is a surface, whatever the guides cover of the pixel
 };
 
 // `count` pixels of a picture, from `first` on; or that many parts of pixels.
@@ -98,7 +100,8 @@ class Surface {
     if (!is_made_) {
       const float* coverage = one.coverage.data() + pixels.first;
       Shares of_parts;
-      for (std::size_t i = 0; i < pixels.count && pixels.parts; ++i) of_parts[i] = one.coverage[pixels.parts[i].pixel];
+      for (std::size_t i = 0; i < pixels.count && pixels.parts; ++i)
+        of_parts[i] = pixels.parts[i].is_stroke ? 1.0f : one.coverage[pixels.parts[i].pixel];
       if (pixels.parts) coverage = of_parts.data();
       kinds_ = SurfaceShares(coverage, pixels.texels, IsOfGuides(*one.step), pixels.count, shares_.data());
       is_made_ = true;
@@ -214,10 +217,10 @@ struct Batch {
 };
 
 // What the steps make of each part.
-std::vector<Texel> PaintParts(std::span<const PointStep> steps, const Batch& batch, const GivenRow& row) {
+std::vector<Texel> PaintParts(std::span<const PointStep> steps, const Batch& batch) {
   const std::size_t count = batch.parts.size();
   std::vector<Texel> made = batch.paint, alphas(count);
-  for (std::size_t i = 0; i < count; ++i) alphas[i][3] = row.Of(batch.parts[i].pixel)[3];
+  for (std::size_t i = 0; i < count; ++i) alphas[i][3] = batch.parts[i].alpha;
   for (std::size_t i = 0; i < count; i += kOklabBlock) {
     const Pixels some{0, std::min(kOklabBlock, count - i), alphas[i].data(), batch.parts.data() + i};
     PaintBlock(steps, some, made[i].data());
@@ -225,47 +228,62 @@ std::vector<Texel> PaintParts(std::span<const PointStep> steps, const Batch& bat
   return made;
 }
 
-// The pixels that several surfaces share.
+// The pixels that several surfaces share, strokes of painted edges among them.
 class SharedPixels {
  public:
   SharedPixels(std::span<const PointStep> steps, const FinishFrame& frame) : steps_(steps), frame_(frame) {
     if (!frame.guides) return;
     for (const PointStep& one : steps) {
       if (IsOfGuides(*one.step)) continue;
+      strokes_ = frame.strokes;
       // Without its paint a surface can only differ by what its guides say.
       if (frame.colors || !one.coverage.empty()) fragments_ = frame.guides->fragments.get();
     }
     if (fragments_ && (fragments_->count() == 0 || !fragments_->values.Has(Layer::kObject))) fragments_ = nullptr;
   }
 
-  bool any() const { return fragments_ != nullptr; }
+  bool any() const { return fragments_ != nullptr || !strokes_.empty(); }
 
   // The row has been painted without them.
   void PaintRow(const GivenRow& row, Picture& picture) const {
-    const std::size_t end = fragments_->From(row.first + row.width());
+    const std::size_t last = row.first + row.width();  // and one
+    const std::size_t end = fragments_ ? fragments_->From(last) : 0;
+    std::size_t first = fragments_ ? fragments_->From(row.first) : 0;
+    auto stroke = std::ranges::lower_bound(strokes_, row.first, {}, &EdgeStroke::pixel);
     Batch batch;
-    for (std::size_t first = fragments_->From(row.first); first < end;) {
-      Shared shared{fragments_->pixel[first], first, first};
+    for (;;) {
+      const std::size_t of_fragment = first < end ? fragments_->pixel[first] : last;
+      const std::size_t of_stroke = stroke != strokes_.end() ? std::min<std::size_t>(stroke->pixel, last) : last;
+      Shared shared{std::min(of_fragment, of_stroke), first, first};
+      if (shared.pixel == last) break;
       while (shared.end < end && fragments_->pixel[shared.end] == shared.pixel) ++shared.end;
       first = shared.end;
-      if (row.Of(shared.pixel)[3] != 0) AddParts(shared, row.Of(shared.pixel), batch);
+      const Texel given = row.Of(shared.pixel);
+      if (of_stroke != shared.pixel) {
+        if (given[3] != 0) AddParts(shared, given, batch);
+      } else {
+        if (given[3] != 0) AddStroke(*stroke, shared, given, batch);
+        ++stroke;
+      }
     }
-    Put(batch, PaintParts(steps_, batch, row), picture);
+    Put(batch, PaintParts(steps_, batch), row, picture);
   }
 
  private:
   // Pixels none of whose parts a step changes keep their bits.
-  static void Put(const Batch& batch, std::span<const Texel> made, Picture& picture) {
+  static void Put(const Batch& batch, std::span<const Texel> made, const GivenRow& row, Picture& picture) {
     for (std::size_t i = 0; i < made.size();) {
       const std::size_t pixel = batch.parts[i].pixel;
       Mixture mixture;
-      bool changes = false;
+      bool changes = false, has_stroke = false;
       for (; i < made.size() && batch.parts[i].pixel == pixel; ++i) {
         changes = changes || made[i] != batch.paint[i];
+        has_stroke = has_stroke || batch.parts[i].is_stroke;
         mixture.Add(made[i], batch.parts[i].share);
       }
-      const Texel color = mixture.Color();
-      if (changes) std::copy_n(color.begin(), 3, picture.rgba.begin() + 4 * std::ptrdiff_t(pixel));
+      const Texel color = changes ? mixture.Color() : row.Of(pixel);
+      // Without the stroke, by the pixel's guides alone, a step may have changed it.
+      if (changes || has_stroke) std::copy_n(color.begin(), 3, picture.rgba.begin() + 4 * std::ptrdiff_t(pixel));
     }
   }
 
@@ -310,7 +328,7 @@ class SharedPixels {
   // The paint of the surfaces of a pixel before they were mixed; null: it is not known.
   const FragmentColors* ColorsOf(const Shared& shared, const Texel& texel) const {
     const FragmentColors* const colors = frame_.colors;
-    if (!colors || colors->own.size() != fragments_->count()) return nullptr;
+    if (!colors || shared.first == shared.end || colors->own.size() != fragments_->count()) return nullptr;
     const Texel& mixed = colors->mixed[shared.first];
     return std::equal(mixed.begin(), mixed.begin() + 3, texel.begin()) ? colors
                                                                        : nullptr;  // else something has changed it
@@ -320,7 +338,7 @@ class SharedPixels {
     const std::size_t pixel = shared.pixel;
     const FragmentColors* const colors = ColorsOf(shared, given);
     const auto add = [&](const Texel& paint, std::size_t like, float share) {
-      batch.parts.push_back({pixel, like, share});
+      batch.parts.push_back({pixel, like, share, given[3]});
       batch.paint.push_back(paint);
     };
     float left = 1.0f;
@@ -334,9 +352,30 @@ class SharedPixels {
     add(colors ? colors->centre[shared.first] : given, pixel, left);
   }
 
+  // The stroke, and the surfaces beneath it in what it leaves of the pixel's paint, or of the sheet.
+  void AddStroke(const EdgeStroke& stroke, const Shared& shared, const Texel& given, Batch& batch) const {
+    const bool is_known = std::equal(given.begin(), given.begin() + 3, stroke.mixed.begin());  // what lies on what
+    const float opacity = static_cast<float>(stroke.own[3]) / 65535.0f, alpha = static_cast<float>(given[3]) / 65535.0f;
+    const float share = std::min(1.0f, opacity / alpha);
+    Texel own = is_known ? stroke.own : given, beneath = is_known ? stroke.beneath : given;
+    own[3] = 65535;
+    batch.parts.push_back({shared.pixel, stroke.owner, share, 65535, true});
+    batch.paint.push_back(own);
+    if (share >= 1.0f) return;
+    const std::size_t first = batch.parts.size();
+    beneath[3] = static_cast<std::uint16_t>(65535.0f * std::min(1.0f, (alpha - opacity) / (1.0f - opacity)) + 0.5f);
+    if (beneath[3] == 0) return;
+    AddParts(shared, beneath, batch);
+    float all = 0.0f;
+    for (std::size_t i = first; i < batch.parts.size(); ++i)
+      all += batch.parts[i].share * (static_cast<float>(batch.paint[i][3]) / 65535.0f);
+    for (std::size_t i = first; i < batch.parts.size() && all > 0.0f; ++i) batch.parts[i].share *= (1.0f - share) / all;
+  }
+
   std::span<const PointStep> steps_;
   const FinishFrame& frame_;
   const Fragments* fragments_ = nullptr;
+  std::span<const EdgeStroke> strokes_ = {};
 };
 
 // The pixels beside hard contours of the light that steps look at. In the share that lies beyond, the steps see the
@@ -365,11 +404,11 @@ class ContourPixels {
         const LightContour::Beyond beyond = contour.light.BeyondOf(x, row.y, sides);
         if (beyond.share < kLeastShare) return;
         if (!is_known.empty()) is_known[std::size_t(x)] = 1;
-        batch.parts.push_back({pixel, beyond.pixel, beyond.share});
+        batch.parts.push_back({pixel, beyond.pixel, beyond.share, row.Of(pixel)[3]});
         batch.paint.push_back(row.Of(pixel));
       });
     }
-    Put(batch, PaintParts(steps_, batch, row), picture);
+    Put(batch, PaintParts(steps_, batch), picture);
   }
 
  private:

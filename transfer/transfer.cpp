@@ -70,7 +70,7 @@ class Run {
                                : Region{0, 0, guides.width(), guides.height()}),
         frame_{guides, map, styles, region_},
         fragments_(frame_) {
-    scratch.times = {}, scratch.colors = {};
+    scratch.times = {}, scratch.colors = {}, scratch.strokes = {};
   }
 
   Status PaintAll(std::span<const PreparedStyle* const> styles) {
@@ -227,7 +227,8 @@ class Run {
     const std::span<const std::uint16_t> map =
         map_ ? std::span<const std::uint16_t>(map_->style) : std::span<const std::uint16_t>();
     const internal::PaintedEdgeInput input{guides_, map, paints, scratch_.field, region_};
-    return internal::PaintEdges(input, coverage, out_, progress) ? Ok() : CancelledError();
+    EdgeStrokes* const kept = options_.keep_colors ? &scratch_.strokes : nullptr;
+    return internal::PaintEdges(input, coverage, out_, progress, kept) ? Ok() : CancelledError();
   }
 
   SeedRules SeedsOf(const PreparedStyle& style) const {

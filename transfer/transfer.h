@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/filter/region.h"
+#include "core/image/edge_strokes.h"
 #include "core/image/fragments.h"
 #include "core/image/guides.h"
 #include "core/image/progress.h"
@@ -90,7 +91,7 @@ struct TransferOptions {
   int threads = 0;                // 0: all
   const Picture* over = nullptr;  // composited underneath instead of the paper; the guides' size
   bool bare = false;              // neither paper nor `over` is put behind: PutBackground does it later
-  bool keep_colors = false;       // TransferScratch::colors is wanted afterwards
+  bool keep_colors = false;       // TransferScratch::colors and `strokes` are wanted afterwards
   std::optional<Region> region;   // only these pixels of the result are made; empty: all
   bool keep_field = false;        // TransferScratch::field and `active` are wanted afterwards; costs some time
   Progress progress;
@@ -114,6 +115,7 @@ struct TransferScratch {
   std::vector<std::uint8_t> active;  // 1: pixels that the last style painted; empty likewise
   StageTimes times;
   FragmentColors colors;                    // of the guides' fragments; empty unless keep_colors requests it
+  EdgeStrokes strokes;                      // of painted edges, in the region; likewise
   std::vector<internal::BandMemory> bands;  // by thread
   Picture base_votes;                       // of hybrids
 };

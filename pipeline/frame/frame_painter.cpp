@@ -69,6 +69,7 @@ Status Paint(std::span<const PreparedStyle> prepared, const StyleMap* map, const
   const FrameFinish& finish = *settings.finish;
   FinishFrame frame = FrameOf(settings, guides);
   frame.colors = &scratch.colors;
+  frame.strokes = scratch.strokes;
   FinishLayerOptions names;
   if (settings.over) names.ground = "picture underneath";
   names.put_ground = [&](Picture& painted) {

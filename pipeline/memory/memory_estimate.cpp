@@ -6,6 +6,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/image/edge_strokes.h"
 #include "core/io/picture_file.h"
 #include "core/style/kit/sphere_template.h"
 #include "finish/finish.h"
@@ -42,6 +43,7 @@ constexpr Bytes kFoundSphere = 8;       // FindSphere, beside the picture
 constexpr Bytes kTones = 8 * kMega;     // SourceVariation, of an exemplar of any size
 constexpr Bytes kPixelsOfFragment = 8;  // with --aa: objects' borders are rarely denser
 constexpr Bytes kPlacedFragment = 12;   // UpsampleGuides
+constexpr Bytes kPixelsOfStroke = 8;    // of painted edges: outlines are rarely denser
 constexpr Bytes kCoherence = 9;         // MeasureCoherence, for --json
 
 Bytes PixelsOf(const Size& size) { return Bytes(size.width) * Bytes(size.height); }
@@ -276,6 +278,11 @@ void AddPicture(const PictureWork& work, const PictureRequest& options, MemoryNe
   for (const Style& style : work.styles) Append(FinishOf(style), chain);
   if (work.finish) Append(*work.finish, chain);
   AddFinish(chain, work.has_map, size, need);
+  const bool has_strokes = std::any_of(work.styles.begin(), work.styles.end(),
+                                       [](const Style& style) { return style.transfer.edge == EdgeMode::kExemplar; });
+  // One list, made of those of the rows, which may have grown to twice their content.
+  if (has_strokes && !chain.passes.empty())
+    need.Take("strokes of edges", 3 * sizeof(EdgeStroke) * pixels / kPixelsOfStroke);
   if (std::any_of(chain.passes.begin(), chain.passes.end(),
                   [](const FinishPass& pass) { return pass.at == FinishPass::Stage::kGuides; })) {
     need.Take("changed guides", (kFloat * ChannelsOf(Made(work.layers)) + kPaint) * pixels);

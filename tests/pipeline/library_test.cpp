@@ -55,7 +55,7 @@ TEST(Library, MoreThreadsThanCoresPrintNothing) {
   scene.width = scene.height = 32;
   StylizerOptions more, most;
   more.threads = int(std::thread::hardware_concurrency()) + 1, most.threads = more.threads + 3;
-  testing::internal::CaptureStderr();
+  ::testing::internal::CaptureStderr();
   std::vector<std::jthread> users;
   for (const StylizerOptions& options : {more, most}) {
     users.emplace_back([&scene, options] {
@@ -66,7 +66,7 @@ TEST(Library, MoreThreadsThanCoresPrintNothing) {
     });
   }
   users.clear();
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
 }
 
 // Measured as guidegen does, with and without what the Stylizer has kept.

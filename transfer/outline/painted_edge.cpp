@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/image/fragments.h"
 #include "transfer/frame/compose.h"
 #include "transfer/outline/rim_segments.h"
 #include "transfer/outline/silhouettes.h"
@@ -16,7 +17,7 @@ constexpr float kInkDepth = 0.5f, kCutDepth = 0.2f;
 constexpr float kFadeFrom = 0.6f;  // of the depth, on either side
 constexpr float kFirm = 0.2f;      // of the full width: narrower edges fade
 
-using Texel = std::array<std::uint16_t, 4>;
+using Texel = EdgeStroke::Texel;
 
 float SmoothStep(float from, float to, float value) {
   const float t = std::clamp((value - from) / (to - from), 0.0f, 1.0f);
@@ -33,7 +34,8 @@ class EdgePainter {
         silhouettes_({input.guides, input.style, bands_, input.region, Margin(input)}),
         segments_(Segments()) {}
 
-  void Paint(int x, int y, float& coverage, std::uint16_t* pixel) const {
+  // `kept`: null, or where a stroke is added.
+  void Paint(int x, int y, float& coverage, std::uint16_t* pixel, EdgeStrokes* kept) const {
     const std::int32_t nearest = silhouettes_.Nearest(x, y);
     if (nearest == Silhouettes::kNone) return;
     const OutlinePixel& outline = silhouettes_.outline()[std::size_t(nearest)];
@@ -61,12 +63,24 @@ class EdgePainter {
     }
     texel[3] = static_cast<std::uint16_t>(opacity * 65535.0f + 0.5f);
     pixel[3] = static_cast<std::uint16_t>(below * 65535.0f + 0.5f);
+    EdgeStroke stroke{static_cast<std::uint32_t>(p), static_cast<std::uint32_t>(owner), texel, {}, {}};
+    std::copy_n(pixel, 4, stroke.beneath.begin());
     BlendOver(texel.data(), pixel);
     std::copy(texel.begin(), texel.end(), pixel);
+    stroke.mixed = texel;
+    if (kept && stroke.own[3] > 0 && !(inside && IsWhole(p))) kept->push_back(stroke);
     coverage = texel[3] > 0 ? 1.0f : 0.0f;
   }
 
  private:
+  // Whether the guides are those of the whole pixel.
+  bool IsWhole(std::size_t p) const {
+    const Fragments* const fragments = input_.guides.fragments.get();
+    if (!(coverage_[p] >= 1.0f)) return false;
+    const std::size_t first = fragments ? fragments->From(p) : 0;
+    return !fragments || first == fragments->count() || fragments->pixel[first] != p;
+  }
+
   static std::vector<int> Bands(const PaintedEdgeInput& input) {
     std::vector<int> bands;
     for (const EdgePaint& paint : input.paints) bands.push_back(paint.rims.empty() ? 0 : paint.rims.front().band());
@@ -138,14 +152,24 @@ class EdgePainter {
 
 }  // namespace
 
-bool PaintEdges(const PaintedEdgeInput& input, std::vector<float>& coverage, Picture& picture, RowProgress& progress) {
-  if (input.region.empty()) return true;
+bool PaintEdges(const PaintedEdgeInput& input, std::vector<float>& coverage, Picture& picture, RowProgress& progress,
+                EdgeStrokes* kept) {
+  if (kept) kept->clear();
+  const Region& region = input.region;
+  if (region.empty()) return true;
   const EdgePainter painter(input);
-  return ForEachRow(input.region, progress, [&](int y) {
-    for (int x = input.region.x0; x < input.region.x1; ++x) {
-      painter.Paint(x, y, coverage[input.guides.Index(x, y)], picture.At(x, y));
+  std::vector<EdgeStrokes> of_rows(kept ? std::size_t(region.y1 - region.y0) : 0);
+  const bool done = ForEachRow(region, progress, [&](int y) {
+    EdgeStrokes* const of_row = kept ? &of_rows[std::size_t(y - region.y0)] : nullptr;
+    for (int x = region.x0; x < region.x1; ++x) {
+      painter.Paint(x, y, coverage[input.guides.Index(x, y)], picture.At(x, y), of_row);
     }
   });
+  std::size_t count = 0;
+  for (const EdgeStrokes& of_row : of_rows) count += of_row.size();
+  if (kept) kept->reserve(count);
+  for (const EdgeStrokes& of_row : of_rows) kept->insert(kept->end(), of_row.begin(), of_row.end());
+  return done;
 }
 
 }  // namespace scumble::internal

@@ -8,6 +8,7 @@
 
 #include "core/filter/parallel.h"
 #include "core/filter/region.h"
+#include "core/image/edge_strokes.h"
 #include "core/image/guides.h"
 #include "scumble/picture.h"
 #include "transfer/field/source_field.h"
@@ -39,7 +40,9 @@ constexpr int EdgeReach(int band) { return band + 2; }
 // exemplar's paint thins out before an empty background. Rim paint at a distance from the sphere's edge goes to an
 // equal distance from the silhouette, in the direction that rim_segments.h chooses. On thin objects (silhouettes.h) all
 // distances shrink, and the line with them. Reads coverage from the guides, changes `coverage` and `picture` inside the
-// region. Colours are blended in linear light. O(pixels of the region + outline pixels · band²). False: cancelled.
-bool PaintEdges(const PaintedEdgeInput& input, std::vector<float>& coverage, Picture& picture, RowProgress& progress);
+// region. Colours are blended in linear light. `kept`, if not null, gets the region's strokes. O(pixels of the region +
+// outline pixels · band²). False: cancelled.
+bool PaintEdges(const PaintedEdgeInput& input, std::vector<float>& coverage, Picture& picture, RowProgress& progress,
+                EdgeStrokes* kept = nullptr);
 
 }  // namespace scumble::internal

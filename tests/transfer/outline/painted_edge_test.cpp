@@ -443,5 +443,73 @@ TEST(PaintedEdge, MeetsWhatIsBehindInLinearLight) {
   EXPECT_NEAR(picture.At(100 + 43, 90 + 43)[0], 0.735357 * 65535, 700) << "half of the light is sRGB 0.7354";
 }
 
+// The strokes of a disc, made in one piece, or in tiles.
+EdgeStrokes StrokesOf(const GuideSet& guides, Picture& picture, const TransferOptions& options = {}) {
+  // Half-opaque black past the rim.
+  Picture paint = PaintOnPaper(400, 1.03, 0.05);
+  for (std::size_t i = 0; i < paint.rgba.size(); i += 4) paint.rgba[i + 3] = paint.rgba[i] == 0 ? 32768 : 0;
+  Style style = PlainStyle(paint);
+  style.transfer.edge = EdgeMode::kExemplar;
+  const auto prepared = Prepare(style, guides.height());
+  TransferScratch scratch;
+  TransferOptions kept = options;
+  kept.keep_colors = kept.bare = true;
+  EXPECT_TRUE(Transfer(*prepared, guides, kept, scratch, picture).ok());
+  return scratch.strokes;
+}
+
+TEST(PaintedEdge, EachStrokeOnOtherGuidesNamesItsSurface) {
+  GuideSet before_nothing = Ball();
+  for (int x = 0; x < 200; ++x) before_nothing.Plane(Layer::kCoverage)[before_nothing.Index(x, 60)] *= 0.5f;
+  for (const GuideSet& guides : {before_nothing, DiscBefore(20.0f)}) {
+    Picture picture, exact;
+    const EdgeStrokes strokes = StrokesOf(guides, picture);
+    const auto object = guides.Plane(Layer::kObject), coverage = guides.Plane(Layer::kCoverage);
+    ASSERT_GT(strokes.size(), 600u);
+    std::vector<int> is_stroke(guides.pixel_count());
+    for (std::size_t k = 0; k < strokes.size(); ++k) {
+      const EdgeStroke& stroke = strokes[k];
+      EXPECT_TRUE(k == 0 || strokes[k - 1].pixel < stroke.pixel);
+      EXPECT_EQ(object[stroke.owner], 1.0f);
+      EXPECT_TRUE(object[stroke.pixel] != 1.0f || coverage[stroke.pixel] < 1.0f) << "its guides are the stroke's";
+      const int dx = int(stroke.pixel % 200) - int(stroke.owner % 200),
+                dy = int(stroke.pixel / 200) - int(stroke.owner / 200);
+      EXPECT_LE(std::hypot(dx, dy), 9.0);
+      const std::uint16_t* const shown = picture.rgba.data() + 4 * stroke.pixel;
+      EXPECT_TRUE(std::equal(shown, shown + 4, stroke.mixed.begin()));
+      EXPECT_GT(stroke.own[3], 0);
+      const double alpha = stroke.own[3] / 65535.0, beneath = stroke.beneath[3] / 65535.0;
+      EXPECT_NEAR(stroke.mixed[3] / 65535.0, alpha + beneath * (1.0 - alpha), 1e-4);
+      is_stroke[stroke.pixel] = 1;
+    }
+    for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
+      if (coverage[i] == 0.0f) {
+        EXPECT_EQ(picture.rgba[4 * i + 3] > 0, is_stroke[i] == 1) << i;
+      }
+    }
+  }
+}
+
+TEST(PaintedEdge, ThreadsAndRegionsDoNotChangeTheStrokes) {
+  const auto same = [](const EdgeStroke& a, const EdgeStroke& b) {
+    return a.pixel == b.pixel && a.owner == b.owner && a.own == b.own && a.beneath == b.beneath && a.mixed == b.mixed;
+  };
+  const GuideSet guides = DiscBefore(20.0f);
+  Picture picture;
+  TransferOptions options;
+  options.threads = 1;
+  const EdgeStrokes one = StrokesOf(guides, picture, options);
+  options.threads = 0;
+  EXPECT_TRUE(std::ranges::equal(StrokesOf(guides, picture, options), one, same));
+  EdgeStrokes tiled;
+  for (const Region region : {Region{0, 0, 90, 180}, Region{90, 0, 200, 180}}) {
+    options.region = region;
+    const EdgeStrokes some = StrokesOf(guides, picture, options);
+    tiled.insert(tiled.end(), some.begin(), some.end());
+  }
+  std::ranges::sort(tiled, {}, &EdgeStroke::pixel);
+  EXPECT_TRUE(std::ranges::equal(tiled, one, same));
+}
+
 }  // namespace
 }  // namespace scumble
