@@ -6,6 +6,7 @@
 #include <functional>
 #include <glm/glm.hpp>
 
+#include "core/filter/more_workers.h"
 #include "core/image/guides.h"
 #include "finish/finish.h"
 
@@ -155,6 +156,7 @@ inline FinishStep StepOf(FinishPass::Effect effect, double strength = 1.0) {
 // The picture after these steps; a failure is a failed test of the caller, which compares pictures.
 inline Picture Finished(std::span<const FinishStep> steps, const GuideSet* guides, Picture picture,
                         FinishMeasures measures = {}, int threads = 0, double scale = 1.0) {
+  const MoreWorkers workers(threads);  // beyond the machine's cores, too
   const FinishFrame frame{guides, measures, scale, 7};
   const Status done = ApplyFinish(steps, FinishPass::Stage::kPaint, frame, threads, {}, picture);
   return done ? picture : Picture();
