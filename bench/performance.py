@@ -25,18 +25,31 @@ from runs import processor, run, say
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
 TRANSFER_PARTS = ["yardstick", "rates", "radius", "extensions", "light-paths", "sizes", "memory"]
-OTHER_PARTS = {"guides": measure_guides, "process": measure_process, "sequence": measure_sequence}
 TITLES = {"1": "The engine against the yardstick", "2": "Nanoseconds a pixel, frames a second", "3": "Large radius",
-          "4": "What extensions cost", "5": "Large pictures", "6": "Guides", "7": "A whole process", "8": "A sequence"}
+          "4": "What extensions cost", "5": "Large pictures", "6": "Guides", "7": "A whole process", "8": "A sequence",
+          "9": "Finishing effects"}
+
+
+def measured_by(program, options, more=()):
+    """What a program of ours prints, which takes our options."""
+    command = [options.build / "bench" / program, *more]
+    command += ["--smoke"] if options.smoke else ["--seconds", options.seconds, "--rounds", options.rounds]
+    return json.loads(run(command)[2])
 
 
 def measure_transfer(options, part):
-    command = [options.build / "bench/performance", "--only", part]
-    if options.smoke:
-        command.append("--smoke")
-    else:
-        command += ["--seconds", options.seconds, "--rounds", options.rounds] + (["--hd"] if options.hd else [])
-    return json.loads(run(command)[2])
+    hd = ["--hd"] if options.hd and not options.smoke else []
+    return measured_by("performance", options, ["--only", part] + hd)
+
+
+def measure_finish(options):
+    return measured_by("finish_bench", options, ["--json"])
+
+
+OTHER_PARTS = {"guides": measure_guides, "process": measure_process, "sequence": measure_sequence,
+               "finish": measure_finish}
+EVERYTHING = TRANSFER_PARTS + list(OTHER_PARTS)
+OTHER_THAN_FINISH = [part for part in EVERYTHING if part != "finish"]
 
 
 def verdict(figure):
@@ -147,11 +160,22 @@ def stages_text(report):
     return "\n".join(transfer_stages(report) + process_stages(report))
 
 
+def of_parts(report, parts):
+    return {**report, "parts": {part: found for part, found in report["parts"].items() if part in parts}}
+
+
 def write_docs(report):
+    """The table of finishing effects, if they were measured; all else, if the rest was."""
     page = ROOT / "docs/performance.md"
-    text = replaced(page, page.read_text(encoding="utf-8"), "figures", "make bench", markdown(report))
-    page.write_text(replaced(page, text, "stages", "make bench", stages_text(report)), encoding="utf-8")
-    (ROOT / "docs/gallery/performance.svg").write_text(chart(report), encoding="utf-8")
+    text = page.read_text(encoding="utf-8")
+    others = of_parts(report, OTHER_THAN_FINISH)
+    if others["parts"]:
+        text = replaced(page, text, "figures", "make bench", markdown(others))
+        text = replaced(page, text, "stages", "make bench", stages_text(others))
+        (ROOT / "docs/gallery/performance.svg").write_text(chart(report), encoding="utf-8")
+    if "finish" in report["parts"]:
+        text = replaced(page, text, "finishing effects", "make bench", markdown(of_parts(report, ["finish"])))
+    page.write_text(text, encoding="utf-8")
 
 
 def measure(options, report):
@@ -165,11 +189,10 @@ def measure(options, report):
 
 
 def parse():
-    everything = TRANSFER_PARTS + list(OTHER_PARTS)
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--build", type=Path, default=ROOT / "build", help="folder that CMake built in")
     parser.add_argument("--output", type=Path, default=ROOT / "out/bench", help="folder for the results")
-    parser.add_argument("--only", help="parts with commas between; left out: all of " + ", ".join(everything))
+    parser.add_argument("--only", help="parts with commas between; left out: all of " + ", ".join(EVERYTHING))
     parser.add_argument("--update", action="store_true", help="keep the other parts of the results that are there")
     parser.add_argument("--show", action="store_true",
                         help="measure nothing: the table and chart of the results that are there")
@@ -181,12 +204,16 @@ def parse():
     parser.add_argument("--smoke", action="store_true", help="everything once, small: whether it runs, not how fast")
     parser.add_argument("--write-docs", action="store_true", help="put table and chart into docs/performance.md")
     options = parser.parse_args()
-    options.only = options.only.split(",") if options.only else everything
+    options.only = options.only.split(",") if options.only else EVERYTHING
     for part in options.only:
-        if part not in everything:
-            parser.error("--only %s: there are %s" % (part, ", ".join(everything)))
+        if part not in EVERYTHING:
+            parser.error("--only %s: there are %s" % (part, ", ".join(EVERYTHING)))
     if options.write_docs and options.smoke:
         parser.error("--write-docs: --smoke measures nothing that is worth a page")
+    left_out = [part for part in OTHER_THAN_FINISH if part not in options.only]
+    if options.write_docs and left_out and options.only != ["finish"] and not (options.update or options.show):
+        parser.error("--write-docs: the page would lose %s: measure them too, or add --update to keep those of the "
+                     "results that are there" % ", ".join(left_out))
     options.output, options.build = options.output.resolve(), options.build.resolve()
     return options
 

@@ -64,7 +64,7 @@ def draw_nanoseconds(drawing, report, top):
 
 def draw_costs(drawing, report, top):
     """Figures with an upper limit: bars, with a mark at the target. Returns the end of the drawing."""
-    figures = [figure for part in ("radius", "extensions", "sizes", "guides")
+    figures = [figure for part in ("radius", "extensions", "sizes", "guides", "finish")
                for figure in report["parts"].get(part, {"figures": []})["figures"]
                if figure["unit"] == "×" and "target" in figure and not figure["at_least"]]
     if not figures:

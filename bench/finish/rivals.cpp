@@ -14,7 +14,7 @@
 #endif
 #endif
 
-namespace scumble {
+namespace scumble::bench {
 
 #ifdef SCUMBLE_BENCH_OPENCV
 namespace {
@@ -50,7 +50,7 @@ std::vector<Rival> OpenCvRivals(int width, int height, const std::vector<float>&
   using Filter = Rival::Filter;
   std::vector<Rival> rivals = {
       {Filter::kBilateral, "cv::bilateralFilter, d 13", [=] { cv::bilateralFilter(picture, *out, 13, 0.08, 3.0); }},
-      {Filter::kGuided, "guided, of cv::boxFilter", [=] { GuidedByBoxes(picture, 9, 0.0016f, *out); }},
+      {Filter::kGuidedByBoxes, "guided, of cv::boxFilter", [=] { GuidedByBoxes(picture, 9, 0.0016f, *out); }},
       {Filter::kGaussians, "cv::GaussianBlur, two", [=] {
          cv::GaussianBlur(plane, *out, {}, 2.0 / 2.055);
          cv::GaussianBlur(plane, *out, {}, 3.2 / 2.055);
@@ -65,13 +65,13 @@ std::vector<Rival> OpenCvRivals(int width, int height, const std::vector<float>&
 std::vector<Rival> OpenCvRivals(int, int, const std::vector<float>&) { return {}; }
 #endif
 
-Rival PlainKuwahara(int width, int height, const std::vector<float>& rgb) {
+Rival PlainKuwahara(int width, int height, const std::vector<float>& rgb, int every) {
   return {Rival::Filter::kKuwahara, "kuwahara, radius 6, plain loop", [=] {
             constexpr int kRadius = 6, kSectors = 8;
             constexpr float kZeta = 1.0f / 3.0f, kEta = 3.774f;
             std::vector<float> out(rgb.size());
-            tbb::parallel_for(tbb::blocked_range<int>(0, height, 4), [&](const auto& rows) {
-              for (int y = rows.begin(); y != rows.end(); ++y) {
+            tbb::parallel_for(tbb::blocked_range<int>(0, (height + every - 1) / every, 4), [&](const auto& rows) {
+              for (int y = every * rows.begin(); y < std::min(height, every * rows.end()); y += every) {
                 for (int x = 0; x < width; ++x) {
                   float sums[kSectors][5] = {};
                   for (int v = -kRadius; v <= kRadius; ++v) {
@@ -112,4 +112,4 @@ Rival PlainKuwahara(int width, int height, const std::vector<float>& rgb) {
           }};
 }
 
-}  // namespace scumble
+}  // namespace scumble::bench

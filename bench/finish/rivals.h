@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-namespace scumble {
+namespace scumble::bench {
 
 struct Rival {
-  enum class Filter { kBilateral, kGuided, kGaussians, kKuwahara };
+  enum class Filter { kBilateral, kGuided, kGuidedByBoxes, kGaussians, kKuwahara };
 
   Filter filter;  // whose work it does
   std::string name;
@@ -20,7 +20,7 @@ struct Rival {
 std::vector<Rival> OpenCvRivals(int width, int height, const std::vector<float>& rgb);
 
 // An anisotropic Kuwahara filter of radius 6 without borders, pixel by pixel and tap by tap, in floats, without the
-// structure tensor: every ellipse is a circle.
-Rival PlainKuwahara(int width, int height, const std::vector<float>& rgb);
+// structure tensor: every ellipse is a circle. Of one row in so many.
+Rival PlainKuwahara(int width, int height, const std::vector<float>& rgb, int every = 1);
 
-}  // namespace scumble
+}  // namespace scumble::bench

@@ -12,10 +12,10 @@ namespace scumble::bench {
 
 // One line of the table.
 struct Figure {
-  std::string item;   // of the list of targets: "1" … "8"
+  std::string item;   // of the list of targets: "1" … "9"
   std::string what;   // "engine against the yardstick"
   std::string frame;  // "toys 1920×1080"
-  std::string unit;   // "×", "ns/px", "frames/s", "bytes/px", "%"
+  std::string unit;   // "×", "ns/px", "ms", "frames/s", "bytes/px", "%"
   Spread value;
   std::optional<double> target;
   bool at_least = false;  // whether the target is a minimum or a maximum

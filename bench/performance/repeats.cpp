@@ -18,7 +18,8 @@ RunTime Now() {
   return {ClockMs(CLOCK_MONOTONIC), ClockMs(CLOCK_THREAD_CPUTIME_ID), ClockMs(CLOCK_PROCESS_CPUTIME_ID)};
 }
 
-RunTime Measure(const std::function<void()>& run) {
+RunTime Measure(const std::function<void()>& before, const std::function<void()>& run) {
+  if (before) before();
   const RunTime start = Now();
   run();
   const RunTime end = Now();
@@ -72,7 +73,7 @@ std::vector<Times> TakeTurns(std::span<const std::function<void()>> contestants,
   std::vector<int> runs;
   double round_seconds = 0.0;
   for (const auto& contestant : contestants) {
-    const double seconds = 1e-3 * Measure(contestant).wall_ms;
+    const double seconds = 1e-3 * Measure(options.before, contestant).wall_ms;
     runs.push_back(static_cast<int>(
         std::clamp(options.turn_seconds / std::max(seconds, 1e-6), 1.0, static_cast<double>(options.most_runs))));
     round_seconds += seconds * runs.back();
@@ -82,7 +83,7 @@ std::vector<Times> TakeTurns(std::span<const std::function<void()>> contestants,
   for (int round = 0; round < rounds; ++round) {
     for (std::size_t c = 0; c < contestants.size(); ++c) {
       std::vector<RunTime> taken;
-      for (int run = 0; run < runs[c]; ++run) taken.push_back(Measure(contestants[c]));
+      for (int run = 0; run < runs[c]; ++run) taken.push_back(Measure(options.before, contestants[c]));
       times[c].Add(MedianRun(std::move(taken)));
     }
   }

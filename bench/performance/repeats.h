@@ -52,8 +52,9 @@ struct RepeatOptions {
   double seconds = 6.0;  // about the time of all rounds together
   int least_rounds = 5;
   int most_rounds = 15;
-  double turn_seconds = 0.1;  // within a round a fast contender runs again until this much time is over, …
-  int most_runs = 7;          // … but not more often than this
+  double turn_seconds = 0.1;          // within a round a fast contender runs again until this much time is over, …
+  int most_runs = 7;                  // … but not more often than this
+  std::function<void()> before = {};  // each run; its time is not counted
 };
 
 // Each contender runs once unmeasured, then the rounds. Times by contender.

@@ -6,6 +6,7 @@
 #include <functional>
 #include <glm/glm.hpp>
 
+#include "core/filter/more_workers.h"
 #include "core/image/guides.h"
 #include "finish/finish.h"
 
@@ -109,6 +110,34 @@ inline GuideSet AllGuides(int size) {
   return guides;
 }
 
+// Three balls, one before the other, lit from the left, with every layer that some effect reads.
+inline GuideSet LitBalls() {
+  GuideSet guides = GuidesOf(97, 83, [](glm::vec2 at) {
+    const SeenPoint near = SeenOnBall(at, {38.3f, 47.1f}, 26.0f, 5.0f, 1.0f);
+    if (near.hit) return near;
+    const SeenPoint far = SeenOnBall(at, {63.7f, 40.2f}, 30.0f, 8.0f, 2.0f);
+    return far.hit ? far : SeenOnBall(at, {20.0f, 14.0f}, 9.0f, 6.0f, 3.0f);
+  });
+  for (const Layer layer : {Layer::kMaterial, Layer::kAlbedo, Layer::kLuminance, Layer::kShadow, Layer::kLpeFull,
+                            Layer::kPref, Layer::kCosine, Layer::kUv})
+    guides.Add(layer);
+  for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
+    if (!(guides.Plane(Layer::kCoverage)[i] > 0.0f)) continue;
+    const float x = guides.Plane(Layer::kNormal, 0)[i], y = guides.Plane(Layer::kNormal, 1)[i],
+                z = guides.Plane(Layer::kNormal, 2)[i];
+    const float light = 0.5f * z + 0.4f * y - 0.6f * x;
+    guides.Plane(Layer::kCosine)[i] = light;
+    guides.Plane(Layer::kLuminance)[i] = std::max(0.0f, light);
+    guides.Plane(Layer::kShadow)[i] = y < -0.3f ? 1.0f : 0.0f;
+    guides.Plane(Layer::kMaterial)[i] = x > 0.2f ? 1.0f : 2.0f;
+    for (int c = 0; c < 3; ++c) {
+      guides.Plane(Layer::kAlbedo, c)[i] = 0.2f + 0.2f * static_cast<float>(c) + (x > 0.2f ? 0.2f : 0.0f);
+      guides.Plane(Layer::kLpeFull, c)[i] = 0.1f * static_cast<float>(c) + std::max(0.0f, light);
+    }
+  }
+  return guides;
+}
+
 // Many colours, with the alpha of the coverage.
 inline Picture CoveredPicture(const GuideSet& guides) {
   Picture picture = ColorfulPicture(guides.width(), guides.height());
@@ -127,6 +156,7 @@ inline FinishStep StepOf(FinishPass::Effect effect, double strength = 1.0) {
 // The picture after these steps; a failure is a failed test of the caller, which compares pictures.
 inline Picture Finished(std::span<const FinishStep> steps, const GuideSet* guides, Picture picture,
                         FinishMeasures measures = {}, int threads = 0, double scale = 1.0) {
+  const MoreWorkers workers(threads);  // beyond the machine's cores, too
   const FinishFrame frame{guides, measures, scale, 7};
   const Status done = ApplyFinish(steps, FinishPass::Stage::kPaint, frame, threads, {}, picture);
   return done ? picture : Picture();

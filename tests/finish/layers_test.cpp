@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/filter/more_workers.h"
 #include "core/style/finish_keys.h"
 #include "tests/finish/finish_fixtures.h"
 
@@ -185,6 +186,7 @@ TEST_F(LayeredFinish, HatchingLiesAtopWhereSomeOfItIsOpen) {
 TEST_F(LayeredFinish, AreTheSameOnAnyNumberOfThreads) {
   const std::vector<FinishStep> steps{NamedStep("edges", {{"color", std::string("paint")}}), NamedStep("hatch")};
   Picture one = picture_, four = picture_;
+  const MoreWorkers workers(4);  // beyond the machine's cores, too
   const auto with_one = FinishInLayers(steps, frame_, {}, 1, {}, one);
   const auto with_four = FinishInLayers(steps, frame_, {}, 4, {}, four);
   ASSERT_TRUE(with_one && with_four);

@@ -38,34 +38,6 @@ GuideSet Mirrored(GuideSet guides) {
   return guides;
 }
 
-// Three balls, one before the other, lit from the left, with cast shadow and base colours.
-GuideSet Balls() {
-  GuideSet guides = GuidesOf(97, 83, [](glm::vec2 at) {
-    const SeenPoint near = SeenOnBall(at, {38.3f, 47.1f}, 26.0f, 5.0f, 1.0f);
-    if (near.hit) return near;
-    const SeenPoint far = SeenOnBall(at, {63.7f, 40.2f}, 30.0f, 8.0f, 2.0f);
-    return far.hit ? far : SeenOnBall(at, {20.0f, 14.0f}, 9.0f, 6.0f, 3.0f);
-  });
-  for (const Layer layer : {Layer::kMaterial, Layer::kAlbedo, Layer::kLuminance, Layer::kShadow, Layer::kLpeFull,
-                            Layer::kPref, Layer::kCosine, Layer::kUv})
-    guides.Add(layer);
-  for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
-    if (!(guides.Plane(Layer::kCoverage)[i] > 0.0f)) continue;
-    const float x = guides.Plane(Layer::kNormal, 0)[i], y = guides.Plane(Layer::kNormal, 1)[i],
-                z = guides.Plane(Layer::kNormal, 2)[i];
-    const float light = 0.5f * z + 0.4f * y - 0.6f * x;
-    guides.Plane(Layer::kCosine)[i] = light;
-    guides.Plane(Layer::kLuminance)[i] = std::max(0.0f, light);
-    guides.Plane(Layer::kShadow)[i] = y < -0.3f ? 1.0f : 0.0f;
-    guides.Plane(Layer::kMaterial)[i] = x > 0.2f ? 1.0f : 2.0f;
-    for (int c = 0; c < 3; ++c) {
-      guides.Plane(Layer::kAlbedo, c)[i] = 0.2f + 0.2f * static_cast<float>(c) + (x > 0.2f ? 0.2f : 0.0f);
-      guides.Plane(Layer::kLpeFull, c)[i] = 0.1f * static_cast<float>(c) + std::max(0.0f, light);
-    }
-  }
-  return guides;
-}
-
 struct MirrorCase {
   std::string name;
   FinishPass::Effect effect;
@@ -125,7 +97,7 @@ std::vector<MirrorCase> MirrorCases() {
 class MirroredEffect : public ::testing::TestWithParam<MirrorCase> {};
 
 TEST_P(MirroredEffect, IsTheEffectMirrored) {
-  const GuideSet guides = Balls();
+  const GuideSet guides = LitBalls();
   Picture picture = ColorfulPicture(guides.width(), guides.height());
   for (std::size_t i = 0; i < guides.pixel_count(); ++i)
     picture.rgba[4 * i + 3] = static_cast<std::uint16_t>(guides.Plane(Layer::kCoverage)[i] * 65535.0f);
