@@ -9,7 +9,7 @@ import export_maps
 import export_normals
 import export_rest
 import export_viewport
-from blend_common import camera_rank, cameras_of, can_be_looked_through, note_crooked_camera
+from blend_common import camera_names, cameras_of, can_be_looked_through, note_crooked_camera
 
 MESH_TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 SHAPE_TYPES = MESH_TYPES | {"CURVES"}
@@ -22,10 +22,12 @@ RAYS = {"visible_diffuse": "diffuse", "visible_glossy": "glossy",
 
 @dataclass
 class Placed:
-    """Something at a place: `matrix` is Blender's world matrix, `source` the original object."""
+    """Something at a place: `matrix` is Blender's world matrix, `source` the original object, `shown` the object in the
+    scene that shows it: the source itself, or the instancer."""
     name: str
     source: object
     matrix: object
+    shown: object
     mesh: object = None
     slots: tuple = ()  # original materials, None where there is none
     exported: str = ""  # the name that the exporter sees
@@ -189,11 +191,15 @@ def flatten(scene, view_layer, unsupported):
 def order_cameras(flat, scene, unsupported):
     """The scene's cameras, hidden ones too, and instances; blend_common has their order."""
     usable = cameras_of(scene, unsupported)
-    placed = {camera.name for camera in flat.cameras}
-    flat.cameras += [Placed(thing.name, thing, thing.matrix_world.copy()) for thing in usable
-                     if thing.name not in placed]
+    placed = {camera.shown for camera in flat.cameras}
+    flat.cameras += [Placed(thing.name, thing, thing.matrix_world.copy(), thing) for thing in usable
+                     if thing not in placed]
     flat.cameras = [camera for camera in flat.cameras if can_be_looked_through(camera.source)]
-    flat.cameras.sort(key=lambda camera: camera_rank(scene, camera.name))
+    names = camera_names([camera.source for camera in flat.cameras if camera.shown == camera.source])
+    for camera in flat.cameras:
+        if camera.shown == camera.source:
+            camera.name = names[camera.source]
+    flat.cameras.sort(key=lambda camera: (camera.shown != scene.camera, camera.name))
     for camera in flat.cameras:
         note_crooked_camera(camera.name, camera.matrix, unsupported)
 
@@ -203,14 +209,14 @@ def place_object(flat, meshes, instance, name, depsgraph, unsupported):
     if thing.type not in SHAPE_TYPES | {"CAMERA", "LIGHT"}:
         unsupported.add(f"object '{thing.original.name}': is of type {thing.type}, left out")
         return
-    placed = Placed(name, thing.original, instance.matrix_world.copy())
+    shown = instance.parent.original if instance.is_instance else thing.original
+    placed = Placed(name, thing.original, instance.matrix_world.copy(), shown)
     if thing.type == "LIGHT":
         note_seen_lamp(thing.original, unsupported)
         flat.lamps.append(placed)
     elif thing.type == "CAMERA":
         flat.cameras.append(placed)
     else:
-        shown = instance.parent.original if instance.is_instance else thing.original
         if not seen_by_camera(thing.original, shown, depsgraph.view_layer):
             unsupported.add(f"object '{thing.original.name}': is not seen by the camera, so it is left out, with its "
                             "shadows and the light from it")

@@ -36,7 +36,8 @@ def name_apart(scene, view_layer, unsupported):
     for instance, name in every_instance(depsgraph):
         thing = instance.object
         if not instance.is_instance or is_made_of_itself(instance):
-            standing.append((thing.original, name))
+            if thing.type != "CAMERA":  # blend_common.camera_names
+                standing.append((thing.original, name))
             continue
         if len(name.encode()) > LONGEST_NAME:
             too_long += 1
