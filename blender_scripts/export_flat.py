@@ -8,6 +8,7 @@ import export_hair
 import export_maps
 import export_normals
 import export_rest
+import export_styles
 import export_viewport
 from blend_common import camera_names, cameras_of, can_be_looked_through, note_crooked_camera
 
@@ -152,17 +153,20 @@ def seen_by_camera(thing, shown, view_layer):
 
 
 def note_limits(thing, shown, view_layer, unsupported):
-    rays = [name for key, name in RAYS.items() if not getattr(thing, key, True)]
-    if rays:
-        unsupported.add(f"object '{thing.name}': is invisible to {', '.join(rays)} rays, which is ignored")
+    for owner in (thing, shown):  # an instance has its instancer's limits, too
+        rays = [name for key, name in RAYS.items() if not getattr(owner, key, True)]
+        if rays:
+            unsupported.add(f"object '{owner.name}': is invisible to {', '.join(rays)} rays, which is ignored")
     if thing.is_holdout or shown.holdout_get(view_layer=view_layer):
-        unsupported.add(f"object '{thing.name}': is a holdout, which is ignored")
+        owner = thing if thing.is_holdout else shown
+        unsupported.add(f"object '{owner.name}': is a holdout, which is ignored")
     levels = export_viewport.diced_levels(thing.original, view_layer.id_data)
     if levels is not None:
         more = f"{levels} levels more than its modifier's" if levels > 0 else "its modifier's own levels"
         unsupported.add(f"object '{thing.name}': its adaptive subdivision is taken for {more}")
-    if getattr(thing, "is_shadow_catcher", False) and not isinstance(thing.get("scumble_style"), str):
-        unsupported.add(f"object '{thing.name}': is a shadow catcher: pictures leave it out, and with --set "
+    catcher = next((owner for owner in (thing, shown) if export_styles.is_catcher(owner)), None)
+    if catcher is not None and export_styles.style_of(thing, shown) == "catcher":
+        unsupported.add(f"object '{catcher.name}': is a shadow catcher: pictures leave it out, and with --set "
                         "transfer.shadow=paint they have the shadows on it")
 
 

@@ -10,6 +10,7 @@ import bpy
 import export_alpha
 import export_bends
 import export_copies
+import export_styles
 from export_nodes import clear_links, constant, image_fault, one_texture, previous, principled_input
 
 PLAIN = {"BSDF_DIFFUSE": "DIFFUSE", "BSDF_GLOSSY": "GLOSSY", "EMISSION": "EMISSION", "BSDF_PRINCIPLED": "PRINCIPLED"}
@@ -291,6 +292,9 @@ def simplify(materials, shown_maps, unsupported):
         copy.use_backface_culling = False
         copy.blend_method = "BLEND" if holes else "OPAQUE"
         extras = {"bsdf": bsdf, **bends.extras, "pass_index": material.pass_index if material else 0}
+        style = export_styles.own_style(material) if material else None
+        if style is not None:
+            extras["style"] = style
         entries[key] = {"material": copy, "name": name, "extras": extras, "exported": copy.name, "bends": bends,
                         "color_attribute": attribute}
     return entries
