@@ -44,6 +44,7 @@ class FlatScene:
     materials: dict = field(default_factory=dict)  # by material_key
     shown_maps: dict = field(default_factory=dict)  # by material_key: its meshes' UV maps that renders take
     normals: dict = field(default_factory=dict)  # of metaballs' vertices, by the object's full name
+    uv_readers: set = field(default_factory=export_maps.instancer_readers)
     corners: dict = field(default_factory=dict)  # how many each mesh had before its faces were cut, by its name
 
 
@@ -110,10 +111,12 @@ def is_generated(instance, depsgraph):
     return thing.data.as_pointer() != thing.original.evaluated_get(depsgraph).data.as_pointer()
 
 
-def mesh_key(instance, depsgraph):
-    """Equal for those that show the same triangles in the same materials."""
+def mesh_key(instance, depsgraph, readers):
+    """Equal for those that show the same triangles in the same materials. `readers`: export_maps.instancer_readers."""
     thing = instance.object
     slots = tuple(material_key(slot.material) for slot in thing.material_slots)
+    if export_maps.reads_instancer(instance, readers):
+        slots += tuple(instance.uv)
     original = thing.original
     if thing.type != "MESH":
         return ("made", original.name_full, slots)  # each object has triangles of its own, whoever shares the curve
@@ -239,6 +242,8 @@ def add_mesh(flat, number, instance, depsgraph, unsupported):
     """The export's own copy of a mesh, and its hair; None where there is neither."""
     original = instance.object.original
     mesh, hair = new_shape(instance, depsgraph)
+    if export_maps.reads_instancer(instance, flat.uv_readers):
+        export_maps.add_instancer_map(mesh, instance.uv)
     corners = len(mesh.loops)
     if not export_normals.match_cycles(mesh, flat.normals.get(original.name_full), changes_shape(original)):
         unsupported.add(f"object '{original.name}': its normals are made from its faces, because its mesh has other "
@@ -261,7 +266,7 @@ def add_material(flat, material, mesh):
 
 def place_mesh(flat, meshes, placed, instance, depsgraph, unsupported):
     thing = instance.object
-    key = mesh_key(instance, depsgraph)
+    key = mesh_key(instance, depsgraph, flat.uv_readers)
     if key not in meshes:
         meshes[key] = add_mesh(flat, len(meshes) + 1, instance, depsgraph, unsupported)
     if meshes[key] is None:
