@@ -140,9 +140,13 @@ def choose_layer(scene, name=None):
 # ---- Cameras --------------------------------------------------------------------------------------------------------
 
 
-def camera_rank(scene, name):
-    """Sorts cameras: the active one first, the others by name."""
-    return (scene.camera is None or name != scene.camera.name, name)
+def camera_names(cameras):
+    """The name of each camera. A linked one may have the name of a local one, and is then that name's #2."""
+    names, taken = {}, {}
+    for camera in sorted(cameras, key=lambda camera: camera.name_full):
+        taken[camera.name] = taken.get(camera.name, 0) + 1
+        names[camera] = camera.name if taken[camera.name] == 1 else f"{camera.name}#{taken[camera.name]}"
+    return names
 
 
 def can_be_looked_through(thing):
@@ -150,10 +154,11 @@ def can_be_looked_through(thing):
 
 
 def cameras_of(scene, unsupported):
-    """The cameras of the scene, in order. A hidden camera counts: cameras are never rendered."""
+    """The cameras of the scene, the active one first, the others by name. A hidden camera counts: cameras are never
+    rendered."""
     found = {thing for thing in scene.objects if thing.type == "CAMERA"} | ({scene.camera} - {None})
-    usable = []
-    for thing in sorted(found, key=lambda thing: camera_rank(scene, thing.name)):
+    usable, names = [], camera_names(found)
+    for thing in sorted(found, key=lambda thing: (thing != scene.camera, names[thing])):
         if can_be_looked_through(thing):
             usable.append(thing)
         else:

@@ -8,6 +8,7 @@ of other types white. It writes our colours as an attribute of its own, which ex
 import numpy as np
 
 from export_flat import material_key
+from export_maps import MOST_MAPS, maps_of, shown_map
 
 ATTRIBUTE = "_scumble_color"  # as in export_rest.py
 # How attributes of each type that Cycles reads store their values: the property and the number of them.
@@ -99,6 +100,20 @@ def colors_of_mesh(mesh, attributes):
             wanted = slots == number
             colors[wanted] = at_corners(mesh, *read(mesh, *attribute))[wanted]
     return "CORNER", colors
+
+
+def add_maps(flat, materials):
+    """A UV Map node takes attributes of every kind by their name: those become maps, as far as there is room."""
+    for mesh, slots in {placed.mesh.name: (placed.mesh, placed.slots) for placed in flat.meshes}.values():
+        for name in sorted({name for slot in slots for name in maps_of(materials[material_key(slot)]["material"])}):
+            if name not in mesh.attributes or name in mesh.uv_layers or len(mesh.uv_layers) >= MOST_MAPS:
+                continue
+            values, shown = at_corners(mesh, *read(mesh, name, False))[:, :2], shown_map(mesh)
+            mesh.attributes.remove(mesh.attributes[name])  # names are unique from Blender 3.5 on
+            mesh.uv_layers.new(name=name, do_init=False)
+            mesh.uv_layers[name].data.foreach_set("uv", np.ascontiguousarray(values, np.float32).ravel())
+            if shown:
+                mesh.uv_layers[shown].active_render = True
 
 
 def add_colors(flat, materials):

@@ -1,6 +1,7 @@
 """Prepares the copy of a material's nodes, so that they say what Cycles does: part of export_scene.py.
 
-Muted nodes and links go, mappings in a row become one, and images whose alpha is not read get Cycles' colours.
+Muted nodes and links go, an image's own mapping becomes a node, mappings in a row become one, the UV of the instancer
+becomes a map, and images whose alpha is not read get Cycles' colours.
 """
 
 import math
@@ -9,7 +10,8 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
-from export_nodes import is_plain_mapping, passed_through, previous, trace
+from export_nodes import (INSTANCER_MAP, is_odd_panel, is_plain_mapping, is_used_panel, passed_through, previous,
+                          trace)
 
 ASSOCIATED = "scumble_associated"  # property of an image: the one that stands for it
 
@@ -36,6 +38,32 @@ def bypass_muted(tree):
                 elif handed is not None:
                     make_zero(socket)
         tree.nodes.remove(node)
+
+
+def name_instancer_map(tree):
+    """What takes the UV of the instancer reads the map in which export_maps.py stores that."""
+    for node in [node for node in tree.nodes if getattr(node, "from_instancer", False)]:
+        named = tree.nodes.new("ShaderNodeUVMap")
+        named.uv_map = INSTANCER_MAP
+        for link in list(node.outputs["UV"].links):
+            tree.links.new(named.outputs["UV"], link.to_socket)
+
+
+def spread_panel(tree):
+    """The Texture Mapping panel of an image becomes a Mapping node, where one can say it."""
+    for node in [node for node in tree.nodes if node.type == "TEX_IMAGE"]:
+        panel = node.texture_mapping
+        if is_odd_panel(panel) or not is_used_panel(panel):
+            continue
+        source = previous(node.inputs["Vector"]) or tree.nodes.new("ShaderNodeTexCoord").outputs["UV"]
+        mapping = tree.nodes.new("ShaderNodeMapping")
+        mapping.name, mapping.vector_type = f"Texture Mapping of {node.name}", panel.vector_type
+        for name, value, nothing in (("Location", "translation", 0.0), ("Rotation", "rotation", 0.0),
+                                     ("Scale", "scale", 1.0)):
+            mapping.inputs[name].default_value = getattr(panel, value)
+            setattr(panel, value, (nothing,) * 3)
+        tree.links.new(source, mapping.inputs["Vector"])
+        tree.links.new(mapping.outputs[0], node.inputs["Vector"])
 
 
 def merge(upper, lower):
@@ -96,5 +124,7 @@ def associate_images(tree):
 
 def prepare(tree):
     bypass_muted(tree)
+    name_instancer_map(tree)
+    spread_panel(tree)
     merge_mappings(tree)
     associate_images(tree)

@@ -8,8 +8,9 @@ import export_hair
 import export_maps
 import export_normals
 import export_rest
+import export_styles
 import export_viewport
-from blend_common import camera_rank, cameras_of, can_be_looked_through, note_crooked_camera
+from blend_common import camera_names, cameras_of, can_be_looked_through, note_crooked_camera
 
 MESH_TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 SHAPE_TYPES = MESH_TYPES | {"CURVES"}
@@ -22,10 +23,12 @@ RAYS = {"visible_diffuse": "diffuse", "visible_glossy": "glossy",
 
 @dataclass
 class Placed:
-    """Something at a place: `matrix` is Blender's world matrix, `source` the original object."""
+    """Something at a place: `matrix` is Blender's world matrix, `source` the original object, `shown` the object in the
+    scene that shows it: the source itself, or the instancer."""
     name: str
     source: object
     matrix: object
+    shown: object
     mesh: object = None
     slots: tuple = ()  # original materials, None where there is none
     exported: str = ""  # the name that the exporter sees
@@ -41,6 +44,7 @@ class FlatScene:
     materials: dict = field(default_factory=dict)  # by material_key
     shown_maps: dict = field(default_factory=dict)  # by material_key: its meshes' UV maps that renders take
     normals: dict = field(default_factory=dict)  # of metaballs' vertices, by the object's full name
+    uv_readers: set = field(default_factory=export_maps.instancer_readers)
     corners: dict = field(default_factory=dict)  # how many each mesh had before its faces were cut, by its name
 
 
@@ -107,10 +111,12 @@ def is_generated(instance, depsgraph):
     return thing.data.as_pointer() != thing.original.evaluated_get(depsgraph).data.as_pointer()
 
 
-def mesh_key(instance, depsgraph):
-    """Equal for those that show the same triangles in the same materials."""
+def mesh_key(instance, depsgraph, readers):
+    """Equal for those that show the same triangles in the same materials. `readers`: export_maps.instancer_readers."""
     thing = instance.object
     slots = tuple(material_key(slot.material) for slot in thing.material_slots)
+    if export_maps.reads_instancer(instance, readers):
+        slots += tuple(instance.uv)
     original = thing.original
     if thing.type != "MESH":
         return ("made", original.name_full, slots)  # each object has triangles of its own, whoever shares the curve
@@ -150,17 +156,20 @@ def seen_by_camera(thing, shown, view_layer):
 
 
 def note_limits(thing, shown, view_layer, unsupported):
-    rays = [name for key, name in RAYS.items() if not getattr(thing, key, True)]
-    if rays:
-        unsupported.add(f"object '{thing.name}': is invisible to {', '.join(rays)} rays, which is ignored")
+    for owner in (thing, shown):  # an instance has its instancer's limits, too
+        rays = [name for key, name in RAYS.items() if not getattr(owner, key, True)]
+        if rays:
+            unsupported.add(f"object '{owner.name}': is invisible to {', '.join(rays)} rays, which is ignored")
     if thing.is_holdout or shown.holdout_get(view_layer=view_layer):
-        unsupported.add(f"object '{thing.name}': is a holdout, which is ignored")
+        owner = thing if thing.is_holdout else shown
+        unsupported.add(f"object '{owner.name}': is a holdout, which is ignored")
     levels = export_viewport.diced_levels(thing.original, view_layer.id_data)
     if levels is not None:
         more = f"{levels} levels more than its modifier's" if levels > 0 else "its modifier's own levels"
         unsupported.add(f"object '{thing.name}': its adaptive subdivision is taken for {more}")
-    if getattr(thing, "is_shadow_catcher", False) and not isinstance(thing.get("scumble_style"), str):
-        unsupported.add(f"object '{thing.name}': is a shadow catcher: pictures leave it out, and with --set "
+    catcher = next((owner for owner in (thing, shown) if export_styles.is_catcher(owner)), None)
+    if catcher is not None and export_styles.style_of(thing, shown) == "catcher":
+        unsupported.add(f"object '{catcher.name}': is a shadow catcher: pictures leave it out, and with --set "
                         "transfer.shadow=paint they have the shadows on it")
 
 
@@ -189,11 +198,15 @@ def flatten(scene, view_layer, unsupported):
 def order_cameras(flat, scene, unsupported):
     """The scene's cameras, hidden ones too, and instances; blend_common has their order."""
     usable = cameras_of(scene, unsupported)
-    placed = {camera.name for camera in flat.cameras}
-    flat.cameras += [Placed(thing.name, thing, thing.matrix_world.copy()) for thing in usable
-                     if thing.name not in placed]
+    placed = {camera.shown for camera in flat.cameras}
+    flat.cameras += [Placed(thing.name, thing, thing.matrix_world.copy(), thing) for thing in usable
+                     if thing not in placed]
     flat.cameras = [camera for camera in flat.cameras if can_be_looked_through(camera.source)]
-    flat.cameras.sort(key=lambda camera: camera_rank(scene, camera.name))
+    names = camera_names([camera.source for camera in flat.cameras if camera.shown == camera.source])
+    for camera in flat.cameras:
+        if camera.shown == camera.source:
+            camera.name = names[camera.source]
+    flat.cameras.sort(key=lambda camera: (camera.shown != scene.camera, camera.name))
     for camera in flat.cameras:
         note_crooked_camera(camera.name, camera.matrix, unsupported)
 
@@ -203,14 +216,14 @@ def place_object(flat, meshes, instance, name, depsgraph, unsupported):
     if thing.type not in SHAPE_TYPES | {"CAMERA", "LIGHT"}:
         unsupported.add(f"object '{thing.original.name}': is of type {thing.type}, left out")
         return
-    placed = Placed(name, thing.original, instance.matrix_world.copy())
+    shown = instance.parent.original if instance.is_instance else thing.original
+    placed = Placed(name, thing.original, instance.matrix_world.copy(), shown)
     if thing.type == "LIGHT":
         note_seen_lamp(thing.original, unsupported)
         flat.lamps.append(placed)
     elif thing.type == "CAMERA":
         flat.cameras.append(placed)
     else:
-        shown = instance.parent.original if instance.is_instance else thing.original
         if not seen_by_camera(thing.original, shown, depsgraph.view_layer):
             unsupported.add(f"object '{thing.original.name}': is not seen by the camera, so it is left out, with its "
                             "shadows and the light from it")
@@ -229,6 +242,8 @@ def add_mesh(flat, number, instance, depsgraph, unsupported):
     """The export's own copy of a mesh, and its hair; None where there is neither."""
     original = instance.object.original
     mesh, hair = new_shape(instance, depsgraph)
+    if export_maps.reads_instancer(instance, flat.uv_readers):
+        export_maps.add_instancer_map(mesh, instance.uv)
     corners = len(mesh.loops)
     if not export_normals.match_cycles(mesh, flat.normals.get(original.name_full), changes_shape(original)):
         unsupported.add(f"object '{original.name}': its normals are made from its faces, because its mesh has other "
@@ -251,7 +266,7 @@ def add_material(flat, material, mesh):
 
 def place_mesh(flat, meshes, placed, instance, depsgraph, unsupported):
     thing = instance.object
-    key = mesh_key(instance, depsgraph)
+    key = mesh_key(instance, depsgraph, flat.uv_readers)
     if key not in meshes:
         meshes[key] = add_mesh(flat, len(meshes) + 1, instance, depsgraph, unsupported)
     if meshes[key] is None:

@@ -9,6 +9,7 @@ import struct
 import export_bends
 import export_colors
 import export_hair
+import export_styles
 from blend_common import GLTF_FROM_BLENDER
 
 LUMENS_PER_WATT = 683.0
@@ -80,11 +81,9 @@ def camera_of(extras):
     return {"type": "perspective", "perspective": {"yfov": yfov, "aspectRatio": aspect, **planes}}
 
 
-def style_of(thing):
-    style = thing.get("scumble_style")
-    if isinstance(style, str):
-        return {"style": style}
-    return {"style": "catcher"} if getattr(thing, "is_shadow_catcher", False) else {}
+def wish(placed):
+    style = export_styles.style_of(placed.source, placed.shown)
+    return {} if style is None else {"style": style}
 
 
 def add_hair(document, binary, flat, by_name, settings):
@@ -124,7 +123,7 @@ def complete(document, binary, flat, materials, lamps, cameras, curves):
             continue
         document["meshes"][mesh]["name"] = placed.source.data.name if placed.source.data else placed.source.name
         nodes.append({"name": placed.name, "mesh": mesh, "matrix": matrix_numbers(placed.matrix, True),
-                      "extras": {"scumble": {"pass_index": placed.source.pass_index, **style_of(placed.source)}}})
+                      "extras": {"scumble": {"pass_index": placed.source.pass_index, **wish(placed)}}})
     for placed, extras in zip(flat.cameras, cameras):
         document.setdefault("cameras", []).append({"name": placed.source.data.name, **camera_of(extras)})
         nodes.append({"name": placed.name, "camera": len(document["cameras"]) - 1,
@@ -157,7 +156,7 @@ def complete(document, binary, flat, materials, lamps, cameras, curves):
         entry = entries[material["name"]]
         material["name"] = entry["name"]
         extras = export_bends.complete(material, entry["extras"])
-        material["extras"] = {"scumble": {**extras, **style_of(entry["material"])}}
+        material["extras"] = {"scumble": extras}
         material["doubleSided"] = True
     export_bends.drop_unused_coat(document)
     return bytes(binary)

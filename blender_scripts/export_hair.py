@@ -104,9 +104,12 @@ def curves_hair(thing):
         data.attributes["radius"].data.foreach_get("value", radii)
     lengths = np.array([curve.points_length for curve in data.curves], np.int64)
     slots = [slot.material for slot in thing.material_slots]
-    if len(lengths) == 0 or lengths.min() < 2:
+    drawn = lengths >= 2  # a single point has no length
+    if not drawn.any():
         return []
-    return [Hair(points.reshape(-1, 3), radii, lengths, slots[0].original if slots and slots[0] else None)]
+    kept = np.repeat(drawn, lengths)
+    return [Hair(points.reshape(-1, 3)[kept], radii[kept], lengths[drawn],
+                 slots[0].original if slots and slots[0] else None)]
 
 
 def curve_settings(scene):

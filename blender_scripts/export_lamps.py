@@ -4,6 +4,7 @@ import math
 
 import bpy
 import numpy
+from mathutils import Matrix
 
 from export_materials import constant, previous
 
@@ -41,9 +42,42 @@ def has_soft_falloff(lamp):
     return getattr(lamp, "use_soft_falloff", bpy.app.version[:2] != (4, 0))
 
 
+def straighten(placed, complain):
+    """Gives a lamp whose matrix flattens or shears one of square axes, with the direction that Cycles takes: the third
+    axis, of an area light the one across its first two. Returns whether it shines at all there."""
+    x, y, z = (placed.matrix.col[axis].to_3d().normalized() for axis in range(3))
+    if all(axis.length > 0.5 for axis in (x, y, z)) and max(abs(x @ y), abs(y @ z), abs(z @ x)) < 1e-5:
+        return True
+    kind, shines = placed.source.data.type, True
+    backward = z
+    if kind == "AREA":
+        backward = x.cross(y)
+        shines = backward.length > 1e-6
+        if shines and z.length < 0.5:
+            complain("is flattened along its axis, and shines to both sides in Cycles: it shines forward alone")
+        elif shines:
+            complain("is sheared, as a child of what is scaled unevenly, and Cycles shades it otherwise: take that "
+                     "scale away")
+        if backward @ z < 0.0:
+            backward.negate()
+    elif kind != "POINT":
+        shines = z.length > 0.5
+    if backward.length < 1e-6:
+        backward = Matrix.Identity(3).col[2]
+    backward.normalize()
+    right = x - (x @ backward) * backward if kind == "AREA" else y.cross(backward)
+    if right.length < 1e-6:
+        right = backward.orthogonal()
+    right.normalize()
+    place = placed.matrix.translation
+    placed.matrix = Matrix((right, backward.cross(right), backward)).transposed().to_4x4()
+    placed.matrix.translation = place
+    return shines
+
+
 def describe_lamp(placed, unsupported):
-    """The extras of one light. An area light's size includes its object's scale, as in Cycles; other kinds ignore
-    it."""
+    """The extras of one light, whose matrix is straightened. An area light's size includes its object's scale, as in
+    Cycles; other kinds ignore it."""
     lamp = placed.source.data
 
     def complain(what):
@@ -82,6 +116,8 @@ def describe_lamp(placed, unsupported):
             complain(f"does not shine on {kind} surfaces, which is ignored")
     if lamp.cycles.max_bounces < MOST_BOUNCES:
         complain(f"its light ends after {lamp.cycles.max_bounces} bounces, which is ignored")
+    if not straighten(placed, complain):
+        extras["energy"] = 0.0
     return extras
 
 

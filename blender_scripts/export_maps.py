@@ -3,11 +3,14 @@
 glTF's textures give the number of a map, and Blender's exporter takes it from any one of the meshes that share the
 material. So the meshes, the export's own copies, get their maps in one order. Where several materials of a mesh want
 different orders, a copy of the material has another number. A map that a mesh lacks is zero everywhere in Cycles.
+
+The UV of an instancer is one point for each instance. Meshes with a material that reads it are not shared then.
 """
 
+import bpy
 import numpy as np
 
-from export_nodes import coordinates_of
+from export_nodes import INSTANCER_MAP, coordinates_of
 
 NEARLY_ZERO = 1e-6
 MOST_MAPS = 8  # of a mesh in Blender
@@ -19,6 +22,31 @@ def maps_of(material):
         return []
     return sorted({coordinates_of(node.inputs["Vector"])[0] for node in material.node_tree.nodes
                    if node.type == "TEX_IMAGE"})
+
+
+def instancer_readers():
+    """The full names of the materials that take the UV of what instances them."""
+    return {material.name_full for material in bpy.data.materials
+            if material.use_nodes and material.node_tree
+            and any(getattr(node, "from_instancer", False) and node.outputs["UV"].is_linked
+                    for node in material.node_tree.nodes)}
+
+
+def reads_instancer(instance, readers):
+    """Whether a material of an instance is one of those."""
+    if not readers or not instance.is_instance or instance.object.type == "CURVES":
+        return False
+    materials = [slot.material for slot in instance.object.material_slots]
+    return any(material is not None and material.original.name_full in readers for material in materials)
+
+
+def add_instancer_map(mesh, uv):
+    shown = shown_map(mesh)
+    if mesh.uv_layers.new(name=INSTANCER_MAP, do_init=False) is None:
+        return  # number_of says so
+    mesh.uv_layers[INSTANCER_MAP].data.foreach_set("uv", np.tile(np.array(uv, np.float32), len(mesh.loops)))
+    if shown:
+        mesh.uv_layers[shown].active_render = True
 
 
 def shown_map(mesh):

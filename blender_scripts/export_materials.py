@@ -10,6 +10,7 @@ import bpy
 import export_alpha
 import export_bends
 import export_copies
+import export_styles
 from export_nodes import clear_links, constant, image_fault, one_texture, previous, principled_input
 
 PLAIN = {"BSDF_DIFFUSE": "DIFFUSE", "BSDF_GLOSSY": "GLOSSY", "EMISSION": "EMISSION", "BSDF_PRINCIPLED": "PRINCIPLED"}
@@ -260,6 +261,15 @@ def simplify_nodes(copy, reader):
     return bsdf, bends, holes, source if isinstance(source, tuple) else None
 
 
+def copy_at_this_frame(material):
+    """A copy without animation and drivers, which would set its values anew at the frame of the export's scene."""
+    copy = material.copy()
+    for owner in (copy, copy.node_tree):
+        if owner is not None:
+            owner.animation_data_clear()
+    return copy
+
+
 def simplify(materials, shown_maps, unsupported):
     """For each material by its key: {"material": the exporter's, "name": the original's, "extras": …, …}. `shown_maps`:
     the names of the UV maps that renders take, likewise."""
@@ -270,7 +280,7 @@ def simplify(materials, shown_maps, unsupported):
             copy.diffuse_color = (*CYCLES_DEFAULT, 1.0)
             name = "default"
         else:
-            copy, name = material.copy(), material.name
+            copy, name = copy_at_this_frame(material), material.name
         copy.name = f"scumble.{number:06d}"
         shown = next(iter(shown_maps[key])) if len(shown_maps[key]) == 1 else ""
         holes, bends, bsdf, attribute = False, export_bends.Bends(), diffuse(copy.diffuse_color[:3]), None
@@ -282,6 +292,9 @@ def simplify(materials, shown_maps, unsupported):
         copy.use_backface_culling = False
         copy.blend_method = "BLEND" if holes else "OPAQUE"
         extras = {"bsdf": bsdf, **bends.extras, "pass_index": material.pass_index if material else 0}
+        style = export_styles.own_style(material) if material else None
+        if style is not None:
+            extras["style"] = style
         entries[key] = {"material": copy, "name": name, "extras": extras, "exported": copy.name, "bends": bends,
                         "color_attribute": attribute}
     return entries

@@ -7,6 +7,8 @@ PRINCIPLED_INPUTS = {"Subsurface": "Subsurface Weight", "Specular": "Specular IO
                      "Clearcoat Normal": "Coat Normal", "Transmission": "Transmission Weight",
                      "Emission": "Emission Color"}
 
+INSTANCER_MAP = "scumble.instancer"  # the UV map that holds an instance's place in its instancer's map
+
 LUMINANCE = (0.2126, 0.7152, 0.0722)  # of Blender's own colour space
 
 
@@ -62,6 +64,16 @@ def is_plain_mapping(node):
     return max(abs(angle) for angle in node.inputs["Rotation"].default_value[:2]) < 1e-6
 
 
+def is_used_panel(panel):
+    """Whether an image's Texture Mapping panel moves its coordinates."""
+    return any(panel.translation) or any(panel.rotation) or any(value != 1.0 for value in panel.scale)
+
+
+def is_odd_panel(panel):
+    """Whether it swaps or clamps them."""
+    return panel.use_min or panel.use_max or (panel.mapping_x, panel.mapping_y, panel.mapping_z) != ("X", "Y", "Z")
+
+
 def coordinates_of(socket):
     """The name of the UV map that a texture's coordinates come from, "" for the active one; and the fault in them, None
     where glTF has them."""
@@ -88,6 +100,8 @@ def image_fault(node, spaces):
         return f"node '{node.name}' without an image"
     if node.projection != "FLAT" or node.extension == "CLIP":
         return f"node '{node.name}' with {node.projection} projection and extension {node.extension}"
+    if is_odd_panel(node.texture_mapping):
+        return f"node '{node.name}' with a projection or limits in its Texture Mapping panel"
     if node.image.source not in {"FILE", "GENERATED"}:
         return f"node '{node.name}' with an image of source {node.image.source}"
     space, is_float = node.image.colorspace_settings.name, node.image.is_float

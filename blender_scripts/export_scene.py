@@ -61,6 +61,7 @@ def export(scene, view_layer, output, unsupported):
     materials = export_materials.simplify(flat.materials, flat.shown_maps, unsupported)
     has_heights = export_bends.add_exact_v(flat, materials)
     has_colors = export_colors.add_colors(flat, materials)
+    export_colors.add_maps(flat, materials)
     has_attributes = has_rest or has_heights or has_colors
     if has_attributes:
         for mesh in {placed.mesh.name: placed.mesh for placed in flat.meshes}.values():

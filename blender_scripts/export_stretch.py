@@ -11,6 +11,7 @@ import numpy as np
 
 FLOAT = 5126
 TINY = 1e-6  # relative; below it a stretch is a float's rounding
+FLAT = 2e-6  # relative: how thick what is flattened becomes, so that its normals have a way into the world
 
 
 def split(matrix):
@@ -24,6 +25,20 @@ def split(matrix):
         return None
     stretch = right.T @ np.diag(sizes) @ right
     return left @ right, (stretch + stretch.T) / 2
+
+
+def thicken(nodes):
+    """Makes each "matrix" that flattens a mesh onto a plane, which Cycles draws, one that can be inverted. What is
+    flattened onto a line has no surface."""
+    matrices = np.array([node["matrix"] for node in nodes], dtype=np.float64).reshape(-1, 4, 4)
+    linear = matrices[:, :3, :3]
+    thin = np.abs(np.linalg.det(linear)) <= TINY * np.linalg.norm(linear, axis=(1, 2)) ** 3
+    for number in np.flatnonzero(thin & np.isfinite(linear).all(axis=(1, 2))):
+        left, sizes, right = np.linalg.svd(linear[number])
+        if sizes[2] <= TINY * sizes[0] < sizes[1]:
+            sizes[2] = FLAT * sizes[0] * np.sign(np.linalg.det(left) * np.linalg.det(right))
+            linear[number] = left @ np.diag(sizes) @ right
+            nodes[number]["matrix"] = matrices[number].ravel().tolist()
 
 
 def values_of(document, buffer, accessor):
@@ -42,10 +57,11 @@ def numbers_of(document, buffer, accessor):
 
 
 def bake(document, binary, nodes):
-    """Stretches the meshes of those nodes that are their mesh's only users, and makes their "matrix" orthogonal.
-    Returns the binary."""
+    """Thickens what is flat, stretches the meshes of those nodes that are their mesh's only users, and makes their
+    "matrix" orthogonal. Returns the binary."""
     buffer = bytearray(binary)
     users = {}
+    thicken([node for node in nodes if "mesh" in node])
     for node in nodes:
         users.setdefault(node.get("mesh"), []).append(node)
     accessor_users = {}

@@ -140,10 +140,11 @@ def take_settings(scene, view_layer):
     for tree in bpy.data.node_groups:
         if tree.type == "GEOMETRY":
             use_render_nodes(tree)
+    cameras = {thing for thing in scene.objects if thing.type == "CAMERA"}
     for thing in bpy.data.objects:
         release(thing)
         # Cameras are never rendered; those of instanced collections stay hidden.
-        is_camera = thing.type == "CAMERA" and thing.name in scene.objects
+        is_camera = thing in cameras
         put(thing, "hide_viewport", thing.hide_render and not is_camera)
         put(thing, "show_instancer_for_viewport", thing.show_instancer_for_render)
         use_render_modifiers(thing, scene)
@@ -167,7 +168,7 @@ def bring_in(cameras, scene, view_layer):
     """Cameras that the view layer leaves out or does not show, so that the frame moves them as well."""
     for camera in cameras:
         held = camera in set(view_layer.objects) and camera.visible_get(view_layer=view_layer)
-        if not held and scene.library is None and camera.name not in scene.collection.objects:
+        if not held and scene.library is None and camera not in set(scene.collection.objects):
             scene.collection.objects.link(camera)
 
 

@@ -9,7 +9,9 @@ from blend_common import GLTF_FROM_BLENDER
 
 def choose(scene, name, unsupported):
     """Makes the camera of that name the scene's; without a name the first one that export_scene.py writes."""
-    cameras = {thing.name: thing for thing in blend_common.cameras_of(scene, unsupported)}
+    usable = blend_common.cameras_of(scene, unsupported)
+    names = blend_common.camera_names(usable)
+    cameras = {names[thing]: thing for thing in usable}
     if name and name not in cameras:
         raise LookupError(f"there is no camera '{name}'; there are: " + (", ".join(cameras) or "none"))
     if not cameras:

@@ -9,7 +9,9 @@ from dataclasses import dataclass
 
 import bpy
 
+from export_copies import name_instancer_map
 from export_flat import RAYS, every_instance, is_generated, is_made_of_itself, new_mesh, seen_by_camera
+from export_maps import add_instancer_map, instancer_readers, reads_instancer
 from export_viewport import show_as_rendered
 
 LONGEST_NAME = 63  # bytes that Blender keeps of a name
@@ -33,16 +35,19 @@ def name_apart(scene, view_layer, unsupported):
     depsgraph = view_layer.depsgraph
     depsgraph.update()
     standing, copies, instancers, made, too_long = [], [], [], {}, 0
+    readers = instancer_readers()
     for instance, name in every_instance(depsgraph):
         thing = instance.object
         if not instance.is_instance or is_made_of_itself(instance):
-            standing.append((thing.original, name))
+            if thing.type != "CAMERA":  # blend_common.camera_names
+                standing.append((thing.original, name))
             continue
         if len(name.encode()) > LONGEST_NAME:
             too_long += 1
             name = name.encode()[:LONGEST_NAME].decode(errors="ignore")
         parent = instance.parent.original
-        copies.append(Copy(name, thing.original, made_mesh(instance, made, depsgraph), instance.matrix_world.copy(),
+        mesh = made_mesh(instance, made, depsgraph, readers)
+        copies.append(Copy(name, thing.original, mesh, instance.matrix_world.copy(),
                            rays_of(thing.original, parent, view_layer),
                            thing.original.is_holdout or parent.holdout_get(view_layer=view_layer)))
         for instancer in (parent, thing.original):  # instancers may be instances
@@ -52,6 +57,9 @@ def name_apart(scene, view_layer, unsupported):
         unsupported.add(f"{too_long} instances have names of more than {LONGEST_NAME} bytes, which Cycles' object pass "
                         "cuts")
     rename(standing)
+    for material in bpy.data.materials:
+        if material.use_nodes and material.node_tree:
+            name_instancer_map(material.node_tree)
     if not copies:
         return
     shown = {thing for thing, _ in standing}
@@ -75,13 +83,17 @@ def rename(standing):
             thing.name = name
 
 
-def made_mesh(instance, made, depsgraph):
-    """The mesh of an instance that only geometry nodes define; None where it is that of its object."""
-    if not is_generated(instance, depsgraph):
+def made_mesh(instance, made, depsgraph, readers):
+    """The mesh of an instance that only geometry nodes define, or that has the instancer's UV; None where it is that of
+    its object."""
+    reads_uv = reads_instancer(instance, readers)
+    if not reads_uv and not is_generated(instance, depsgraph):
         return None
-    key = instance.object.data.as_pointer()
+    key = (instance.object.data.as_pointer(), *(instance.uv if reads_uv else ()))
     if key not in made:
         made[key] = new_mesh(instance, depsgraph)
+        if reads_uv:
+            add_instancer_map(made[key], instance.uv)
     return made[key]
 
 

@@ -44,7 +44,8 @@ Expected<fs::path> FindStyle(const std::string& name, const RunContext& context,
     }
   }
   const std::string meant = NearestName(name, names);
-  return InputError("there is no style '" + name + "': expected a file, a folder, or " +
+  const std::string where = base.empty() || fs::path(name).is_absolute() ? "" : " in " + base.string();
+  return InputError("there is no style '" + name + "'" + where + ": expected a file, a folder, or " +
                     (bundled.empty()
                          ? "a bundled style, of which none are found beside this program"
                          : "one of the bundled styles " + bundled + ", or toon or render, which need no painting") +

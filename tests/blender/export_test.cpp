@@ -544,6 +544,9 @@ TEST(BlenderExtras, BrokenOnesAreNamed) {
   };
   EXPECT_TRUE(load(R"({"lamp":{"type":"SUN","color":[1,1,1],"energy":2,"angle":0}})"));
   EXPECT_TRUE(load("3")) << "somebody else's";
+  const auto wide = load(R"({"lamp":{"type":"SUN","color":[1,1,1],"energy":2,"angle":3.1415927410125732}})");
+  ASSERT_TRUE(wide);
+  EXPECT_EQ(wide->lights.at(0).angle_degrees, 180.0) << "Blender's most, a float above pi";
   for (const char* lamp :
        {R"({"type":"MOON","color":[1,1,1],"energy":2})", R"({"type":"SUN","color":[1,1],"energy":2})",
         R"({"type":"SUN","color":[1,1,1],"energy":-2,"angle":0})", R"({"type":"SUN"})", "7",

@@ -2,7 +2,8 @@
 
     blender -b -noaudio --factory-startup -P tests/blender/make_oddities.py -- --output FOLDER
 
-FOLDER gets odd.blend, seen from above in cells of 1 m, and layered.blend, whose second view layer moves.
+FOLDER gets odd.blend and, at frame 10, placed.blend, seen from above in cells of 1 m; layered.blend, whose second view
+layer moves; and limits.blend with lamps and instancers.
 """
 
 import argparse
@@ -17,6 +18,7 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import odd_materials  # noqa: E402  (Blender does not put a script's own folder on the path)
 import odd_objects  # noqa: E402
+import odd_places  # noqa: E402
 
 COLUMNS, ROWS = 8, 6
 
@@ -94,6 +96,26 @@ def make_layered(folder):
     save(folder, "layered")
 
 
+def make_placed(folder):
+    clear()
+    odd_places.rig()
+    save(folder, "rig")
+    scene = clear()
+    odd_places.build(folder)
+    scene.frame_set(1)
+    save(folder, "placed")
+
+
+def make_limits(folder):
+    (folder / "assets" / "paints" / "ink").mkdir(parents=True)
+    clear()
+    odd_places.asset()
+    save(folder / "assets", "styled")
+    clear()
+    odd_places.build_limits(folder)
+    save(folder, "limits")
+
+
 def main():
     parser = argparse.ArgumentParser(prog="make_oddities.py", description="Makes the scenes of oddities_test.py.")
     parser.add_argument("--output", required=True, type=Path)
@@ -101,6 +123,8 @@ def main():
     np.seterr(all="raise")
     make_odd(folder)
     make_layered(folder)
+    make_placed(folder)
+    make_limits(folder)
 
 
 if __name__ == "__main__":

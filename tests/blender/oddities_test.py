@@ -1,11 +1,13 @@
 #!/usr/bin/python3
 """What few files do is exported as Cycles renders it: odd materials, curves with geometry nodes, settings of the
-viewport, view layers other than the window's and their filters, and alpha, subdivision and lamps that are said.
+viewport, view layers other than the window's and their filters, alpha, subdivision and lamps that are said, animated
+nodes, cameras of one name, what is flat, and limits of instancers.
 
     oddities_test.py PROGRAM [BLENDER]
 """
 
 import json
+import math
 import struct
 import sys
 import tempfile
@@ -32,6 +34,10 @@ LOST = ["lamp 'Panel': is visible to the camera",
         "material 'veil': its alpha 0.6 is cut at one half: the surface is solid",
         "material 'velvet': node 'Velvet BSDF' (BSDF_VELVET) cannot be expressed",
         "object 'Diced': its adaptive subdivision is taken for 4 levels more than its modifier's"]
+
+LIMITS = ["lamp 'AREA xy': is flattened along its axis", "lamp 'Sheared': is sheared",
+          "object 'Catch': is a shadow catcher", "object 'Dark': is invisible to shadow rays"]
+SHEARED = (0.447742, 0.554991, 0.701079)  # the third axis under the inverse of the scale
 
 
 def blender_run(blender, *arguments):
@@ -80,9 +86,9 @@ def check_odd(document, extras):
     expect(not extras["unsupported"], extras["unsupported"])
 
 
-def check_against_cycles(program, blender, scene):
+def check_against_cycles(program, blender, scene, *more):
     done = run([program, "crosscheck", scene, "--blender", blender, "--size", "320x240", "--samples", "1", "-q",
-                "--json"])
+                "--json", *more])
     expect(done.stdout, done.stderr)
     report = json.loads(done.stdout)
     report = report[0] if isinstance(report, list) else report
@@ -128,6 +134,47 @@ def check_filter(document, has_surfaces, has_hair):
     expect(kinds["Furry"] == ({4} if has_surfaces else set()) | ({0} if has_hair else set()), kinds["Furry"])
 
 
+def check_placed(document, extras):
+    nodes = {node["name"]: node for node in document["nodes"]}
+    seen = [(node["name"], node["matrix"][12]) for node in document["nodes"] if "camera" in node]
+    expect(seen == [("Above#2", 3.5), ("Above", 100)], "the active camera first, whatever its name", seen)
+    strands = document["meshes"][nodes["Short"]["mesh"]]["primitives"]
+    segments = [document["accessors"][primitive["indices"]]["count"] for primitive in strands]
+    expect(segments == [4], "curves beside one of a single point", segments)
+    expect(not extras["unsupported"], extras["unsupported"])
+
+
+def check_limits(document, extras):
+    nodes = {node["name"]: node for node in document["nodes"]}
+    lamps = {name: node["extras"]["scumble"]["lamp"]["energy"] for name, node in nodes.items()
+             if "lamp" in node.get("extras", {}).get("scumble", {})}
+    lit = {"POINT", "POINT xy", "POINT z", "POINT yz", "POINT xyz", "SUN z", "SUN yz", "SUN xyz", "SPOT z", "SPOT yz",
+           "SPOT xyz", "AREA xy", "AREA xyz", "Sheared"}
+    expect({name for name, energy in lamps.items() if energy > 0} == lit, "lamps that shine in Cycles", lamps)
+
+    def backward(name):
+        return nodes[name]["matrix"][8:11]
+
+    for kind, axes in (("SUN", "z"), ("SUN", "yz"), ("SPOT", "z"), ("AREA", "xy")):
+        expect(math.dist(backward(f"{kind} {axes}"), backward(f"{kind} xyz")) < 1e-6, kind, axes)
+    expect(math.dist(backward("Sheared"), SHEARED) < 1e-5, "across its first two axes", backward("Sheared"))
+    for name in ("Shared", "Shared.001"):
+        thickness = math.hypot(*nodes[name]["matrix"][4:7])
+        expect(1e-7 < thickness < 1e-6, "what is flat keeps a direction for its normals", nodes[name]["matrix"])
+    styles = {name: node["extras"]["scumble"].get("style") for name, node in nodes.items() if "mesh" in node}
+    beside = styles.pop("Beside")
+    expect(beside.endswith("/assets/paints/ink"), "beside the library", beside)
+    wanted = {"Bundled": "oil", "Shared": None, "Shared.001": None, "Plain/Member": None, "Dark/Member": None,
+              "Catch/Member": "catcher", "Wish/Member": "ink"}
+    wanted.update({f"{name}/Own": "oil" for name in ("Plain", "Dark", "Catch", "Wish")})
+    expect(styles == wanted, styles)
+    styled = [material["extras"]["scumble"].get("style") for material in document["materials"]
+              if material["name"] == "styled"]
+    expect(styled == ["ink"], styled)
+    lost = sorted(extras["unsupported"])
+    expect(len(lost) == len(LIMITS) and all(start in line for start, line in zip(LIMITS, lost)), lost)
+
+
 def main():
     program, blender = Path(sys.argv[1]).resolve(), (sys.argv[2:] or ["blender"])[0]
     with tempfile.TemporaryDirectory() as work:
@@ -138,7 +185,10 @@ def main():
         check_layered(layered, extras)
         check_filter(layered, True, False)
         check_filter(exported(blender, folder, "layered", "--view-layer", "Strands")[0], False, True)
+        check_placed(*exported(blender, folder, "placed", "--frame", "10"))
+        check_limits(*exported(blender, folder, "limits"))
         check_against_cycles(program, blender, folder / "odd.blend")
+        check_against_cycles(program, blender, folder / "placed.blend", "--frame", "10")
 
 
 main()

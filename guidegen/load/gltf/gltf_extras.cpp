@@ -2,6 +2,7 @@
 
 #include <tiny_gltf.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -255,7 +256,7 @@ Expected<std::optional<Light>> ReadLightExtras(const tinygltf::Node& node, const
   } else if (type == "SUN") {
     light.type = LightType::kSun;
     light.intensity = energy;
-    light.angle_degrees = fields.Number("angle", 0.0, pi + 1e-6) * kDegreesPerRadian;
+    light.angle_degrees = std::min(fields.Number("angle", 0.0, pi + 1e-6) * kDegreesPerRadian, 180.0);
   } else if (type == "AREA") {
     light.type = LightType::kArea;
     shines = ReadArea(fields, light, energy);

@@ -1,0 +1,44 @@
+"""The style that an object or material asks for: part of export_scene.py."""
+
+import os
+
+import bpy
+
+PROPERTY = "scumble_style"
+
+
+def owner_of(thing):
+    """The data-block that the property's value is from: of a library override perhaps the linked one."""
+    override = getattr(thing, "override_library", None)
+    linked = override.reference if override else None
+    return linked if linked is not None and linked.get(PROPERTY) == thing.get(PROPERTY) else thing
+
+
+def own_style(thing):
+    """The property's text, None without one. A path that exists beside the library that the property is from, is that
+    path, whichever file links it."""
+    style = thing.get(PROPERTY)
+    if not isinstance(style, str):
+        return None
+    library = owner_of(thing).library
+    if library is not None:
+        folder = os.path.dirname(bpy.path.abspath(library.filepath, library=library.parent))
+        path = os.path.normpath(os.path.join(folder, style))
+        if style and os.path.exists(path):
+            return path
+    return style
+
+
+def is_catcher(thing):
+    return getattr(thing, "is_shadow_catcher", False)
+
+
+def style_of(thing, shown=None):
+    """What an object or material asks for, None without a wish. `shown` is the object in the scene that shows it: an
+    Empty's wish holds for its instances that have none of their own, and catchers instance catchers, as in Cycles."""
+    style = own_style(thing)
+    if style is None and shown is not None and shown.type == "EMPTY":
+        style = own_style(shown)
+    if style is None and (is_catcher(thing) or (shown is not None and is_catcher(shown))):
+        style = "catcher"
+    return style
