@@ -146,6 +146,10 @@ Expected<StaticScene> OpenSceneAt(std::optional<int> frame, const SceneRequest& 
 
 // The guides of a scene without a frame's number, at rest. Errors of CheckAtRest.
 Expected<SceneGuides> MakeStaticGuides(const SceneRequest& options, const LayersFor& layers_for, bool motion,
-                                       const RunContext& context, const Progress& progress, bool plan_only);
+                                       const RunContext& context, const Progress& progress);
+
+// PlanScene of a scene at a frame, or at rest: what MakeGuidesAt or MakeStaticGuides would do.
+Expected<SceneGuides> PlanSceneAt(std::optional<int> frame, const SceneRequest& options, const LayersFor& layers_for,
+                                  const RunContext& context);
 
 }  // namespace scumble
