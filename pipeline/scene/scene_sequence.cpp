@@ -253,19 +253,19 @@ Expected<StaticScene> OpenSceneAt(std::optional<int> frame, const SceneRequest& 
   Stopwatch watch;
   SCUMBLE_ASSIGN(const AnimatedScene animation,
                  AnimatedScene::Load(options.scene, {options.animation, LoadOptionsOf(options)}));
-  SCUMBLE_ASSIGN(StaticScene result, PoseScene(animation, frame, options, layers_for, context, warns));
+  PassOnNotes(animation.rest(), options.scene, context, warns);
+  SCUMBLE_ASSIGN(StaticScene result, PoseScene(animation, frame, options, layers_for, context));
   result.load_ms = watch.Lap();
   return result;
 }
 
 Expected<StaticScene> PoseScene(const AnimatedScene& animation, std::optional<int> frame, const SceneRequest& options,
-                                const LayersFor& layers_for, const RunContext& context, bool warns) {
+                                const LayersFor& layers_for, const RunContext& context) {
   StaticScene result;
   result.scene = animation.rest();
   if (frame) {
     SCUMBLE_ASSIGN(result.scene, animation.SceneAt(0.0));
   }
-  PassOnNotes(result.scene, options.scene, context, warns);
   SCUMBLE_ASSIGN(result.layers, layers_for(SceneStyleRequestsOf(animation.objects(), animation.rest())));
   SCUMBLE_ASSIGN(result.view, ViewScene(result.scene, options, result.layers));
   for (const std::string& note : result.view.notes) context.Note(note);
