@@ -757,6 +757,27 @@ TEST(Workspace, OneSunTakesThePlaceOfTheLights) {
   EXPECT_EQ(workspace.counters().scenes_loaded, 1u);
 }
 
+// By the names of the library's members, with what was found and what may be.
+TEST(Workspace, SettingsOutOfRangeAreNamed) {
+  Stylizer stylizer;
+  const auto refusal = [&](const SceneSettings& scene, const PaintSettings& paint = {}) {
+    const auto painted = stylizer.Paint(scene, {.style = "oil"}, paint);
+    return painted ? std::string() : painted.error().message;
+  };
+  SceneSettings scene{.file = "a.obj"};
+  scene.coverage_samples = 0;
+  EXPECT_EQ(refusal(scene), "coverage_samples 0 is out of range; expected 1 to 16");
+  scene = {.file = "a.obj"}, scene.light_samples = -1;
+  EXPECT_EQ(refusal(scene), "light_samples -1 is out of range; expected 0 to 65536");
+  scene = {.file = "a.obj"}, scene.auto_smooth = 181.0;
+  EXPECT_EQ(refusal(scene), "auto_smooth 181 is out of range; expected 0 to 180 degrees");
+  scene = {.file = "a.obj"}, scene.frames_per_second = -1.0;
+  EXPECT_EQ(refusal(scene), "frames_per_second -1 is out of range; expected 0.001 to 100000, or 0");
+  PaintSettings paint;
+  paint.exposure = 65.0;
+  EXPECT_EQ(refusal({.file = "a.obj"}, paint), "exposure 65 is out of range; expected -64 to 64 stops");
+}
+
 TEST(Workspace, GivesGuidesAlone) {
   Workspace workspace(Context());
   const auto guides = workspace.Guides(SceneOf("suzanne"), std::nullopt, {Layer::kAlbedo});
