@@ -1,6 +1,8 @@
 // The library's Stylizer, over a Workspace.
 #include "scumble/stylizer.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <utility>
 
@@ -38,6 +40,11 @@ Status CheckedMember(const char* settings, const Status& checked) {
   return Error{checked.error().kind, std::string(settings) + "." + checked.error().message};
 }
 
+Status CheckWithin(const char* member, int value, int least, int most) {
+  if (value >= least && value <= most) return Ok();
+  return UsageError(fmt::format("{} {} is out of range; expected {} to {}", member, value, least, most));
+}
+
 Expected<SceneRequest> RequestOf(const SceneSettings& settings) {
   SceneRequest request;
   request.scene = settings.file;
@@ -54,17 +61,21 @@ Expected<SceneRequest> RequestOf(const SceneSettings& settings) {
   }
   request.animation = settings.animation;
   if (const std::optional<double>& degrees = settings.auto_smooth; degrees && !(*degrees >= 0.0 && *degrees <= 180.0)) {
-    return UsageError("auto_smooth must be 0 to 180 degrees");
+    return UsageError(fmt::format("auto_smooth {} is out of range; expected 0 to 180 degrees", *degrees));
   }
   request.auto_smooth_degrees = settings.auto_smooth;
   request.blender.frame = settings.frame;
   request.blender.scene = settings.blender_scene, request.blender.view_layer = settings.view_layer;
   if (settings.frames_per_second != 0.0) {
     const double fps = settings.frames_per_second;
-    if (!(fps >= 0.001 && fps <= 1e5)) return UsageError("frames_per_second must be 0.001 to 1e5, or 0");
+    if (!(fps >= 0.001 && fps <= 1e5)) {
+      return UsageError(fmt::format("frames_per_second {} is out of range; expected 0.001 to 100000, or 0", fps));
+    }
     request.fps = NearestFrameRate(fps);
   }
+  SCUMBLE_RETURN_IF_ERROR(CheckWithin("coverage_samples", settings.coverage_samples, 1, 16));
   request.aa = settings.coverage_samples;
+  SCUMBLE_RETURN_IF_ERROR(CheckWithin("light_samples", settings.light_samples, 0, kMaxSamples));
   if (settings.light_samples != 0) request.samples = settings.light_samples, request.samples_given = true;
   request.isa = settings.instruction_set;
   request.raw_normals = settings.raw_normals;
@@ -85,7 +96,9 @@ Stylizer& Stylizer::operator=(Stylizer&&) noexcept = default;
 
 Expected<Picture> Stylizer::Paint(const SceneSettings& scene, const StyleSettings& style, const PaintSettings& paint) {
   SCUMBLE_ASSIGN(const SceneRequest request, RequestOf(scene));
-  if (paint.exposure && !(std::fabs(*paint.exposure) <= 64.0)) return UsageError("exposure must be -64 to 64 stops");
+  if (paint.exposure && !(std::fabs(*paint.exposure) <= 64.0)) {
+    return UsageError(fmt::format("exposure {} is out of range; expected -64 to 64 stops", *paint.exposure));
+  }
   StyleRequest style_request;
   style_request.style = style.style, style_request.sets = style.overrides;
   style_request.assigned = style.assignments, style_request.scene_styles = style.follow_scene;

@@ -156,13 +156,13 @@ struct Workspace::State {
   std::string scene_key;
   FileStamps scene_stamps;                    // of all that it consists of, also where it could not be loaded
   std::optional<AnimatedScene> animation;     // none: the scene is Blender's
-  std::string seen_key, pose_key;             // when and from where it is seen; the same with its light
+  std::string pose_key, light_key;            // when and from where it is seen; by which light
   std::vector<std::string> texture_warnings;  // since the scene was loaded
   std::optional<StaticScene> posed;
   std::optional<RayScene> rays;                                // of `posed`, which it borrows
   OwnLights own_lights;                                        // of `posed`, before others were added
   std::optional<SceneSphere> sphere_at_rest, sphere_at_start;  // of `animation`, where they are known
-  std::string guides_key;
+  std::string guides_key, guides_light_key;                    // without what only light depends on; with it
   std::shared_ptr<const SceneGuides> guides;
   MemoryNeed guides_memory;  // of them, without painting
 
@@ -297,23 +297,32 @@ Status Workspace::State::Pose(const SceneRequest& request, std::optional<int> fr
   SCUMBLE_ASSIGN(const LayerSet layers,
                  layers_for(SceneStyleRequestsOf(animation ? animation->objects() : names.instances, names)));
   const std::string fps = request.fps ? FrameRateToText(*request.fps) : "";
-  seen_key =
-      fmt::format("{} {}; {}; {}; {}; {}; {}", frame ? std::to_string(*frame) : "rest", fps, request.camera,
-                  request.view ? ViewToText(*request.view) : "", double(request.size.width) / request.size.height,
-                  request.key_light, request.light ? LightToText(*request.light) : "");
-  // A light is added where a layer needs light: the other layers are the same with it and without.
   const std::string key =
-      fmt::format("{}; {}; {}", seen_key, NeedsKeyLight(request, layers), ReplacesLights(request, layers));
-  if (key == pose_key) {
+      fmt::format("{} {}; {}; {}; {}", frame ? std::to_string(*frame) : "rest", fps, request.camera,
+                  request.view ? ViewToText(*request.view) : "", double(request.size.width) / request.size.height);
+  // A light is added where a layer needs light: the other layers are the same with it and without.
+  const std::string light = fmt::format("{}; {}", NeedsKeyLight(request, layers),
+                                        ReplacesLights(request, layers) ? LightToText(*request.light) : "");
+  const bool stands = key == pose_key;
+  if (stands && light == light_key) {
     posed->layers = layers;
     return Ok();
   }
-  pose_key.clear(), rays.reset();
+  pose_key.clear();
+  if (!stands) rays.reset();  // lights may change under it
   if (!animation) {
     SCUMBLE_RETURN_IF_ERROR(ViewAgain(*posed, own_lights, request, layers));
   } else {
     const LayersFor known = [&](const SceneStyleRequests&) -> Expected<LayerSet> { return layers; };
-    SCUMBLE_ASSIGN(StaticScene now, PoseScene(*animation, frame, request, known, context, false));
+    SCUMBLE_ASSIGN(StaticScene now, PoseScene(*animation, frame, request, known, context));
+    if (stands) {
+      posed->view = std::move(now.view);
+      posed->scene.lights = std::move(now.scene.lights);
+      posed->scene.world_radiance = now.scene.world_radiance;
+      posed->scene.has_own_lights = now.scene.has_own_lights;
+      posed->layers = layers, pose_key = key, light_key = light;
+      return Ok();
+    }
     if (posed) {  // textures that were decoded stay decoded, and materials do without those that were left out
       now.scene.materials = std::move(posed->scene.materials);
       now.scene.textures = std::move(posed->scene.textures);
@@ -321,8 +330,7 @@ Status Workspace::State::Pose(const SceneRequest& request, std::optional<int> fr
     }
     posed = std::move(now);
   }
-  posed->layers = layers;
-  pose_key = key;
+  posed->layers = layers, pose_key = key, light_key = light;
   return Ok();
 }
 
@@ -332,7 +340,7 @@ Expected<StaticScene> Workspace::State::PoseNext(const SceneRequest& request, in
   const int after = frame < kMaxFrame ? frame + 1 : frame;
   const RunContext silent = context.WithoutNotes();
   const LayersFor known = [&](const SceneStyleRequests&) -> Expected<LayerSet> { return posed->layers; };
-  SCUMBLE_ASSIGN(StaticScene next, animation ? PoseScene(*animation, after, request, known, silent, false)
+  SCUMBLE_ASSIGN(StaticScene next, animation ? PoseScene(*animation, after, request, known, silent)
                                              : OpenSceneAt(after, request, known, silent, false));
   next.scene.textures.clear(), next.scene.encoded_textures.clear();
   return next;
@@ -347,10 +355,21 @@ Status Workspace::State::Cast(SceneRequest request, std::optional<int> frame, co
   SCUMBLE_RETURN_IF_ERROR(LoadScene(request, frame));
   SCUMBLE_RETURN_IF_ERROR(context.CheckNotCancelled());
   SCUMBLE_RETURN_IF_ERROR(Pose(request, frame, layers_for));
+  SceneRequest unlit = request;
+  unlit.light.reset(), unlit.seed = 0, unlit.samples = 0, unlit.samples_given = true;
   const std::string key =
-      fmt::format("{}; {}; isa {}; half {}; time {}; {}", SizeToText(request.size), GuideSettings(request), request.isa,
-                  request.half, request.time_budget_seconds, seen_key);
-  if (guides && key == guides_key && guides->guides.layers().Contains(posed->layers)) return Ok();
+      fmt::format("{}; {}; isa {}; half {}; time {}; {}", SizeToText(request.size), GuideSettings(unlit), request.isa,
+                  request.half, request.time_budget_seconds, pose_key);
+  const std::string lit_key = fmt::format("{}; {}", GuideSettings(request), request.key_light);
+  if (guides && key == guides_key && guides->guides.layers().Contains(posed->layers)) {
+    if (lit_key == guides_light_key) return Ok();
+    if (!DependOnLight(guides->guides.layers())) {
+      auto same = std::make_shared<SceneGuides>(*guides);
+      StoreSettings(request, same->guides);
+      guides = std::move(same), guides_light_key = lit_key;
+      return Ok();
+    }
+  }
   guides_key.clear();
   std::optional<StaticScene> following;
   if (frame && posed->layers.Has(Layer::kMotion)) {
@@ -367,7 +386,7 @@ Status Workspace::State::Cast(SceneRequest request, std::optional<int> frame, co
   StoreFrameRate(request, posed->animation, made.guides);
   SCUMBLE_RETURN_IF_ERROR(made.guides.Validate(request.scene));
   guides = std::make_shared<const SceneGuides>(std::move(made));
-  guides_key = key;
+  guides_key = key, guides_light_key = lit_key;
   picture.exposure.reset(), picture.finish_measures.reset();  // they are measured on the guides
   return Ok();
 }

@@ -7,6 +7,7 @@
 #include <map>
 #include <new>
 #include <set>
+#include <span>
 #include <sstream>
 #include <string_view>
 #include <system_error>
@@ -16,6 +17,7 @@ namespace scumble {
 namespace {
 
 bool IsBlank(char c) { return c == ' ' || c == '\t'; }
+bool EndsLine(char c) { return c == '\n' || c == '\r'; }
 
 // Corners such as `6/7/`, whose last index is left out with its slash kept, are read as `6/7`.
 void DropEmptyIndices(std::string::iterator begin, std::string::iterator end) {
@@ -123,6 +125,92 @@ void JoinLines(std::string& text) {
   }
 }
 
+// The end of the decimal number at `at`; null where there is none.
+const char* SkipNumber(const char* at, const char* end) {
+  const auto skip_sign = [&] { at += at != end && (*at == '-' || *at == '+'); };
+  const auto skip_digits = [&] {
+    const char* const first = at;
+    while (at != end && *at >= '0' && *at <= '9') ++at;
+    return at - first;
+  };
+  skip_sign();
+  auto digits = skip_digits();
+  if (at != end && *at == '.') ++at, digits += skip_digits();
+  if (digits == 0) return nullptr;
+  if (at == end || (*at | 0x20) != 'e') return at;
+  ++at;
+  skip_sign();
+  return skip_digits() > 0 ? at : nullptr;
+}
+
+// NaN and infinities, "-nan(ind)" and "-1.#IND" included.
+bool IsNotFinite(std::string_view word) {
+  if (!word.empty() && (word.front() == '+' || word.front() == '-')) word.remove_prefix(1);
+  const auto begins_with = [&](std::string_view with) {
+    return word.size() >= with.size() &&
+           std::equal(with.begin(), with.end(), word.begin(), [](char a, char b) { return a == b || a == (b | 0x20); });
+  };
+  return begins_with("nan") || begins_with("inf") || begins_with("1.#");
+}
+
+// Whether the word is there as a number, well written or not, and is no option or name.
+bool IsMeantAsNumber(std::string_view word) {
+  const std::size_t first = word.front() == '+' || word.front() == '-';
+  if (first == word.size()) return false;
+  return (word[first] >= '0' && word[first] <= '9') || word[first] == '.' || IsNotFinite(word);
+}
+
+// Lines of one kind whose words are numbers.
+struct NumberLine {
+  std::string_view key;
+  int numbers = 0;               // how many are read at most
+  bool may_be_infinite = false;  // or NaN, which is taken for none
+  bool has_options = false;      // or names, which end the numbers
+};
+
+// Exporters write NaN as the normal of a face without area.
+constexpr NumberLine kObjNumbers[] = {{"v", 6}, {"vn", 3, true}, {"vt", 2, true}};
+constexpr NumberLine kMtlNumbers[] = {{"Kd", 3, false, true}, {"Ks", 3, false, true}, {"Ke", 3, false, true},
+                                      {"Ns", 1, false, true}, {"d", 1, false, true},  {"Tr", 1, false, true}};
+
+// The first of the numbers from `at` to `end` that is none; empty where all are. tinyobjloader would take it for 0.
+std::string_view FirstNoNumber(const char* at, const char* end, const NumberLine& line) {
+  for (int i = 0; i < line.numbers; ++i) {
+    at = std::find_if_not(at, end, IsBlank);
+    if (at == end || *at == '#') return {};
+    const char* const begin = at;
+    at = SkipNumber(begin, end);
+    if (at && (at == end || IsBlank(*at))) continue;
+    at = std::find_if(begin, end, IsBlank);
+    const std::string_view word(begin, std::size_t(at - begin));
+    if (line.has_options && !IsMeantAsNumber(word)) return {};
+    if (!line.may_be_infinite || !IsNotFinite(word)) return word;
+  }
+  return {};
+}
+
+// Ok, or a kInput error that tells the first line of `text` with what is no number.
+Status CheckNumbers(const std::string& file, std::string_view text, std::span<const NumberLine> lines) {
+  const char* const last = text.data() + text.size();
+  for (const char* at = text.data(); at != last;) {
+    const char* const end = std::find_if(at, last, EndsLine);
+    const char* const begin = std::find_if_not(at, end, IsBlank);
+    at = end == last ? end : end + 1;
+    const std::string_view line(begin, std::size_t(end - begin));
+    for (const NumberLine& one : lines) {
+      const std::size_t size = one.key.size();
+      if (line.size() <= size || !IsBlank(line[size]) || line.substr(0, size) != one.key) continue;
+      const std::string_view word = FirstNoNumber(begin + size, end, one);
+      if (word.empty()) continue;
+      const auto number = 1 + std::count(text.data(), begin, '\n');
+      return InputError(file + ", line " + std::to_string(number) + ", is '" + Excerpt(std::string(line), 80) +
+                        "', where '" + Excerpt(std::string(word), 40) +
+                        "' is no finite number; expected digits with a decimal point, such as 1.5: export it again");
+    }
+  }
+  return Ok();
+}
+
 // Turns lines into comments that tinyobjloader would store but no code here reads; line numbers stay. A subdivision tag
 // of 20 bytes becomes 360 KB, and again in each shape. The lines and points of an object are copied at each change of
 // material; the first index of each kind shows that they exist. Returns whether smoothing groups are mentioned, `s off`
@@ -131,11 +219,10 @@ void JoinLines(std::string& text) {
 bool PrepareText(std::string& text, CornerCounter& faces, std::vector<ObjSection>& sections,
                  std::set<std::string>& used) {
   bool has_smoothing = false;
-  const auto ends_line = [](char c) { return c == '\n' || c == '\r'; };
   bool has_lines = false, has_points = false;  // in this object or group
   int objects = 0;
   for (auto begin = text.begin(); begin != text.end();) {
-    const auto end = std::find_if(begin, text.end(), ends_line);
+    const auto end = std::find_if(begin, text.end(), EndsLine);
     const auto what = std::find_if_not(begin, end, IsBlank);
     begin = end == text.end() ? end : end + 1;
     if (!JoinName(what, end, "mtllib").empty()) std::replace(what, end, '\\', '/');
@@ -254,6 +341,10 @@ class LibraryReader : public tinyobj::MaterialReader {
       return true;
     }
     std::string text = AsTextWithoutMark(*bytes);
+    if (const Status numbers = CheckNumbers(path.string(), text, kMtlNumbers); !numbers) {
+      if (fault_) fault_ = numbers;
+      return true;
+    }
     DropWholeTransparency(text, warnings_);
     std::istringstream stream(std::move(text));
     const std::size_t first = target.materials->size();
@@ -316,6 +407,7 @@ Status ParseObj(const std::filesystem::path& path, const FileListener& on_file, 
   CornerCounter faces;
   std::set<std::string> used;
   JoinLines(text);
+  SCUMBLE_RETURN_IF_ERROR(CheckNumbers(file, text, kObjNumbers));
   contents.has_smoothing = PrepareText(text, faces, contents.sections, used);
   contents.corner_counts = faces.Take();
   std::istringstream stream(std::move(text));

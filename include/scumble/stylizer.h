@@ -20,6 +20,7 @@
 
 namespace scumble {
 
+// Callbacks may throw: the exception passes through the call, and the Stylizer can be used on.
 struct StylizerOptions {
   int threads = 0;               // 0: all; for files, the number of the latest call of any Stylizer counts
   std::uint64_t max_memory = 0;  // bytes; 0: what the machine has. A call that needs more is kUsage, or kMemory for 0

@@ -96,8 +96,7 @@ Expected<Reference> RenderReference(const ReferenceOptions& options, const RunCo
   const BlenderTask task{options.scene, options.blender, options.blender + " rendered no reference"};
   SCUMBLE_ASSIGN(const fs::path script, FindBlenderScript("render_guides.py", task, context));
   const ScratchFolder scratch(context);
-  if (scratch.path().empty())
-    return OutputError("no folder can be made for temporary files: set TMPDIR to one that can");
+  SCUMBLE_RETURN_IF_ERROR(scratch.Made());
   const fs::path picture = scratch.path() / "cycles.exr", log = scratch.path() / "log";
   context.Note(options.scene + ": " + options.blender + " renders the reference");
   const std::vector<std::string> arguments = Arguments(options, context, script, picture);

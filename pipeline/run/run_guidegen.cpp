@@ -114,24 +114,22 @@ Expected<RunReport> RunGuidegen(GuidegenRequest request, const SequenceListener&
     context.EndStage("style");
   }
   if (!plan_only) SCUMBLE_RETURN_IF_ERROR(CheckFiles(files, request, sequence, styles));
-  request.scene.more_memory = [behind = sequence && !plan_only, cryptomatte = request.write.cryptomatte](
+  request.scene.more_memory = [behind = sequence.has_value(), cryptomatte = request.write.cryptomatte](
                                   const Size& size, const LayerSet& layers, MemoryNeed& need) {
     if (behind) AddGuidesBehind(size, layers, need);
     AddGuideFile(size, layers, cryptomatte, need);
   };
   if (sequence && !plan_only)
     return GuidegenSequence(request, *sequence, layers_for, motion, styles, listener, context);
-  if (sequence && IsBlenderScene(request.scene.scene)) request.scene.blender.frame = sequence->frames.front();
   const Progress progress = context.StartProgress("guidegen");
   SceneGuides made;
-  if (frame && !plan_only) {
+  if (plan_only) {
+    const std::optional<int> planned = sequence ? sequence->frames.front() : frame;
+    SCUMBLE_ASSIGN(made, PlanSceneAt(planned, request.scene, layers_for, context));
+  } else if (frame) {
     SCUMBLE_ASSIGN(made, MakeGuidesAt(*frame, request.scene, layers_for, motion, context, progress));
   } else {
-    // A plan is the same at any time.
-    const bool timeless = plan_only && (frame || sequence);
-    SceneRequest scene = request.scene;
-    if (timeless) scene.animation.clear();
-    SCUMBLE_ASSIGN(made, MakeStaticGuides(scene, layers_for, motion && !timeless, context, progress, plan_only));
+    SCUMBLE_ASSIGN(made, MakeStaticGuides(request.scene, layers_for, motion, context, progress));
   }
   if (styles) NameStylesInPlan(made.plan, *styles);
   if (!plan_only) {

@@ -107,12 +107,12 @@ Expected<RunReport> StylizeSequence(const StylizeRequest& request, const Sequenc
 }
 
 // Without a picture: the plan of a run, why it needs each layer, and its memory.
-Expected<RunReport> PlanOf(const StylizeRequest& request, StyleSet& styles, const RunContext& context) {
+Expected<RunReport> PlanOf(const StylizeRequest& request, const std::optional<Sequence>& sequence, StyleSet& styles,
+                           const RunContext& context) {
   SceneRequest scene = request.scene;
-  scene.animation.clear();  // a plan is the same at any time
-  scene.blender.frame = request.picture.frame;
-  SCUMBLE_ASSIGN(SceneGuides made, MakeStaticGuides(scene, RequiredOfScene(styles, scene.scene, Ok), false, context,
-                                                    context.StartProgress("stylize"), true));
+  scene.fps = request.picture.fps;
+  const std::optional<int> frame = sequence ? sequence->frames.front() : request.picture.frame;
+  SCUMBLE_ASSIGN(SceneGuides made, PlanSceneAt(frame, scene, RequiredOfScene(styles, scene.scene, Ok), context));
   NameStylesInPlan(made.plan, styles);
   RunReport report;
   report.plan = std::move(made.plan);
@@ -127,8 +127,6 @@ Expected<std::optional<BudgetChoice>> ChooseForStylize(StylizeRequest& request, 
   scene.seed = request.picture.seed, scene.fps = request.picture.fps;
   scene.more_memory = PaintingOf(styles, request, sequence.has_value(), context);  // pictures are painted on trial
   const std::optional<int> frame = sequence ? sequence->frames.front() : request.picture.frame;
-  if (!frame && request.explain && request.picture.output.empty())
-    scene.animation.clear();  // a plan is the same at any time
   const int before = request.picture.upsample;
   SCUMBLE_ASSIGN(const std::string over, OverOnTrial(request.picture, sequence));
   SCUMBLE_ASSIGN(auto choice, ChooseForScene(request.budget, scene, frame, over, styles, request.picture, context));
@@ -142,21 +140,21 @@ Expected<std::optional<BudgetChoice>> ChooseForStylize(StylizeRequest& request, 
 Expected<RunReport> RunStylize(StylizeRequest request, const SequenceListener& listener, const RunContext& context) {
   SCUMBLE_RETURN_IF_ERROR(CheckPictureRequest(request.picture));
   SCUMBLE_RETURN_IF_ERROR(ShrinkGuides(request));
-  if (request.picture.output.empty()) {
-    if (!request.explain) {
-      return UsageError("scumble stylize: -o FILE is required; with --explain and no -o the plan is printed alone");
-    }
-    SCUMBLE_RETURN_IF_ERROR(CheckSceneRequest(request.scene));
-    SCUMBLE_ASSIGN(StyleSet styles, OpenStyles(request.style, context));
-    SCUMBLE_RETURN_IF_ERROR(ChooseForStylize(request, std::nullopt, styles, context));
-    request.scene.more_memory = PaintingOf(styles, request, false, context);
-    return PlanOf(request, styles, context);
+  const bool plan_only = request.picture.output.empty();
+  if (plan_only && !request.explain) {
+    return UsageError("scumble stylize: -o FILE is required; with --explain and no -o the plan is printed alone");
   }
-  SCUMBLE_RETURN_IF_ERROR(CheckPictureTarget(request.picture.output, {request.picture.bits}));
+  if (!plan_only) SCUMBLE_RETURN_IF_ERROR(CheckPictureTarget(request.picture.output, {request.picture.bits}));
   SCUMBLE_ASSIGN(const auto sequence, PlanSequence(request.sequence, request.picture.frame, request.picture.output));
-  if (!sequence) SCUMBLE_RETURN_IF_ERROR(NameOne(request.picture));
+  if (!sequence && !plan_only) SCUMBLE_RETURN_IF_ERROR(NameOne(request.picture));
   SCUMBLE_RETURN_IF_ERROR(CheckSceneRequest(request.scene));
   if (!sequence && !request.picture.frame) SCUMBLE_RETURN_IF_ERROR(CheckAtRest(request.scene, false));
+  if (plan_only) {
+    SCUMBLE_ASSIGN(StyleSet styles, OpenStyles(request.style, context));
+    SCUMBLE_RETURN_IF_ERROR(ChooseForStylize(request, sequence, styles, context));
+    request.scene.more_memory = PaintingOf(styles, request, sequence.has_value(), context);
+    return PlanOf(request, sequence, styles, context);
+  }
   Stopwatch watch;
   request.style.reading.room = RoomForStyles(context);
   SCUMBLE_ASSIGN(StyleSet styles, OpenStyles(request.style, context));
@@ -181,7 +179,7 @@ Expected<RunReport> RunStylize(StylizeRequest request, const SequenceListener& l
   SCUMBLE_ASSIGN(SceneGuides made,
                  request.picture.frame
                      ? MakeGuidesAt(*request.picture.frame, scene, layers_for, false, context, progress)
-                     : MakeStaticGuides(scene, layers_for, false, context, progress, false));
+                     : MakeStaticGuides(scene, layers_for, false, context, progress));
   SCUMBLE_RETURN_IF_ERROR(made.guides.Validate(request.scene.scene));
   made.times.insert(made.times.begin(), {"style", style_ms});
   NameStylesInPlan(made.plan, styles);

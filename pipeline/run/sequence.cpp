@@ -220,7 +220,9 @@ Expected<SequenceTotals> RunSequence(const Sequence& sequence, const SequenceWor
         continue;
       }
       const std::string output = sequence.output.At(frame);
-      if (IsWriteProtected(output)) SCUMBLE_RETURN_IF_ERROR(CheckWritable(output));  // which says so
+      // Outputs that might be kept were not checked; one stands for their folder.
+      const bool is_first = sequence.resume && frames.empty();
+      if (is_first || IsWriteProtected(output)) SCUMBLE_RETURN_IF_ERROR(CheckWritable(output));
       frames.push_back(frame);
     }
     if (frames.empty()) return Ok();

@@ -150,11 +150,12 @@ std::string ByHand(const BlenderTask& task) {
 
 }  // namespace
 
-ScratchFolder::ScratchFolder(const RunContext& context) : guard_(context.process_guard) {
+ScratchFolder::ScratchFolder(const RunContext& context)
+    : guard_(context.process_guard), parent_(context.temporary_folder) {
   if (guard_) guard_->Begin();
-  if (context.temporary_folder.empty()) return;
-  const internal::LockedFolder made = internal::MakeLockedFolder(context.temporary_folder);
-  path_ = made.path, lock_ = made.lock;
+  if (parent_.empty()) return;
+  const internal::LockedFolder made = internal::MakeLockedFolder(parent_);
+  path_ = made.path, lock_ = made.lock, failure_ = made.failure;
   if (guard_ && !path_.empty()) guard_->FolderMade(path_);
 }
 
@@ -163,6 +164,14 @@ ScratchFolder::~ScratchFolder() {
   if (!path_.empty()) fs::remove_all(path_, failed);
   if (lock_ >= 0) ::close(lock_);
   if (guard_) guard_->End();
+}
+
+Status ScratchFolder::Made() const {
+  if (!path_.empty()) return Ok();
+  const std::string found = parent_.empty() ? "TMPDIR names no folder"
+                                            : "no folder for temporary files can be made in " + parent_.string() +
+                                                  " (" + std::strerror(failure_) + ")";
+  return OutputError(found + ": set TMPDIR, or the library's temporary_folder, to a folder that can be written");
 }
 
 Expected<fs::path> FindBlenderScript(const std::string& name, const BlenderTask& task, const RunContext& context) {
@@ -204,7 +213,10 @@ Expected<std::optional<ProgramEnd>> RunningProgram::Poll() {
   if (!end_) {
     int status = 0;
     const pid_t ended = ::waitpid(child_, &status, WNOHANG);
-    if (ended < 0 && errno != EINTR) {
+    if (ended < 0 && errno == ECHILD) {
+      end_ = ProgramEnd{0, 0};
+      if (context_.process_guard) context_.process_guard->ProgramEnded();
+    } else if (ended < 0 && errno != EINTR) {
       const int failure = errno;
       child_ = 0;
       return UnavailableError(name_ + " got lost: " + std::strerror(failure));

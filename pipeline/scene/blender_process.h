@@ -21,10 +21,13 @@ class ScratchFolder {
   ScratchFolder(const ScratchFolder&) = delete;
   ScratchFolder& operator=(const ScratchFolder&) = delete;
   const std::filesystem::path& path() const { return path_; }
+  // Ok, or a kOutput error that names the folder in which it could not be made, and the reason.
+  Status Made() const;
 
  private:
   std::shared_ptr<ProcessGuard> guard_;
-  std::filesystem::path path_;
+  std::filesystem::path parent_, path_;
+  int failure_ = 0;
   int lock_ = -1;  // by which other runs see that the folder is in use
 };
 
@@ -61,7 +64,8 @@ class RunningProgram {
   RunningProgram(const RunningProgram&) = delete;
   RunningProgram& operator=(const RunningProgram&) = delete;
 
-  // How it ended, or nothing while it is at work. kCancelled where the context is cancelled, however it ended.
+  // How it ended, or nothing while it is at work. If another part of the process has collected how it ended, or SIGCHLD
+  // is ignored, the code is 0: only its product tells. kCancelled where the context is cancelled, however it ended.
   Expected<std::optional<ProgramEnd>> Poll();
   // Polls until it has ended.
   Expected<ProgramEnd> Wait();

@@ -57,8 +57,6 @@ Expected<std::vector<std::string>> ExportCommand(const std::string& path, const 
                                                  const fs::path& output, const RunContext& context) {
   SCUMBLE_RETURN_IF_ERROR(CheckReadable(path));
   SCUMBLE_ASSIGN(const fs::path script, FindBlenderScript("export_scene.py", ExportTask(path, options), context));
-  if (!output.has_parent_path())
-    return OutputError("no folder can be made for temporary files: set TMPDIR to one that can");
   std::vector<std::string> command{NameOfProgram(options),
                                    "-b",
                                    "-noaudio",
@@ -150,6 +148,7 @@ Expected<Scene> LoadBlenderScene(const std::string& path, const BlenderRequest& 
   const ScratchFolder scratch(context);
   const fs::path exported = In(scratch, "scene.glb"), log = In(scratch, "log");
   SCUMBLE_ASSIGN(std::vector<std::string> arguments, ExportCommand(path, options, exported, context));
+  SCUMBLE_RETURN_IF_ERROR(scratch.Made());
   if (animation) RequestBlenderAnimation(scratch, options, options.frame.has_value(), arguments);
   if (options.frame) arguments.insert(arguments.end(), {"--frame", std::to_string(*options.frame)});
   context.Note(path + ": " + arguments.front() + " exports it" +
@@ -175,6 +174,7 @@ Expected<std::unique_ptr<BlenderRange>> BlenderRange::Start(const std::string& p
   range->scratch_ = std::make_unique<ScratchFolder>(context);
   SCUMBLE_ASSIGN(std::vector<std::string> arguments,
                  ExportCommand(path, options, In(*range->scratch_, kRangeOutput), context));
+  SCUMBLE_RETURN_IF_ERROR(range->scratch_->Made());
   // With an equals sign: a range that starts at a negative frame would look like an option.
   arguments.push_back("--frames=" + FramesToText(frames));
   arguments.insert(arguments.end(), {"--ahead", std::to_string(kFramesAhead)});

@@ -106,10 +106,9 @@ Status RunInputs::CheckOutputs(std::span<const std::string> outputs, const std::
   std::error_code failed;
   bool knows_folder = false;
   for (const std::string& output : outputs) {
-    const bool is_protected = IsWriteProtected(output);
-    if (is_protected && resumes) continue;
+    if (resumes && IdentityOf(output)) continue;  // RunSequence checks those that it does not keep
     const bool look =
-        !knows_folder || is_protected || fs::is_symlink(output, failed) || fs::is_directory(output, failed);
+        !knows_folder || IsWriteProtected(output) || fs::is_symlink(output, failed) || fs::is_directory(output, failed);
     if (look) SCUMBLE_RETURN_IF_ERROR(CheckWritable(output));
     knows_folder = true;
   }

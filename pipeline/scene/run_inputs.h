@@ -33,7 +33,7 @@ class RunInputs {
 
   // kUsage where an output is one of these files, under whatever name or link; kOutput where it cannot be written, its
   // folder is missing, or it is a folder. The outputs of a range are in one folder. Nothing is left behind.
-  // `option` is for the message. With `resumes`, write-protected outputs pass: they may be kept.
+  // `option` is for the message. With `resumes`, outputs that are there pass: they may be kept.
   Status CheckOutputs(std::span<const std::string> outputs, const std::string& option = "-o", bool resumes = false);
   Status CheckOutput(const std::string& output) { return CheckOutputs(std::span(&output, 1)); }
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/image/stopwatch.h"
+#include "core/io/format_dispatch.h"
 #include "core/io/guide_file.h"
 #include "core/io/guides/guide_precision.h"
 #include "pipeline/frame_range.h"
@@ -131,21 +132,19 @@ Expected<SceneGuides> MakeGuidesOf(Scene& scene, const SceneRequest& options, co
   return CastScene(scene, prepared.camera, nullptr, options, layers, context, progress);
 }
 
-namespace {
-
-bool NeedLight(const LayerSet& layers) {
+bool DependOnLight(const LayerSet& layers) {
   const auto needs = {Layer::kLuminance, Layer::kShadow, Layer::kCosine,  Layer::kLpeFull,
                       Layer::kLpeLDE,    Layer::kLpeLSE, Layer::kLpeLDDE, Layer::kLpeLD12E};
   return std::any_of(needs.begin(), needs.end(), [&](Layer layer) { return layers.Has(layer); });
 }
 
-}  // namespace
-
 bool NeedsKeyLight(const SceneRequest& options, const LayerSet& layers) {
-  return options.key_light && !options.light && NeedLight(layers);
+  return options.key_light && !options.light && DependOnLight(layers);
 }
 
-bool ReplacesLights(const SceneRequest& options, const LayerSet& layers) { return options.light && NeedLight(layers); }
+bool ReplacesLights(const SceneRequest& options, const LayerSet& layers) {
+  return options.light && DependOnLight(layers);
+}
 
 Expected<PreparedView> ViewScene(Scene& scene, const SceneRequest& options, const LayerSet& layers) {
   const double aspect = static_cast<double>(options.size.width) / options.size.height;
@@ -186,6 +185,13 @@ std::string GuideSettings(const SceneRequest& options) {
   // All of them always: what a file does not name differs.
   return text + fmt::format("; robust {}; samples {}; bounces {}; noise {}", options.robust ? "yes" : "no",
                             SamplesText(options), options.max_bounces, options.noise);
+}
+
+void StoreSettings(const SceneRequest& options, GuideSet& guides) {
+  guides.attributes[kSettingsKey] = GuideSettings(options);
+  guides.attributes[kSamplesKey] = SamplesText(options);
+  guides.attributes.erase("scumble:seed");
+  if (options.seed != 0) guides.attributes["scumble:seed"] = std::to_string(options.seed);
 }
 
 namespace {
@@ -252,8 +258,7 @@ Expected<SceneGuides> CastScene(Scene& scene, const Camera& camera, const NextFr
   result.builds = rendered.builds;
   result.samples = rendered.samples, result.noise = rendered.noise;
   if (options.half) RoundColorLayersToHalf(result.guides);
-  result.guides.attributes["scumble:settings"] = GuideSettings(options);
-  result.guides.attributes[kSamplesKey] = SamplesText(options);
+  StoreSettings(options, result.guides);
   if (!scene.instances.empty()) WarnIfNothingShows(result.guides, options.scene, context);
   NoteLightNoise(rendered.light_error, guidegen.light_error, guidegen.samples, context);
   context.EndStage("guides", result.times);

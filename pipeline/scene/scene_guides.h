@@ -72,6 +72,9 @@ Status CheckWithoutBlender(const std::string& path, const BlenderRequest& blende
 Expected<Scene> OpenScene(const SceneRequest& options, const RunContext& context, BlenderAnimation* animation = nullptr,
                           bool warns = true);
 
+// Whether one of the layers is different in another light: lights, random seed and samples concern no other layer.
+bool DependOnLight(const LayerSet& layers);
+
 // Whether a layer needs light, so that a scene without any gets a key light.
 bool NeedsKeyLight(const SceneRequest& options, const LayerSet& layers);
 
@@ -89,6 +92,9 @@ std::string SamplesText(const SceneRequest& options);
 
 // The attribute scumble:settings of the guides: how they are seen, for --resume to compare.
 std::string GuideSettings(const SceneRequest& options);
+
+// Stores in guides what they were asked for: GuideSettings, SamplesText and the seed.
+void StoreSettings(const SceneRequest& options, GuideSet& guides);
 
 // What casting would do, and the memory that it would take; the guides stay empty.
 SceneGuides PlanScene(const Scene& scene, const SceneRequest& options, const LayerSet& layers,

@@ -213,7 +213,7 @@ Expected<SceneGuides> MakeGuidesAt(int frame, const SceneRequest& options, const
   if (IsBlenderScene(options.scene) && !motion) {
     SceneRequest at = options;
     at.blender.frame = frame;
-    return MakeStaticGuides(at, layers_for, motion, context, progress, false);
+    return MakeStaticGuides(at, layers_for, motion, context, progress);
   }
   SceneFrames scene(options, layers_for, motion, context);
   SCUMBLE_RETURN_IF_ERROR(scene.Start(std::span(&frame, 1), progress));
@@ -253,19 +253,19 @@ Expected<StaticScene> OpenSceneAt(std::optional<int> frame, const SceneRequest& 
   Stopwatch watch;
   SCUMBLE_ASSIGN(const AnimatedScene animation,
                  AnimatedScene::Load(options.scene, {options.animation, LoadOptionsOf(options)}));
-  SCUMBLE_ASSIGN(StaticScene result, PoseScene(animation, frame, options, layers_for, context, warns));
+  PassOnNotes(animation.rest(), options.scene, context, warns);
+  SCUMBLE_ASSIGN(StaticScene result, PoseScene(animation, frame, options, layers_for, context));
   result.load_ms = watch.Lap();
   return result;
 }
 
 Expected<StaticScene> PoseScene(const AnimatedScene& animation, std::optional<int> frame, const SceneRequest& options,
-                                const LayersFor& layers_for, const RunContext& context, bool warns) {
+                                const LayersFor& layers_for, const RunContext& context) {
   StaticScene result;
   result.scene = animation.rest();
   if (frame) {
     SCUMBLE_ASSIGN(result.scene, animation.SceneAt(0.0));
   }
-  PassOnNotes(result.scene, options.scene, context, warns);
   SCUMBLE_ASSIGN(result.layers, layers_for(SceneStyleRequestsOf(animation.objects(), animation.rest())));
   SCUMBLE_ASSIGN(result.view, ViewScene(result.scene, options, result.layers));
   for (const std::string& note : result.view.notes) context.Note(note);
@@ -285,16 +285,24 @@ Status ViewAgain(StaticScene& rest, const OwnLights& lights, const SceneRequest&
 }
 
 Expected<SceneGuides> MakeStaticGuides(const SceneRequest& options, const LayersFor& layers_for, bool motion,
-                                       const RunContext& context, const Progress& progress, bool plan_only) {
-  SCUMBLE_ASSIGN(StaticScene rest, OpenStaticScene(options, layers_for, motion, context, plan_only));
-  SceneGuides result;
-  if (plan_only) {
-    result = PlanScene(rest.scene, options, rest.layers, context);
-  } else {
-    SCUMBLE_ASSIGN(result, CastScene(rest.scene, rest.view.camera, nullptr, options, rest.layers, context, progress));
-  }
+                                       const RunContext& context, const Progress& progress) {
+  SCUMBLE_ASSIGN(StaticScene rest, OpenStaticScene(options, layers_for, motion, context, false));
+  SCUMBLE_ASSIGN(SceneGuides result,
+                 CastScene(rest.scene, rest.view.camera, nullptr, options, rest.layers, context, progress));
   StoreFrameRate(options, rest.animation, result.guides);
   result.times.insert(result.times.begin(), {"load", rest.load_ms});
+  return result;
+}
+
+Expected<SceneGuides> PlanSceneAt(std::optional<int> frame, const SceneRequest& options, const LayersFor& layers_for,
+                                  const RunContext& context) {
+  SceneRequest at = options;
+  at.blender.frame = frame;
+  const bool poses = frame && !IsBlenderScene(options.scene);
+  SCUMBLE_ASSIGN(const StaticScene scene, poses ? OpenSceneAt(frame, options, layers_for, context)
+                                                : OpenStaticScene(at, layers_for, false, context, true));
+  SceneGuides result = PlanScene(scene.scene, options, scene.layers, context);
+  result.times.emplace_back("load", scene.load_ms);
   return result;
 }
 

@@ -133,9 +133,9 @@ Status CheckAtRest(const SceneRequest& options, bool motion);
 Expected<StaticScene> OpenStaticScene(const SceneRequest& options, const LayersFor& layers_for, bool motion,
                                       const RunContext& context, bool plan_only, bool warns = true);
 
-// Poses a scene that is loaded, at a frame or at rest, and decides how it is seen. Passes on its warnings if `warns`.
+// Poses a scene that is loaded, at a frame or at rest, and decides how it is seen, which it notes.
 Expected<StaticScene> PoseScene(const AnimatedScene& animation, std::optional<int> frame, const SceneRequest& options,
-                                const LayersFor& layers_for, const RunContext& context, bool warns);
+                                const LayersFor& layers_for, const RunContext& context);
 
 // Decides again how a posed scene of Blender's is seen, for other layers or through another camera.
 Status ViewAgain(StaticScene& rest, const OwnLights& lights, const SceneRequest& options, const LayerSet& layers);
@@ -146,6 +146,10 @@ Expected<StaticScene> OpenSceneAt(std::optional<int> frame, const SceneRequest& 
 
 // The guides of a scene without a frame's number, at rest. Errors of CheckAtRest.
 Expected<SceneGuides> MakeStaticGuides(const SceneRequest& options, const LayersFor& layers_for, bool motion,
-                                       const RunContext& context, const Progress& progress, bool plan_only);
+                                       const RunContext& context, const Progress& progress);
+
+// PlanScene of a scene at a frame, or at rest: what MakeGuidesAt or MakeStaticGuides would do.
+Expected<SceneGuides> PlanSceneAt(std::optional<int> frame, const SceneRequest& options, const LayersFor& layers_for,
+                                  const RunContext& context);
 
 }  // namespace scumble

@@ -85,11 +85,40 @@ TEST_F(BlenderProcess, ALibrarysUserIsLeftAlone) {
   EXPECT_NE(seen.find("TMPDIR=" + made.string() + "\n"), std::string::npos) << seen;
   for (const char* gone : {"SCUMBLE_HIDDEN", "PYTHONHOME"}) EXPECT_EQ(seen.find(gone), std::string::npos) << gone;
 
+  context.temporary_folder = At("absent");
+  const Status nowhere = ScratchFolder(context).Made();
+  ASSERT_FALSE(nowhere.ok());
+  EXPECT_EQ(nowhere.error().kind, ErrorKind::kOutput);
+  EXPECT_EQ(nowhere.error().message.rfind("no folder for temporary files can be made in " + At("absent").string() +
+                                              " (No such file or directory): set TMPDIR",
+                                          0),
+            0u)
+      << nowhere.error().message;
+
   context.environment.clear();
   const auto none = RunProgram({"sketch"}, At("log"), context);
   ASSERT_FALSE(none.ok());
   EXPECT_EQ(none.error().kind, ErrorKind::kUnavailable);
   EXPECT_EQ(none.error().message, "sketch cannot be run (No such file or directory)");
+}
+
+// Where SIGCHLD is ignored, or another part of the process waits for all its children, how a program ended is lost.
+TEST_F(BlenderProcess, WhatTheHostCollectsIsJudgedByItsProduct) {
+  struct sigaction ignored = {}, before = {};
+  ignored.sa_handler = SIG_IGN;
+  ::sigaction(SIGCHLD, &ignored, &before);
+  WriteProgram("draws", "echo 1 > \"" + At("product").string() + "\"");
+  WriteProgram("fails", "echo 'scumble: error: it is torn'; exit 3");
+  const RunContext context;
+  const BlenderTask task{"shot.blend", "blender", "the export failed", true};
+  const auto run = [&](const char* program, const char* product) {
+    return CheckProgramEnd(RunProgram({At(program).string()}, At("log"), context), task, At("log"), At(product));
+  };
+  const Status drawn = run("draws", "product"), failed = run("fails", "none");
+  ::sigaction(SIGCHLD, &before, nullptr);
+  EXPECT_TRUE(drawn.ok()) << drawn.error().message;
+  ASSERT_FALSE(failed.ok());
+  EXPECT_EQ(failed.error().message, "shot.blend: the export failed: it is torn");
 }
 
 TEST_F(BlenderProcess, ACancelledRunEndsItWithItsChildren) {

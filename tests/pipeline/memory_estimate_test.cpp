@@ -194,6 +194,28 @@ TEST_F(MemoryNeedTest, ThePlanSaysHowMuchAndForWhat) {
   EXPECT_NE(RunOk({"guidegen", Scene("suzanne.glb"), "--explain"}).out.find("guides"), std::string::npos);
 }
 
+TEST_F(MemoryNeedTest, ThePlanOfFramesIsThatOfTheirRun) {
+  WriteStyle("style");
+  const Arguments guidegen = {"guidegen", Scene("toys.glb"), "--size", "64", "--layers", "motion", "--explain"};
+  const Arguments stylize = {"stylize", Scene("toys.glb"), "--size", "64", "--style", "style", "--explain"};
+  const CommandResult plan = RunOk(With(guidegen, {"--frames", "1-2", "--json"}));
+  EXPECT_EQ(plan.Warning(), "");
+  EXPECT_EQ(plan.Json()["memory"]["parts"]["guides"], 36 * 64 * 64);
+  EXPECT_EQ(plan.Json()["memory"]["parts"]["frame that is written"], 2 * 36 * 64 * 64);
+  const nlohmann::json painted = RunOk(With(stylize, {"--frames", "1-2", "--json"})).Json()["memory"]["parts"];
+  EXPECT_TRUE(painted.contains("frame that is written")) << painted;
+  const CommandResult one = RunOk(With(guidegen, {"--frame", "2", "--json"}));
+  EXPECT_EQ(one.Warning(), "");
+  EXPECT_EQ(one.Json()["memory"]["parts"],
+            RunOk(With(guidegen, {"--frame", "2", "--json", "-o", "g.exr"})).Json()["memory"]["parts"]);
+  for (const Arguments& verb : {guidegen, stylize}) {
+    for (const char* frames : {"--frame=2", "--frames=1-2"}) {
+      ExpectError(With(verb, {frames, "--animation", "Nope"}), 2, {"no animation \"Nope\"", "\"Animation\""});
+    }
+  }
+  ExpectError(With(stylize, {"--animation", "Nope"}), 2, {"--animation", "--frame N"});
+}
+
 // The largest picture that there may be, under a gigabyte: 16384² pixels of guides alone are 7.5 GB. It is refused
 // before they are taken, which is why this test is quick, and nothing is written. Planes are taken without being
 // touched, so what is resident would not show that one was: but of 1 GiB of addresses, which is one plane of floats,

@@ -3,14 +3,19 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <optional>
+#include <random>
 #include <string>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "core/io/format_dispatch.h"
 #include "core/io/picture_file.h"
@@ -158,6 +163,94 @@ TEST(Workspace, AnotherSizeOrSeedBuildsNoAccelerationStructure) {
   Painted(workspace, scene, StyleOf("chiaroscuro"));
   EXPECT_EQ(workspace.counters().guides_cast, 4u);
   EXPECT_EQ(workspace.counters().structures_built, 1u);
+}
+
+TEST(Workspace, LightConcernsOnlyTheLayersThatDependOnIt) {
+  Workspace workspace(Context());
+  SceneRequest scene = SceneOf("ball");
+  const auto counts = [&] {
+    return std::pair(workspace.counters().structures_built, workspace.counters().guides_cast);
+  };
+  PictureRequest picture;
+  const Picture plain = Painted(workspace, scene, StyleOf("oil"));
+  for (const double azimuth : {0.0, 20.0}) {
+    scene.light = LightAngles{azimuth, 30.0}, scene.samples = 3, picture.seed = std::uint64_t(azimuth);
+    const Picture painted = Painted(workspace, scene, StyleOf("oil"), picture);
+    if (azimuth == 0.0) {
+      EXPECT_EQ(painted.rgba, plain.rgba);
+    }
+    EXPECT_EQ(counts(), std::pair(std::size_t(1), std::size_t(1)));
+  }
+  Painted(workspace, scene, StyleOf("chiaroscuro"));
+  const auto lit = counts();
+  EXPECT_LE(lit.first, 2u) << "it is built once more for rays to lights";
+  EXPECT_EQ(lit.second, 2u);
+  scene.light->azimuth = 40.0;
+  Painted(workspace, scene, StyleOf("chiaroscuro"));
+  scene.light.reset();
+  Painted(workspace, scene, StyleOf("chiaroscuro"));
+  EXPECT_EQ(counts(), std::pair(lit.first, std::size_t(4)));
+}
+
+// In any order of changes: attributes too, which tell the light and the seed of a file.
+TEST(Workspace, GuidesAreThoseOfAFreshOne) {
+  Workspace workspace(Context());
+  const std::vector<LayerSet> sets = {{}, {Layer::kAlbedo}, {Layer::kLuminance, Layer::kShadow}, {Layer::kLpeLDE}};
+  SceneRequest scene = SceneOf("toys");
+  scene.size = {24, 16};
+  std::optional<int> frame;
+  std::size_t layers = 0;
+  std::mt19937 random(7);
+  for (int step = 0; step < 40; ++step) {
+    switch (random() % 7) {
+      case 0:
+        scene.light = LightAngles{double(random() % 3) * 40.0, 20.0};
+        break;
+      case 1:
+        scene.light.reset(), scene.key_light = random() % 2 == 0;
+        break;
+      case 2:
+        scene.seed = random() % 2;
+        break;
+      case 3:
+        scene.samples = 1 + int(random() % 2);
+        break;
+      case 4:
+        frame = random() % 2 ? std::nullopt : std::optional(int(random() % 3));
+        break;
+      case 5:
+        scene.view = random() % 2 ? std::nullopt : std::optional(ViewAngles{double(random() % 2) * 30.0, 10.0});
+        break;
+      default:
+        layers = random() % sets.size();
+    }
+    const auto kept = workspace.Guides(scene, frame, sets[layers]);
+    ASSERT_TRUE(kept.ok()) << kept.error().message;
+    Workspace fresh(Context());
+    const auto made = fresh.Guides(scene, frame, (*kept)->layers());  // which may be more than were asked for
+    ASSERT_TRUE(made.ok()) << made.error().message;
+    EXPECT_EQ((*kept)->attributes, (*made)->attributes) << step;
+    for (const LayerInfo& info : AllLayers()) {
+      for (int c = 0; (*kept)->Has(info.layer) && c < ChannelCount(info.layer); ++c) {
+        EXPECT_TRUE(std::ranges::equal((*kept)->Plane(info.layer, c), (*made)->Plane(info.layer, c)))
+            << step << " " << info.name;
+      }
+    }
+  }
+  EXPECT_LT(workspace.counters().guides_cast, 40u);
+}
+
+TEST(Workspace, TellsOfASceneOnce) {
+  RunContext context = Context();
+  std::vector<std::string> told;
+  context.on_message = [&](const Message& message) { told.push_back(message.text); };
+  const TemporaryFolder folder;
+  SceneRequest scene = SceneOf("ball");
+  scene.scene = (folder.path() / "a.obj").string();
+  std::ofstream(scene.scene) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  Workspace workspace(context);
+  Painted(workspace, scene, StyleOf("oil"));
+  EXPECT_THAT(told, ::testing::Contains(::testing::HasSubstr("without normals")).Times(1));
 }
 
 TEST(Workspace, AFrameOfAnAnimationLoadsNoFile) {
@@ -662,6 +755,27 @@ TEST(Workspace, OneSunTakesThePlaceOfTheLights) {
   shade({0.0, 0.0});
   shade({60.0, 30.0});
   EXPECT_EQ(workspace.counters().scenes_loaded, 1u);
+}
+
+// By the names of the library's members, with what was found and what may be.
+TEST(Workspace, SettingsOutOfRangeAreNamed) {
+  Stylizer stylizer;
+  const auto refusal = [&](const SceneSettings& scene, const PaintSettings& paint = {}) {
+    const auto painted = stylizer.Paint(scene, {.style = "oil"}, paint);
+    return painted ? std::string() : painted.error().message;
+  };
+  SceneSettings scene{.file = "a.obj"};
+  scene.coverage_samples = 0;
+  EXPECT_EQ(refusal(scene), "coverage_samples 0 is out of range; expected 1 to 16");
+  scene = {.file = "a.obj"}, scene.light_samples = -1;
+  EXPECT_EQ(refusal(scene), "light_samples -1 is out of range; expected 0 to 65536");
+  scene = {.file = "a.obj"}, scene.auto_smooth = 181.0;
+  EXPECT_EQ(refusal(scene), "auto_smooth 181 is out of range; expected 0 to 180 degrees");
+  scene = {.file = "a.obj"}, scene.frames_per_second = -1.0;
+  EXPECT_EQ(refusal(scene), "frames_per_second -1 is out of range; expected 0.001 to 100000, or 0");
+  PaintSettings paint;
+  paint.exposure = 65.0;
+  EXPECT_EQ(refusal({.file = "a.obj"}, paint), "exposure 65 is out of range; expected -64 to 64 stops");
 }
 
 TEST(Workspace, GivesGuidesAlone) {

@@ -23,6 +23,13 @@ Error WriteFailure(const fs::path& path, int error_number) {
   return OutputError("cannot write " + path.string() + ": " + std::strerror(error_number));
 }
 
+// Where no temporary file could be made: the file itself may be one that can be written.
+Error FolderFailure(const fs::path& path, const fs::path& target, int error_number) {
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : ".";
+  return OutputError("cannot write " + path.string() + ": no file can be made in the folder " + folder.string() + " (" +
+                     std::strerror(error_number) + "); name another one");
+}
+
 // Writes everything and closes; 0 or the errno of what failed. Some file systems report a full disk only when the data
 // is flushed or the file closed, so both are checked.
 int WriteAllAndClose(int descriptor, std::span<const std::byte> bytes, bool flush) {
@@ -122,7 +129,7 @@ Status CheckWritable(const fs::path& path) {
   SCUMBLE_ASSIGN(const Target target, CheckTarget(path));
   if (target.is_special) return ::access(target.path.c_str(), W_OK) == 0 ? Ok() : Status(WriteFailure(path, errno));
   const internal::PendingTemporary temporary(target.path);
-  if (temporary.descriptor() < 0) return WriteFailure(path, errno);
+  if (temporary.descriptor() < 0) return FolderFailure(path, target.path, errno);
   ::close(temporary.descriptor());
   return Ok();
 }
@@ -139,7 +146,7 @@ Status WriteFileAtomically(const fs::path& path, std::span<const std::byte> byte
   }
   internal::PendingTemporary temporary(target);
   const int descriptor = temporary.descriptor();
-  if (descriptor < 0) return WriteFailure(path, errno);
+  if (descriptor < 0) return FolderFailure(path, target, errno);
   // On file systems without permissions this fails, and that is no failure to write.
   [[maybe_unused]] const int kept = ::fchmod(descriptor, ModeFor(checked.status));
   int failure = WriteAllAndClose(descriptor, bytes, true);

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
@@ -108,7 +109,7 @@ LockedFolder MakeLockedFolder(const fs::path& parent) {
   RemoveStaleFolders(parent);
   for (int tries = 0; tries < 10; ++tries) {
     std::string name = (parent / (std::string(kFolderPrefix) + KernelMark() + "-XXXXXX")).string();
-    if (!::mkdtemp(name.data())) return {};
+    if (!::mkdtemp(name.data())) return {{}, -1, errno};
     const int lock = OpenFolder(name);
     if (lock < 0) return {name, -1};
     // Another run may have taken it for a stale one, until it was locked: then it is gone, or soon will be.
@@ -119,7 +120,7 @@ LockedFolder MakeLockedFolder(const fs::path& parent) {
     if (is_held) return {name, lock};
     ::close(lock);
   }
-  return {};
+  return {{}, -1, EBUSY};
 }
 
 }  // namespace scumble::internal

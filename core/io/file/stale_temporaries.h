@@ -28,10 +28,11 @@ void RemoveStaleTemporariesOnce(const std::filesystem::path& folder);
 
 // A new folder "scumble-MARK-XXXXXX" in `parent`, locked and stale by the same rules as a file. Removes those there
 // that are stale and the user's. The caller closes `lock` after it has removed the folder. Where none can be made, the
-// path is empty.
+// path is empty, and `failure` is the system's reason (errno).
 struct LockedFolder {
   std::filesystem::path path;
   int lock = -1;
+  int failure = 0;
 };
 LockedFolder MakeLockedFolder(const std::filesystem::path& parent);
 

@@ -152,6 +152,26 @@ TEST(AtomicFile, AWriteProtectedFileStaysAsItIs) {
   EXPECT_FALSE(IsWriteProtected(folder / "lost.png"));
 }
 
+TEST(AtomicFile, AFolderThatCannotBeWrittenIsNamed) {
+  const TemporaryFolder folder;
+  const fs::path locked = folder / "locked";
+  fs::create_directory(locked);
+  fs::permissions(folder.path(), fs::perms::all);
+  fs::permissions(locked, fs::perms::owner_exec | fs::perms::group_exec | fs::perms::others_exec);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    if (::geteuid() == 0 && ::seteuid(65534) != 0) ::_exit(2);
+    const std::string told = "no file can be made in the folder " + locked.string() + " (Permission denied)";
+    for (const Status& status : {CheckWritable(locked / "a.png"), WriteFileAtomically(locked / "a.png", "new")}) {
+      if (status || status.error().message.find(told) == std::string::npos) ::_exit(1);
+    }
+    ::_exit(0);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+}
+
 TEST(AtomicFile, AFolderIsNotOverwritten) {
   const TemporaryFolder folder;
   fs::create_directory(folder / "x.png");

@@ -13,6 +13,7 @@
 namespace scumble {
 namespace {
 
+using namespace std::string_literals;
 using nlohmann::json;
 using ::testing::AllOf;
 using ::testing::Each;
@@ -72,6 +73,35 @@ TEST_F(Misread, ObjCornersThatNameWhatTheFileLacks) {
   EXPECT_EQ(slashes.meshes.at(0).triangles.size(), 1u);
   EXPECT_THAT(Refusal(Write("zero.obj", kObjTriangle + "f 0 1 2\n")),
               AllOf(HasSubstr("line 4 is 'f 0 1 2'"), HasSubstr("count from 1")));
+}
+
+// tinyobjloader takes for 0 what is no number: a program set to a language with decimal commas writes such files.
+TEST_F(Misread, ObjWordsThatAreNoNumbers) {
+  const auto refusal = [&](const std::string& line) { return Refusal(Write("a.obj", "# a\r\n\n" + line + "\n")); };
+  EXPECT_THAT(refusal("v -1,5 0 0"), AllOf(HasSubstr("a.obj, line 3, is 'v -1,5 0 0', where '-1,5' is no finite"),
+                                           HasSubstr("expected digits with a decimal point"), HasSubstr("export it")));
+  for (const char* line : {"v 0 0 1e", "v 0 0 0x1", "\tv\t0 . 0", "v 0 0 nan", "v 0 -inf 0", "v 0 0 -1.#IND",
+                           "v 0 0 ++1", "v 0 0 0 1,0", "vn 0 0 1,0", "vt 0 x"}) {
+    EXPECT_THAT(refusal(line), HasSubstr("line 3, is")) << line;
+  }
+  const Scene scene = Load(Write("b.obj",
+                                 "v +0 0. -.0e+0 # 0,5\nv 1 0 0\nv 0 1 0 #,\nvn -nan(ind) NaN -1.#IND\nvn 0 0 1\n"
+                                 "vt 0 0 0,5\nvt inf 0\nf 1/1/1 2/1/2 3/1/2\n"s));
+  EXPECT_EQ(scene.meshes.at(0).triangles.size(), 1u);
+  EXPECT_THAT(Refusal(Write("far.obj", "v 1e999 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"s)), HasSubstr("vertex 1 is NaN"));
+}
+
+TEST_F(Misread, MtlWordsThatAreNoNumbers) {
+  const auto path = Write("a.obj", "mtllib a.mtl\n" + kObjTriangle + "usemtl m\nf 1 2 3\n");
+  for (const char* line : {"Kd 0,5 0,5 0,5", "Ks 0 0 .5f", "Ke nan 0 0", " Ns 1.#INF", "d -.", "Tr 0,25"}) {
+    Write("a.mtl", "newmtl m\n"s + line + "\n");
+    const auto scene = LoadScene(path);
+    ASSERT_FALSE(scene) << line;
+    EXPECT_EQ(scene.error().kind, ErrorKind::kInput);
+    EXPECT_THAT(scene.error().message, AllOf(HasSubstr("a.mtl, line 2, is '"), HasSubstr("decimal point"))) << line;
+  }
+  Write("a.mtl", "newmtl m\nKd spectral a.rfl 1,0\nKs xyz 0 0 0\nd -halo 0.5\nNs 10 # a,b\nNi 1,5\n"s);
+  EXPECT_EQ(Load(path).materials.size(), 1u);
 }
 
 // MeshLab writes `Tr 1` for what is opaque; to the letter it is what cannot be seen.
