@@ -2,15 +2,15 @@
 //
 // A pixel may show several surfaces (core/image/fragments.h). It is painted once for each, by the guides of a pixel
 // beside it that shows the surface, and the colours are mixed by coverage, in linear light. A pixel beside a hard
-// contour of light (finish/tone/light_contour.h) sees the light beyond in its share of it. So all borders are smooth.
+// contour of light (core/filter/light_contour.h) sees the light beyond in its share of it. So all borders are smooth.
 #pragma once
 
 #include <span>
 #include <vector>
 
+#include "core/filter/light_contour.h"
 #include "core/filter/parallel.h"
 #include "finish/finish.h"
-#include "finish/tone/light_contour.h"
 #include "finish/tone/point_effect.h"
 
 namespace scumble::internal {

@@ -1,4 +1,4 @@
-#include "finish/tone/light_contour.h"
+#include "core/filter/light_contour.h"
 
 #include <algorithm>
 #include <bit>
