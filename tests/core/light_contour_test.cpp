@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <vector>
+
 #include "tests/support/light_fixtures.h"
 
 namespace scumble {
@@ -54,6 +57,44 @@ TEST(LightContour, GradientsAndObjectsMakeNone) {
       EXPECT_EQ(contour.BeyondOf(x, y).share, 0.0f) << x << " " << y;
     }
   }
+}
+
+// Soft light, too, is cut by a straight line, and every border has its own.
+TEST(LightContour, BordersCutSoftLightByAStraightLine) {
+  const double slope = 0.23, at = 40.2;
+  GuideSet guides = FlatLight(64);
+  const auto light = guides.Plane(Layer::kLuminance);
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 0; x < 64; ++x)
+      light[guides.Index(x, y)] = static_cast<float>(0.5 + 0.02 * (y + 0.5 - at - slope * (x + 0.5)));
+  }
+  const std::vector<float> borders = {0.1f, 0.5f};
+  const internal::LightContour contour({light, 0.0f, 0, 1.0f, borders}, guides);
+  const auto share_above = [&](float border) {
+    return [&, border](int x, int y) {
+      const internal::LightContour::Beyond beyond = contour.BeyondOf(x, y);
+      const float own = light[guides.Index(x, y)];
+      // Of the other border nothing is seen here.
+      const bool is_other = beyond.share > 0.0f && (own < border) == (light[beyond.pixel] < border);
+      const double share = is_other ? 0.0 : double(beyond.share);
+      return own < border ? 1.0 - share : share;
+    };
+  };
+  EXPECT_LT(ErrorsAlong(64, at, slope, share_above(0.5f)).most, 0.3);
+  EXPECT_LT(ErrorsAlong(64, at, slope, share_above(0.5f)).mean, 0.1);
+  EXPECT_LT(ErrorsAlong(64, at - 20.0, slope, share_above(0.1f)).most, 0.3);
+  int visited = 0, beside = 0;
+  for (int y = 0; y < 64; ++y) {
+    contour.ForEachInRow(y, 3, 61, [&](int x, std::uint32_t sides) {
+      EXPECT_TRUE(x >= 3 && x < 61);
+      EXPECT_EQ(contour.BeyondOf(x, y, sides).share, contour.BeyondOf(x, y).share);
+      ++visited;
+    });
+    for (int x = 3; x < 61; ++x) beside += contour.BeyondOf(x, y).share > 0.0f;
+  }
+  EXPECT_GE(visited, beside);
+  EXPECT_LT(visited, 4 * 64);  // two borders with two sides
+  EXPECT_GT(beside, 64);
 }
 
 }  // namespace
