@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/filter/light_contour.h"
 #include "core/filter/oklab_rows.h"
 #include "core/filter/parallel.h"
 #include "core/image/check.h"
@@ -22,7 +23,6 @@
 #include "finish/jitter.h"
 #include "finish/outline/outline.h"
 #include "finish/point_loop.h"
-#include "finish/tone/light_contour.h"
 #include "finish/tone/point_effect.h"
 #include "finish/tone/toon_bands.h"
 

@@ -130,10 +130,12 @@ struct FinishLayerOptions {
 
 // ApplyFinish of kPaint, put_ground and ApplyFinish of kSheet, to the same bytes; and the layers from the lowest up:
 // the ground unless there is none, the paint, and each pass of any strength. The visible ones, put over one another,
-// are the picture to a step of `bits`. Outlines, edges in ink and hatching are layers
-// of ink. A pass that paints anew hides what is below it. With `only`: of ink, as it lies on the exact picture; the
-// passes before it have no layers; of a pass of kGuides, the paint. Errors as of ApplyFinish. O(pixels) for each layer,
-// besides the steps, of which those that ApplyFinish joins are repeated for each of their layers.
+// are the picture to a step of `bits`, as colours show. Outlines, edges in ink and hatching are layers of ink. A pass
+// that paints anew hides what is below it, but for the ground. Over a ground of partial alpha there may be no colours
+// that lead to the picture: a layer is then the picture with its ground and hides all below it, of ink, too. With
+// `only`: of ink, as it lies on the exact picture; the passes before it have no layers; of a pass of kGuides, the
+// paint. Errors as of ApplyFinish. O(pixels) for each layer, besides the steps, of which those that ApplyFinish joins
+// are repeated for each of their layers.
 Expected<std::vector<FinishLayer>> FinishInLayers(std::span<const FinishStep> steps, const FinishFrame& frame,
                                                   const FinishLayerOptions& options, int threads,
                                                   const Progress& progress, Picture& picture);

@@ -13,13 +13,15 @@ namespace {
 
 using Color = std::array<double, 3>;
 
+constexpr double kPromise = 1.0 / 255.0;  // more shows
+
 Color ColorOf(const std::uint16_t* texel) { return {texel[0] / 65535.0, texel[1] / 65535.0, texel[2] / 65535.0}; }
 
 // A pixel of the layer: how much of it shows over `below`, whose share of the sum is `rest` · (1 - share). That is its
 // alpha where the layer raises it, and 1 where it does not.
 struct InkedPixel {
   Color below{}, target{};
-  double rest = 1.0;
+  double rest = 1.0, target_alpha = 1.0;
 
   Color Over(const Color& ink, double share) const {
     const double sum = share + rest * (1.0 - share);
@@ -33,6 +35,23 @@ struct InkedPixel {
     double error = 0.0;
     for (std::size_t c = 0; c < 3; ++c) error = std::max(error, std::abs(got[c] - target[c]));
     return error;
+  }
+  double AlphaOver(double share) const { return share + rest * (1.0 - share); }
+  // What the sum is off by as it shows.
+  double Off(const Color& color, double share) const {
+    const double alpha = rest == 1.0 ? target_alpha : AlphaOver(share);
+    double off = std::abs(alpha - target_alpha);
+    for (std::size_t c = 0; c < 3; ++c) off = std::max(off, std::abs(color[c] * alpha - target[c] * target_alpha));
+    return off;
+  }
+  // The share in steps. If the nearest one is off in alpha by more than half a step, as alpha below is rounded, too,
+  // the share is rounded the other way.
+  double SteppedShare(double share, double most) const {
+    const auto off = [&](double of_share) { return std::abs(AlphaOver(of_share) - target_alpha); };
+    const double nearest = std::floor(share * most + 0.5) / most;
+    if (rest == 1.0 || off(nearest) <= 0.5 / most) return nearest;
+    const double other = nearest > share ? std::floor(share * most) / most : std::ceil(share * most) / most;
+    return off(other) < off(nearest) ? other : nearest;
   }
   // The ink of this share that leads to the target, if there were colours above 1 and below 0.
   Color InkFor(double share) const {
@@ -71,7 +90,7 @@ Solved Solve(const InkedPixel& pixel, const std::optional<Color>& ink, std::opti
   const double near_enough = most < 256.0 ? 0.45 / most : 2.0 / most;
   const auto stepped = [&](double value) { return std::floor(std::clamp(value, 0.0, 1.0) * most + 0.5) / most; };
   const bool raises = pixel.rest < 1.0;
-  double share = stepped(given ? *given : ink ? pixel.ShareOf(*ink) : pixel.LeastShare());
+  double share = pixel.SteppedShare(given ? *given : ink ? pixel.ShareOf(*ink) : pixel.LeastShare(), most);
   if (ink && pixel.Error(*ink, share) <= near_enough) return {*ink, share};
   const auto best = [&](double of_share) {
     Color color = pixel.InkFor(of_share);
@@ -111,6 +130,7 @@ InkLayer InkBetween(const InkChange& change, int most, Picture& below) {
     }
   });
   layer.atop = is_open && !raises;
+  std::atomic<bool> misses = false;
   std::optional<Color> ink;
   if (change.ink) ink = ColorOf(change.ink->data());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1 << 12), [&](const auto& part) {
@@ -118,13 +138,18 @@ InkLayer InkBetween(const InkChange& change, int most, Picture& below) {
       if (!is_inked(i)) continue;
       std::uint16_t* const under = &below.rgba[4 * i];
       const double alpha = under[3] / 65535.0;
-      const InkedPixel pixel{ColorOf(under), ColorOf(&change.target.rgba[4 * i]), layer.atop ? 1.0 : alpha};
+      const InkedPixel pixel{ColorOf(under), ColorOf(&change.target.rgba[4 * i]), layer.atop ? 1.0 : alpha,
+                             change.target.rgba[4 * i + 3] / 65535.0};
       std::optional<double> share;
       if (!change.shares.empty()) share = change.shares[i] / 65535.0;
       const Solved solved = Solve(pixel, ink, share, most);
-      if (!(solved.share > 0.0)) continue;
+      if (!(solved.share > 0.0)) {
+        if (pixel.Off(pixel.below, 0.0) > kPromise) misses = true;
+        continue;
+      }
       std::uint16_t* const texel = &layer.picture.rgba[4 * i];
       const Color color = pixel.Over(solved.ink, solved.share);
+      if (pixel.Off(color, solved.share) > kPromise) misses = true;
       for (std::size_t c = 0; c < 3; ++c) {
         texel[c] = static_cast<std::uint16_t>(std::floor(solved.ink[c] * most + 0.5) * (65535 / most));
         under[c] = static_cast<std::uint16_t>(color[c] * 65535.0 + 0.5);
@@ -134,6 +159,7 @@ InkLayer InkBetween(const InkChange& change, int most, Picture& below) {
         under[3] = static_cast<std::uint16_t>((solved.share + alpha * (1.0 - solved.share)) * 65535.0 + 0.5);
     }
   });
+  layer.reaches_target = !misses;
   return layer;
 }
 

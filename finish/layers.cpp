@@ -83,17 +83,22 @@ class Layering {
     return picture;
   }
 
+  // The picture with its ground instead of all that is below it.
+  void AddSheet(const std::string& name, Picture picture) {
+    for (FinishLayer& layer : layers_) layer.visible = false;
+    layers_.push_back({name, Stepped(std::move(picture))});
+    below_ = layers_.back().picture;
+  }
+
   // The picture instead of all that is below it, but for the ground where that is put behind later.
   Status AddWhole(const std::string& name, FinishPass::Stage stage, const Picture& picture) {
-    const bool keeps_ground = has_ground_ && stage == FinishPass::Stage::kPaint;
-    for (std::size_t i = keeps_ground ? 1 : 0; i < layers_.size(); ++i) layers_[i].visible = false;
     if (!options_.only.empty()) {
+      for (FinishLayer& layer : layers_) layer.visible = false;
       layers_.push_back({name, picture});
       return Ok();
     }
-    if (!keeps_ground) {
-      layers_.push_back({name, Stepped(picture)});
-      below_ = layers_.back().picture;
+    if (!has_ground_ || stage != FinishPass::Stage::kPaint) {
+      AddSheet(name, picture);
       return Ok();
     }
     // Over the ground it shows what the exact picture would: colours of soft borders make up for rounded alpha.
@@ -104,7 +109,13 @@ class Layering {
     change.shares.resize(picture.rgba.size() / 4);
     for (std::size_t i = 0; i < change.shares.size(); ++i) change.shares[i] = picture.rgba[4 * i + 3];
     below_ = layers_.front().picture;
-    layers_.push_back({name, Solved(change, below_).picture});
+    internal::InkLayer layer = Solved(change, below_);
+    if (!layer.reaches_target) {
+      AddSheet(name, std::move(target));
+      return Ok();
+    }
+    for (FinishLayer& one : layers_) one.visible = &one == &layers_.front();
+    layers_.push_back({name, std::move(layer.picture)});
     return Ok();
   }
 
@@ -164,10 +175,12 @@ class Layering {
     if (outline || !change.ink) {
       SCUMBLE_ASSIGN(change.shares, SharesOf(step, before));
     }
-    tbb::task_arena arena(threads_ > 0 ? threads_ : tbb::task_arena::automatic);
-    internal::InkLayer layer = arena.execute(
-        [&] { return internal::InkBetween(change, options_.bits == 8 ? 255 : 65535, exact.empty() ? below_ : exact); });
-    layers_.push_back({step.pass.name, std::move(layer.picture), true, true, layer.atop});
+    internal::InkLayer layer = Solved(change, exact.empty() ? below_ : exact);
+    if (exact.empty() && !layer.reaches_target) {
+      AddSheet(step.pass.name, std::move(target));
+    } else {
+      layers_.push_back({step.pass.name, std::move(layer.picture), true, true, layer.atop});
+    }
     return Ok();
   }
 

@@ -2,7 +2,7 @@
 //
 // A pixel may show several surfaces (core/image/fragments.h). It is painted once for each, by the guides of a pixel
 // beside it that shows the surface, and the colours are mixed by coverage, in linear light. A pixel beside a hard
-// contour of light (finish/tone/light_contour.h) sees the light beyond in its share of it. So all borders are smooth.
+// contour of light (core/filter/light_contour.h) sees the light beyond in its share of it. So all borders are smooth.
 // The stroke of a painted edge (core/image/edge_strokes.h) is a surface of its pixel, too: it is painted by the guides
 // of its owner.
 #pragma once
@@ -10,9 +10,9 @@
 #include <span>
 #include <vector>
 
+#include "core/filter/light_contour.h"
 #include "core/filter/parallel.h"
 #include "finish/finish.h"
-#include "finish/tone/light_contour.h"
 #include "finish/tone/point_effect.h"
 
 namespace scumble::internal {

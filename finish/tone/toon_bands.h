@@ -8,10 +8,10 @@
 #include <span>
 #include <utility>
 
+#include "core/filter/light_contour.h"
 #include "core/filter/oklab_rows.h"
 #include "core/filter/wide_loops.h"
 #include "finish/finish.h"
-#include "finish/tone/light_contour.h"
 
 namespace scumble::internal {
 

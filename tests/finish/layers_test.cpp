@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/filter/more_workers.h"
+#include "core/image/color.h"
 #include "core/style/finish_keys.h"
 #include "tests/finish/finish_fixtures.h"
 
@@ -23,6 +24,22 @@ void Lay(const FinishLayer& layer, std::vector<double>& flat) {
       flat[c] = (layer.picture.rgba[c] / 65535.0 * share + flat[c] * rest) / (share + rest);
     if (!layer.atop) flat[i + 3] = share + rest;
   }
+}
+
+// The largest difference of the visible layers' sum from the picture, in steps of 1 / 255, as colours show.
+double ShownError(const std::vector<FinishLayer>& layers, const Picture& picture) {
+  std::vector<double> flat(picture.rgba.size(), 0.0);
+  for (const FinishLayer& layer : layers) {
+    if (layer.visible) Lay(layer, flat);
+  }
+  double error = 0.0;
+  for (std::size_t i = 0; i < flat.size(); i += 4) {
+    const double alpha = picture.rgba[i + 3] / 65535.0;
+    error = std::max(error, std::abs(flat[i + 3] - alpha));
+    for (std::size_t c = i; c < i + 3; ++c)
+      error = std::max(error, std::abs(flat[c] * flat[i + 3] - picture.rgba[c] / 65535.0 * alpha));
+  }
+  return 255.0 * error;
 }
 
 // The largest difference of the visible layers' sum from the picture in 8 bits, in steps of 1 / 255, and of alpha.
@@ -90,6 +107,31 @@ class LayeredFinish : public ::testing::Test {
     return options;
   }
 
+  // A plate of partial alpha, blended in linear light.
+  static FinishLayerOptions OnThinPlate() {
+    FinishLayerOptions options;
+    options.put_ground = [](Picture& picture) -> Status {
+      constexpr double kPlate[3] = {2000.0, 9000.0, 30000.0};
+      for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
+        const bool has_plate = i % 3 != 0;
+        const double share = picture.rgba[i + 3] / 65535.0, rest = has_plate ? 0.5 * (1.0 - share) : 0.0;
+        for (std::size_t c = 0; c < 3 && rest > 0.0; ++c) {
+          const double front = Srgb16ToLinear(picture.rgba[i + c]);
+          const double back = Srgb16ToLinear(static_cast<std::uint16_t>(kPlate[c]));
+          picture.rgba[i + c] = Srgb16FromLinear(static_cast<float>((front * share + back * rest) / (share + rest)));
+        }
+        picture.rgba[i + 3] = static_cast<std::uint16_t>((share + rest) * 65535.0 + 0.5);
+      }
+      return Ok();
+    };
+    return options;
+  }
+  // Paint that shows what is behind it.
+  void ThinThePaint() {
+    for (std::size_t i = 3; i < picture_.rgba.size(); i += 4)
+      picture_.rgba[i] = static_cast<std::uint16_t>(picture_.rgba[i] * (0.3 + 0.5 * double(i % 97) / 96.0));
+  }
+
   GuideSet guides_ = AllGuides(60);
   Picture picture_ = CoveredPicture(guides_), made_;
   FinishFrame frame_{&guides_, MeasureFinish(guides_), 1.0, 7};
@@ -107,6 +149,28 @@ TEST_F(LayeredFinish, OfEveryEffectMakesThePicture) {
       EXPECT_EQ(layers.back().name, effect.name);
     }
   }
+}
+
+// No colour of thin paint over a plate of partial alpha may lead to the picture.
+TEST_F(LayeredFinish, ThinPaintOnAThinPlateMakesThePicture) {
+  ThinThePaint();
+  const KeyValue white = std::string("#ffffff");
+  for (const std::vector<FinishStep>& steps :
+       {std::vector{NamedStep("pigment")}, std::vector{NamedStep("outline", {{"ink", white}}), NamedStep("hatch")},
+        std::vector{NamedStep("tones"), NamedStep("edges"), NamedStep("outline")}}) {
+    const auto layers = Layers(steps, OnThinPlate());
+    EXPECT_EQ(made_.rgba, Whole(steps, OnThinPlate()).rgba);
+    EXPECT_LE(ShownError(layers, made_), 1.0) << steps.front().pass.name;
+  }
+}
+
+// Alpha that is rounded in every layer does not add up.
+TEST_F(LayeredFinish, ThinPaintAndInkOnNothingMakeThePicture) {
+  ThinThePaint();
+  const auto layers = Layers({NamedStep("outline"), NamedStep("edges"), NamedStep("outline")});
+  EXPECT_THAT(NamesIn(layers), ElementsAre("paint", "outline", "edges", "outline"));
+  EXPECT_LE(ShownError(layers, made_), 1.0);
+  EXPECT_LE(FlatError(layers, made_), 1.1);
 }
 
 TEST_F(LayeredFinish, ChainsMakeThePicture) {

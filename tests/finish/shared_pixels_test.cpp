@@ -2,107 +2,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <memory>
 #include <vector>
 
 #include "core/image/color.h"
-#include "finish/tone/light_contour.h"
 #include "tests/finish/finish_fixtures.h"
+#include "tests/support/light_fixtures.h"
 
 namespace scumble {
 namespace {
-
-// Of pixel (x, y), the share above the line y = a + b x, from its corner's coordinates.
-double AreaAbove(double a, double b, int x, int y) {
-  constexpr int kSamples = 64;
-  double sum = 0.0;
-  for (int i = 0; i < kSamples; ++i) sum += std::clamp(a + b * (x + (i + 0.5) / kSamples) - y, 0.0, 1.0);
-  return sum / kSamples;
-}
-
-// Shadow above a line, seen at pixel centres.
-GuideSet SlantedShadow(int size, double a, double b) {
-  GuideSet guides = FlatGuides(size, size);
-  for (int y = 0; y < size; ++y) {
-    for (int x = 0; x < size; ++x) {
-      const bool shaded = y + 0.5 < a + b * (x + 0.5);
-      guides.Plane(Layer::kShadow)[guides.Index(x, y)] = shaded ? 1.0f : 0.0f;
-      guides.Plane(Layer::kLuminance)[guides.Index(x, y)] = shaded ? 0.0f : 1.0f;
-    }
-  }
-  guides.attributes["scumble:light"] = "exact";
-  return guides;
-}
-
-struct Errors {
-  double mean = 0.0, most = 0.0;
-};
-
-// Of values 0 … 1 at the pixels through which the line goes, away from the picture's edges.
-template <class Value>
-Errors ErrorsAlong(int size, double a, double b, const Value& value) {
-  Errors errors;
-  int count = 0;
-  for (int y = 8; y < size - 8; ++y) {
-    for (int x = 8; x < size - 8; ++x) {
-      const double exact = AreaAbove(a, b, x, y), error = std::fabs(value(x, y) - exact);
-      errors.most = std::max(errors.most, error);
-      if (exact > 0.0 && exact < 1.0) errors.mean += error, ++count;
-    }
-  }
-  errors.mean /= std::max(1, count);
-  return errors;
-}
-
-TEST(LightContour, SlantedShadowsHaveTheAreaOfALine) {
-  for (const double slope : {0.03, 0.1, 0.27, 0.5, 0.71, 1.0}) {
-    const double at = 24.3 - 24.0 * slope;
-    const GuideSet guides = SlantedShadow(64, at, slope);
-    const internal::LightContour contour({guides.Plane(Layer::kShadow), 0.1f}, guides);
-    const auto shade = [&](int x, int y) {
-      const double beyond = contour.BeyondOf(x, y).share;
-      return guides.Plane(Layer::kShadow)[guides.Index(x, y)] > 0.5f ? 1.0 - beyond : beyond;
-    };
-    const Errors steps = ErrorsAlong(
-        64, at, slope, [&](int x, int y) { return double(guides.Plane(Layer::kShadow)[guides.Index(x, y)]); });
-    const Errors line = ErrorsAlong(64, at, slope, shade);
-    EXPECT_LT(line.mean, 0.75 * steps.mean) << slope;
-    EXPECT_LT(line.most, 0.3) << slope;
-  }
-}
-
-TEST(LightContour, UprightShadowsStayAndCornersAreCutByHalfAPixel) {
-  GuideSet guides = FlatGuides(32, 32);
-  const auto shadow = guides.Plane(Layer::kShadow);
-  for (int y = 10; y < 20; ++y) {
-    for (int x = 8; x < 24; ++x) shadow[guides.Index(x, y)] = 1.0f;
-  }
-  const internal::LightContour contour({shadow, 0.1f}, guides);
-  for (int y = 0; y < 32; ++y) {
-    for (int x = 0; x < 32; ++x) {
-      const bool is_corner = (x == 8 || x == 23) && (y == 10 || y == 19);
-      EXPECT_NEAR(contour.BeyondOf(x, y).share, is_corner ? 0.125 : 0.0, 1e-6) << x << " " << y;
-    }
-  }
-}
-
-// A gradient has no contour, whatever its direction, and light of another object makes none.
-TEST(LightContour, GradientsAndObjectsMakeNone) {
-  GuideSet guides = FlatGuides(32, 32);
-  for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
-    const auto x = static_cast<float>(i % 32), y = static_cast<float>(i / 32);
-    guides.Plane(Layer::kObject)[i] = x + 0.3f * y < 16.0f ? 1.0f : 2.0f;
-    guides.Plane(Layer::kLuminance)[i] = (x + 0.3f * y < 16.0f ? 0.0f : 1.0f) + 0.03f * x + 0.05f * y;
-  }
-  const internal::LightContour contour({guides.Plane(Layer::kLuminance), 0.1f}, guides);
-  for (int y = 0; y < 32; ++y) {
-    for (int x = 0; x < 32; ++x) {
-      EXPECT_EQ(contour.BeyondOf(x, y).share, 0.0f) << x << " " << y;
-    }
-  }
-}
 
 double LightOf(const std::uint16_t* texel) { return Srgb16ToLinear(texel[1]); }
 

@@ -17,6 +17,11 @@ namespace scumble {
 Illumination::Illumination(std::span<const double> luminances, float weight, LuminanceError form)
     : luminances_(luminances.begin(), luminances.end()), weight_(weight), form_(form) {
   for (const float one : luminances_) brightest_ = std::max(brightest_, one);
+  std::vector<float> rising = luminances_;
+  std::ranges::sort(rising);
+  for (std::size_t k = 1; k < rising.size(); ++k) {
+    if (rising[k - 1] < rising[k]) borders_.push_back(0.5f * (rising[k - 1] + rising[k]));
+  }
 }
 
 int Illumination::Choose(float luminance) const {

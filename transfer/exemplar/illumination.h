@@ -24,6 +24,8 @@ class Illumination {
   float weight() const { return weight_; }
   LuminanceError form() const { return form_; }
   float brightest() const { return brightest_; }
+  // Where the choice changes, rising.
+  std::span<const float> borders() const { return borders_; }
 
   // The exemplar with the nearest luminance; ties to the first. NaN and negative values count as darkness. Values
   // brighter than the brightest exemplar count as bright as that: far from all exemplars, the differences would be
@@ -36,7 +38,7 @@ class Illumination {
  private:
   float Clamped(float luminance) const { return luminance >= 0.0f ? std::min(luminance, brightest_) : 0.0f; }
 
-  std::vector<float> luminances_;
+  std::vector<float> luminances_, borders_;
   float brightest_ = 0.0f;
   float weight_ = 0.0f;
   LuminanceError form_ = LuminanceError::kExcess;

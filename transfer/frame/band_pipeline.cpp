@@ -212,8 +212,7 @@ class Band {
     const ColorizeInput tint{frame_.guides, active, shared.style.tint, field_.first_row};
     if (shared.tone || tint.tint.active()) {
       votes.finished = [&](int y, int x0, int x1) {
-        const HybridRow row{frame_.guides, shared.style.match.luminance, active.data() + field_.Index(0, y)};
-        if (shared.tone) shared.tone->AddToRow(row, y, x0, x1, base_votes_, out_);
+        if (shared.tone) shared.tone->AddToRow(active.data() + field_.Index(0, y), y, x0, x1, base_votes_, out_);
         if (tint.tint.active()) ColorizeRow(tint, y, x0, x1, out_);
       };
     }
@@ -285,7 +284,7 @@ BandResult PaintByBands(const FrameInput& frame, std::span<const BandStyle> styl
     if (style.radius > kSmallRadius) one.wide_votes.emplace(style.match.exemplar);
     if (!style.base) continue;
     one.tone.emplace(HybridLayers{style.match.exemplar, *style.base, style.match.illumination, nullptr},
-                     style.match.brightness);
+                     HybridFrame{frame.guides, style.match.luminance, style.match.brightness});
     one.small_base_votes.emplace(*style.base);
     if (style.radius > kSmallRadius) one.wide_base_votes.emplace(*style.base);
     if (base_votes.width != width || base_votes.height != height) base_votes = Picture(width, height);

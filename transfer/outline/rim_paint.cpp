@@ -68,6 +68,7 @@ RimPaint::RimPaint(const Picture& picture, int size)
     const int v = std::clamp(static_cast<int>(std::floor(y + half)), 0, size - 1);
     return lifted.At(u, v);
   };
+  const double ring = std::min(kRingFrom * half, half - 1.0);  // of a small sphere, too, some pixels lie on it
   paint_ = Picture(side, side);
   double paint = 0.0, count = 0.0;
   for (int y = 0; y < side; ++y) {
@@ -82,7 +83,7 @@ RimPaint::RimPaint(const Picture& picture, int size)
       else
         texel = Mixed(inside(dx * kOnCosine - dy * kOnSine, dx * kOnSine + dy * kOnCosine), inside(dx, dy), shown);
       std::copy_n(texel.begin(), 4, paint_.At(x, y));
-      if (r >= kRingFrom * half && r <= half) paint += texel[3] / 65535.0, count += 1.0;
+      if (r >= ring && r <= half) paint += texel[3] / 65535.0, count += 1.0;
     }
   }
   has_edge_ = paper.kind != BarePaper::Kind::kCovered && count > 0.0 && paint / count > kLeastPaintOnRing;

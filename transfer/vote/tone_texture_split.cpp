@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "core/filter/masked_blur.h"
+#include "core/image/color.h"
+#include "core/image/fragments.h"
 
 namespace scumble {
 
@@ -29,6 +31,8 @@ PreparedExemplar MakeBaseLayers(const PreparedExemplar& exemplar, double sigma) 
 
 namespace scumble::internal {
 namespace {
+
+constexpr float kLeastShare = 1.0f / 32.0f;  // of a pixel; less does not show
 
 using Color = std::array<std::int64_t, 4>;  // premultiplied, of 65535
 
@@ -98,6 +102,17 @@ void Store(const Color& color, std::uint16_t* out) {
   out[3] = static_cast<std::uint16_t>(alpha);
 }
 
+// That share of another colour, straight alpha, in linear light.
+void Mix(const std::uint16_t* other, float share, std::uint16_t* texel) {
+  if (std::equal(other, other + 4, texel)) return;
+  const float own_alpha = (1.0f - share) * texel[3], other_alpha = share * other[3], alpha = own_alpha + other_alpha;
+  for (int c = 0; c < 3 && alpha > 0.0f; ++c) {
+    const float sum = own_alpha * Srgb16ToLinear(texel[c]) + other_alpha * Srgb16ToLinear(other[c]);
+    texel[c] = Srgb16FromLinear(std::min(1.0f, sum / alpha));
+  }
+  texel[3] = static_cast<std::uint16_t>(alpha + 0.5f);
+}
+
 }  // namespace
 
 void AddBaseLayer(const HybridLayers& layers, const HybridGuide& guide, const std::uint16_t* base_vote,
@@ -135,30 +150,61 @@ inline bool HybridTone::AddOpaque(glm::vec3 normal, int own, const std::uint16_t
   return true;
 }
 
-HybridTone::HybridTone(const HybridLayers& layers, float brightness)
+HybridTone::HybridTone(const HybridLayers& layers, const HybridFrame& frame)
     : layers_(layers),
-      brightness_(brightness),
+      frame_(frame),
       rows_(layers.paint.Rows()),
       half_(0.5f * static_cast<float>(layers.paint.size())),
-      may_be_quick_(layers.paint.is_sphere() && !layers.space) {}
+      may_be_quick_(layers.paint.is_sphere() && !layers.space),
+      has_several_(layers.paint.count() > 1) {
+  for (int c = 0; c < 3; ++c) normals_[c] = frame.guides.Plane(Layer::kNormal, c);
+  const std::span<const float> borders = layers.illumination.borders();
+  if (!frame.luminance.empty() && !borders.empty())
+    borders_.emplace(HardLight{frame.luminance, 0.0f, 0, 1.0f, borders}, frame.guides);
+}
 
-void HybridTone::AddToRow(const HybridRow& row, int y, int x0, int x1, const Picture& base_votes, Picture& out) const {
+// AddBaseLayer of that pixel, with the exemplar that suits the light.
+inline void HybridTone::Add(std::size_t pixel, float light, const std::uint16_t* base_vote,
+                            std::uint16_t* texel) const {
+  const glm::vec3 normal(normals_[0][pixel], normals_[1][pixel], normals_[2][pixel]);
+  const int own = has_several_ ? layers_.illumination.Choose(light) : 0;
+  if (may_be_quick_ && AddOpaque(normal, own, base_vote, texel)) return;
+  float extra_values[GuideSpace::kMaxExtra];
+  if (layers_.space) layers_.space->Read(frame_.guides, pixel, frame_.brightness, extra_values);
+  AddBaseLayer(layers_, {normal, light, extra_values}, base_vote, texel);
+}
+
+// Before their votes are overwritten.
+std::vector<HybridTone::BorderPixel> HybridTone::BesideBorders(const std::uint8_t* active, int y, int x0, int x1,
+                                                               const Picture& out) const {
+  std::vector<BorderPixel> beside;
+  if (!borders_) return beside;
+  const Fragments* const fragments = frame_.guides.fragments.get();
   const std::size_t first = std::size_t(y) * std::size_t(out.width);
-  const float* normals[3];
-  for (int c = 0; c < 3; ++c) normals[c] = row.guides.Plane(Layer::kNormal, c).data() + first;
-  const bool several = layers_.paint.count() > 1;
-  for (int x = x0; x < x1; ++x) {
-    if (!row.active[x]) continue;
+  borders_->ForEachInRow(y, x0, x1, [&](int x, std::uint32_t sides) {
+    if (!active[x]) return;
     const std::size_t i = first + std::size_t(x);
-    const glm::vec3 normal(normals[0][x], normals[1][x], normals[2][x]);
-    const float light = row.luminance.empty() ? 0.0f : row.luminance[i];
-    const std::uint16_t* const base_vote = base_votes.At(x, y);
-    std::uint16_t* const texel = out.At(x, y);
-    const int own = several ? layers_.illumination.Choose(light) : 0;
-    if (may_be_quick_ && AddOpaque(normal, own, base_vote, texel)) continue;
-    float extra_values[GuideSpace::kMaxExtra];
-    if (layers_.space) layers_.space->Read(row.guides, i, brightness_, extra_values);
-    AddBaseLayer(layers_, {normal, light, extra_values}, base_vote, texel);
+    if (fragments && std::ranges::binary_search(fragments->pixel, static_cast<std::uint32_t>(i))) return;
+    const LightContour::Beyond beyond = borders_->BeyondOf(x, y, sides);
+    if (beyond.share < kLeastShare) return;
+    BorderPixel& one = beside.emplace_back(BorderPixel{x, {}, beyond});
+    std::copy_n(out.At(x, y), 4, one.vote.begin());
+  });
+  return beside;
+}
+
+void HybridTone::AddToRow(const std::uint8_t* active, int y, int x0, int x1, const Picture& base_votes,
+                          Picture& out) const {
+  const std::size_t first = std::size_t(y) * std::size_t(out.width);
+  std::vector<BorderPixel> beside = BesideBorders(active, y, x0, x1, out);
+  for (int x = x0; x < x1; ++x) {
+    if (!active[x]) continue;
+    const std::size_t i = first + std::size_t(x);
+    Add(i, LightOf(i), base_votes.At(x, y), out.At(x, y));
+  }
+  for (BorderPixel& one : beside) {
+    Add(first + std::size_t(one.x), LightOf(one.beyond.pixel), base_votes.At(one.x, y), one.vote.data());
+    Mix(one.vote.data(), one.beyond.share, out.At(one.x, y));
   }
 }
 
@@ -167,11 +213,11 @@ bool VoteHybrid(const HybridInput& input, Picture& base_votes, Picture& out, Row
   if (base_votes.width != out.width || base_votes.height != out.height) base_votes = Picture(out.width, out.height);
   const VoteInput base{paint.field, paint.active, input.base, paint.radius, paint.edges, paint.region};
   if (!Vote(base, base_votes, progress)) return false;
-  const HybridTone tone({paint.exemplar, input.base, input.illumination, input.space}, input.brightness);
+  const HybridTone tone({paint.exemplar, input.base, input.illumination, input.space},
+                        {input.guides, input.luminance, input.brightness});
   VoteInput both = paint;
   both.finished = [&](int y, int x0, int x1) {
-    const HybridRow row{input.guides, input.luminance, paint.active.data() + paint.field.Index(0, y)};
-    tone.AddToRow(row, y, x0, x1, base_votes, out);
+    tone.AddToRow(paint.active.data() + paint.field.Index(0, y), y, x0, x1, base_votes, out);
     if (paint.finished) paint.finished(y, x0, x1);
   };
   return Vote(both, out, progress);

@@ -2,10 +2,13 @@
 // without a seam, and a detail layer copied as by StyleBlit, unblurred (Sýkora et al. 2019 suggest it).
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "core/filter/light_contour.h"
 #include "core/image/guides.h"
 #include "core/image/style.h"
 #include "scumble/picture.h"
@@ -61,29 +64,44 @@ struct HybridGuide {
 void AddBaseLayer(const HybridLayers& layers, const HybridGuide& guide, const std::uint16_t* base_vote,
                   std::uint16_t* texel);
 
-// What a row of the hybrid is painted from.
-struct HybridRow {
+// What the hybrid looks at.
+struct HybridFrame {
   const GuideSet& guides;
-  std::span<const float> luminance;  // as in HybridInput
-  const std::uint8_t* active;        // of the row, from column 0 on
+  std::span<const float> luminance;  // both as in HybridInput
+  float brightness = 1.0f;
 };
 
-// AddBaseLayer for many pixels. Shared by all threads; what `layers` refers to must outlive it.
+// AddBaseLayer for many pixels. Where the choice of the exemplar changes within an object, the border would be a
+// staircase of pixels: there a pixel takes both colours by their area (core/filter/light_contour.h), in linear light.
+// Pixels that show several surfaces do not: their fragments have each its own light. Shared by all threads; what it is
+// made of must outlive it.
 class HybridTone {
  public:
-  // `brightness` as in HybridInput.
-  explicit HybridTone(const HybridLayers& layers, float brightness);
-  // On the active pixels x0 … x1 - 1 of a row. Both pictures are of the guides' size.
-  void AddToRow(const HybridRow& row, int y, int x0, int x1, const Picture& base_votes, Picture& out) const;
+  HybridTone(const HybridLayers& layers, const HybridFrame& frame);
+  // On the pixels x0 … x1 - 1 of a row that are active; `active` is of the row, from column 0 on. Both pictures are of
+  // the guides' size.
+  void AddToRow(const std::uint8_t* active, int y, int x0, int x1, const Picture& base_votes, Picture& out) const;
 
  private:
+  // A pixel beside a border: the votes on its paint, and the pixel on the other side.
+  struct BorderPixel {
+    int x;
+    std::array<std::uint16_t, 4> vote;
+    LightContour::Beyond beyond;
+  };
+
+  std::vector<BorderPixel> BesideBorders(const std::uint8_t* active, int y, int x0, int x1, const Picture& out) const;
+  float LightOf(std::size_t pixel) const { return frame_.luminance.empty() ? 0.0f : frame_.luminance[pixel]; }
+  void Add(std::size_t pixel, float light, const std::uint16_t* base_vote, std::uint16_t* texel) const;
   bool AddOpaque(glm::vec3 normal, int own, const std::uint16_t* base_vote, std::uint16_t* texel) const;
 
   HybridLayers layers_;
-  float brightness_;
+  HybridFrame frame_;
+  std::span<const float> normals_[3];
+  std::optional<LightContour> borders_;  // only with several exemplars
   ExemplarRows rows_;
   float half_;  // of the sphere's size
-  bool may_be_quick_;
+  bool may_be_quick_, has_several_;
 };
 
 }  // namespace scumble::internal

@@ -96,6 +96,15 @@ TEST(PaintedEdge, ASheetPaintedAllOverHasNoEdge) {
   EXPECT_EQ(MustTransfer(style, guides).picture.rgba, exact.rgba);
 }
 
+// Of a sphere of a few pixels hardly a centre lies near the rim.
+TEST(PaintedEdge, TheSizeDoesNotDecideWhetherThereIsOne) {
+  const Picture paint = PaintOnPaper(80, 1.0, 0.0), sheet = PaintOnPaper(80, 2.0, 0.0);
+  for (int size = 1; size <= 20; ++size) {
+    EXPECT_TRUE(RimPaint(paint, size).HasEdge()) << size;
+    EXPECT_FALSE(RimPaint(sheet, size).HasEdge()) << size;
+  }
+}
+
 TEST(PaintedEdge, ThreadsAndRegionsDoNotChangeAByte) {
   const GuideSet guides = Ball();
   Style style = PlainStyle(PaintOnPaper(400, 1.0, 0.05));

@@ -2,13 +2,20 @@
 // definition.
 #include "transfer/vote/tone_texture_split.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <memory>
 #include <numeric>
+#include <set>
 #include <vector>
 
 #include "core/filter/masked_blur.h"
+#include "core/image/color.h"
+#include "core/image/fragments.h"
+#include "tests/support/light_fixtures.h"
 #include "tests/support/numbers.h"
 #include "tests/support/transfer_fixtures.h"
 
@@ -364,8 +371,85 @@ TEST(Hybrid, FollowsTheScale) {
   EXPECT_EQ(taller->base_layers->picture(0).rgba, MakeBaseLayers(*taller->exemplar, 9.0).picture(0).rgba);
 }
 
+// Two exemplars of one colour each.
+Style BrightAndDark(int size, int alpha) {
+  Style style = PlainStyle(Picture(size, size));
+  style.exemplars[0].luminance = 0.9;
+  style.exemplars.push_back({"dark.png", Picture(size, size), 0.2});
+  for (std::size_t k = 0; k < 2; ++k) {
+    std::vector<std::uint16_t>& rgba = style.exemplars[k].picture.rgba;
+    for (std::size_t i = 0; i < rgba.size(); ++i)
+      rgba[i] = static_cast<std::uint16_t>(i % 4 == 3 ? alpha : k == 0 ? 60000 : 20000);
+  }
+  style.transfer.hybrid = 4.0;
+  style.transfer.blend_radius = 0;
+  return style;
+}
+
+double LightAt(const Picture& picture, int x, int y) { return Srgb16ToLinear(picture.At(x, y)[1]); }
+
+// Borders of hard and of soft light have the area of a straight line, where light is known at pixel centres alone.
+TEST(Hybrid, BordersOfTonesAreNoStairs) {
+  const double slope = 0.23, at = 20.4;
+  for (const double steepness : {10.0, 0.01}) {
+    for (const int alpha : {65535, 30000}) {
+      GuideSet guides = SlantedShadow(64, at, slope);
+      for (int y = 0; y < 64; ++y) {
+        for (int x = 0; x < 64; ++x) {
+          const double below = y + 0.5 - at - slope * (x + 0.5);
+          guides.Plane(Layer::kLuminance)[guides.Index(x, y)] =
+              static_cast<float>(std::clamp(0.55 + steepness * below, 0.0, 1.0));
+        }
+      }
+      const Picture made = MustTransfer(BrightAndDark(64, alpha), guides).picture;
+      const double dark = LightAt(made, 20, 8), bright = LightAt(made, 20, 56);
+      ASSERT_GT(bright, dark + 0.1);
+      const Errors errors =
+          ErrorsAlong(64, at, slope, [&](int x, int y) { return (bright - LightAt(made, x, y)) / (bright - dark); });
+      EXPECT_LT(errors.mean, 0.1) << steepness;
+      EXPECT_LT(errors.most, 0.3) << steepness;
+      for (std::size_t i = 3; i < made.rgba.size(); i += 4) ASSERT_EQ(made.rgba[i], alpha);
+    }
+  }
+}
+
+// Neither do borders of objects mix, nor pixels that have fragments.
+TEST(Hybrid, OnlyBordersWithinOneSurfaceAreMixed) {
+  GuideSet guides = SlantedShadow(64, 20.4, 0.23);
+  const auto tones = [&] {
+    std::set<std::uint16_t> colors;
+    const Picture made = MustTransfer(BrightAndDark(64, 65535), guides).picture;
+    for (std::size_t i = 0; i < made.rgba.size(); i += 4) colors.insert(made.rgba[i]);
+    return colors.size();
+  };
+  EXPECT_GT(tones(), 2u);
+  const auto object = guides.Plane(Layer::kObject), light = guides.Plane(Layer::kLuminance);
+  for (std::size_t i = 0; i < guides.pixel_count(); ++i) object[i] = light[i] > 0.5f ? 1.0f : 2.0f;
+  EXPECT_EQ(tones(), 2u);
+
+  std::ranges::fill(object, 1.0f);
+  const auto fragments = std::make_shared<Fragments>();
+  for (std::uint32_t i = 0; i < guides.pixel_count(); ++i) fragments->pixel.push_back(i);
+  fragments->values = GuideSet(static_cast<int>(guides.pixel_count()), 1);
+  for (const LayerInfo& info : AllLayers()) {
+    for (int c = 0; guides.Has(info.layer) && c < ChannelCount(info.layer); ++c) {
+      fragments->values.Add(info.layer);
+      std::ranges::copy(guides.Plane(info.layer, c), fragments->values.Plane(info.layer, c).begin());
+    }
+  }
+  std::ranges::fill(fragments->values.Plane(Layer::kCoverage), 0.5f);
+  guides.fragments = fragments;
+  EXPECT_EQ(tones(), 2u);
+}
+
 TEST(Hybrid, ThreadsAndRegionsDoNotChangeAByte) {
-  const GuideSet guides = HillsLitFromTheLeft(131, 97);
+  GuideSet guides = HillsLitFromTheLeft(131, 97);
+  for (int y = 0; y < 97; ++y) {
+    for (int x = 0; x < 131; ++x) {
+      float& light = guides.Plane(Layer::kLuminance)[guides.Index(x, y)];
+      light += 0.03f * static_cast<float>(y % 31) + (3 * x + 7 * y > 500 ? 0.4f : 0.0f);
+    }
+  }
   for (const bool is_sphere : {true, false}) {
     Style style = TwoExemplars(120, is_sphere);
     style.transfer.colorize = 0.7, style.transfer.colorize_mode = ColorizeMode::kOklab;

@@ -1,4 +1,5 @@
-// Where light ends at a hard contour, as a lamp's shadow does: which share of a pixel lies on the other side.
+// Where light ends at a hard contour, as a lamp's shadow does, or crosses a border between two tones: which share of a
+// pixel lies on the other side.
 //
 // Light is known at pixel centres alone, so a contour is a staircase of steps between pixels. A straight contour has
 // steps of one length along rows or columns, and runs through the middle of each riser (Reshetov, "Morphological
@@ -26,6 +27,8 @@ struct HardLight {
   float least = 0.0f;  // contours are where neighbours of one object differ by more
   int bands = 0;       // above 1: and lie in different bands, of which per_tone times the tone is the number
   float per_tone = 1.0f;
+  // Instead of bands, rising: if any, contours are where neighbours also lie on two sides of one of them.
+  std::span<const float> borders = {};
 };
 
 class LightContour {
@@ -37,7 +40,7 @@ class LightContour {
     std::size_t pixel = 0;
   };
 
-  // Keeps references to the light and the guides. Without objects all that is covered is one.
+  // Keeps references to the light, its borders and the guides. Without objects all that is covered is one.
   LightContour(const HardLight& light, const GuideSet& guides);
 
   // Sides of a pixel.
@@ -51,9 +54,14 @@ class LightContour {
   // is none.
   template <class Visit>
   void ForEachInRow(int y, const Visit& visit) const {
+    ForEachInRow(y, 0, width_, visit);
+  }
+  // For those of columns x0 … x1 - 1.
+  template <class Visit>
+  void ForEachInRow(int y, int x0, int x1, const Visit& visit) const {
     std::array<std::uint32_t, kSome> marks;
-    for (int x = 0; x < width_; x += kSome) {
-      const int end = x + kSome < width_ ? x + kSome : width_;
+    for (int x = x0; x < x1; x += kSome) {
+      const int end = x + kSome < x1 ? x + kSome : x1;
       if (!MayHave(x, end, y) || !Mark(x, end, y, marks.data())) continue;
       for (int u = x; u < end; ++u) {
         if (marks[std::size_t(u - x)]) visit(u, marks[std::size_t(u - x)]);

@@ -1,4 +1,4 @@
-#include "finish/tone/light_contour.h"
+#include "core/filter/light_contour.h"
 
 #include <algorithm>
 #include <bit>
@@ -16,6 +16,12 @@ SCUMBLE_WIDE_LOOPS bool Differ(const float* a, const float* b, float least, std:
   return any != 0;
 }
 
+SCUMBLE_WIDE_LOOPS bool AreSeparate(const float* a, const float* b, float border, std::size_t count) {
+  int any = 0;
+  for (std::size_t i = 0; i < count; ++i) any |= (a[i] >= border) != (b[i] >= border) ? 1 : 0;
+  return any != 0;
+}
+
 // Adds a side where pixels differ from others of their object; whether any does.
 SCUMBLE_WIDE_LOOPS bool MarkSteps(const float* tone, const float* other_tone, const float* object,
                                   const float* other_object, float least, std::uint32_t side, std::size_t count,
@@ -23,6 +29,19 @@ SCUMBLE_WIDE_LOOPS bool MarkSteps(const float* tone, const float* other_tone, co
   std::uint32_t any = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const bool differs = (std::fabs(tone[i] - other_tone[i]) > least) & (object[i] == other_object[i]);
+    const std::uint32_t mark = differs ? side : 0u;
+    marks[i] |= mark, any |= mark;
+  }
+  return any != 0;
+}
+
+// Adds a side where pixels and others of their object lie on two sides of a border; whether any do.
+SCUMBLE_WIDE_LOOPS bool MarkSeparate(const float* tone, const float* other_tone, const float* object,
+                                     const float* other_object, float border, std::uint32_t side, std::size_t count,
+                                     std::uint32_t* marks) {
+  std::uint32_t any = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool differs = ((tone[i] >= border) != (other_tone[i] >= border)) & (object[i] == other_object[i]);
     const std::uint32_t mark = differs ? side : 0u;
     marks[i] |= mark, any |= mark;
   }
@@ -58,9 +77,16 @@ bool LightContour::MayHave(int x0, int x1, int y) const {
   const float* const here = row + x0;
   const auto count = static_cast<std::size_t>(x1 - x0);
   const int left = std::max(0, x0 - 1), right = std::min(width_ - 1, x1);
-  return Differ(row + left, row + left + 1, light_.least, static_cast<std::size_t>(right - left)) ||
-         (y > 0 && Differ(here, here - width_, light_.least, count)) ||
-         (y + 1 < height_ && Differ(here, here + width_, light_.least, count));
+  const auto is_any = [&](const auto& differ) {
+    return differ(row + left, row + left + 1, static_cast<std::size_t>(right - left)) ||
+           (y > 0 && differ(here, here - width_, count)) || (y + 1 < height_ && differ(here, here + width_, count));
+  };
+  if (light_.borders.empty()) {
+    return is_any([&](const float* a, const float* b, std::size_t some) { return Differ(a, b, light_.least, some); });
+  }
+  return std::ranges::any_of(light_.borders, [&](float border) {
+    return is_any([&](const float* a, const float* b, std::size_t some) { return AreSeparate(a, b, border, some); });
+  });
 }
 
 // Marks those that have one, objects considered.
@@ -71,8 +97,14 @@ bool LightContour::Mark(int x0, int x1, int y, std::uint32_t* marks) const {
     const float* const tone = light_.tone.data() + at;
     const float* const object = object_.empty() ? tone : object_.data() + at;
     const float* const other_object = object_.empty() ? tone : object + other;
-    return MarkSteps(tone, tone + other, object, other_object, light_.least, side, std::size_t(std::max(0, to - from)),
-                     marks + from - x0);
+    const auto count = static_cast<std::size_t>(std::max(0, to - from));
+    std::uint32_t* const some = marks + from - x0;
+    if (light_.borders.empty())
+      return MarkSteps(tone, tone + other, object, other_object, light_.least, side, count, some);
+    bool any = false;
+    for (const float border : light_.borders)
+      any = MarkSeparate(tone, tone + other, object, other_object, border, side, count, some) || any;
+    return any;
   };
   const bool sideways[2] = {mark(std::max(x0, 1), x1, -1, kLeft), mark(x0, std::min(x1, width_ - 1), 1, kRight)};
   const bool above = y > 0 && mark(x0, x1, -width_, kAbove), below = y + 1 < height_ && mark(x0, x1, width_, kBelow);
@@ -96,6 +128,10 @@ float LightContour::ShareBeyond(int x, int y, int side_x, int side_y) const {
     const auto band = [&](float at) { return std::floor(std::clamp(at, 0.0f, float(light_.bands - 1))); };
     if (band(own) == band(other)) return 0.0f;
     border = std::max(band(own), band(other));
+  } else if (!light_.borders.empty()) {
+    const auto above = std::ranges::upper_bound(light_.borders, std::max(own, other));
+    if (above == light_.borders.begin() || !(std::min(own, other) < above[-1])) return 0.0f;
+    border = above[-1];
   }
   const bool is_bright = own >= border;
   const float border_tone = border / light_.per_tone;
