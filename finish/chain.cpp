@@ -205,8 +205,7 @@ void ApplyToAll(const FinishStep& step, const FinishFrame& frame, Picture& pictu
   }
 }
 
-Status Apply(std::span<const FinishStep* const> steps, const FinishFrame& frame, const Progress& progress,
-             Picture& picture) {
+Status Apply(std::span<const FinishStep* const> steps, FinishFrame frame, const Progress& progress, Picture& picture) {
   const double share = 1.0 / static_cast<double>(steps.size());
   for (std::size_t i = 0; i < steps.size();) {
     std::vector<PointStep> points;
@@ -231,12 +230,18 @@ Status Apply(std::span<const FinishStep* const> steps, const FinishFrame& frame,
     if (!step.share.empty() && !draws) before = picture;
     ApplyToAll(step, FrameOf(step, frame), picture);
     if (!before.empty()) MixByShare(before, step.share, picture);
+    if (internal::HidesPaint(step)) frame.strokes = {};
     if (progress && !progress(share * double(i))) return CancelledError();
   }
   return Ok();
 }
 
 }  // namespace
+
+bool internal::HidesPaint(const FinishStep& step) {
+  return std::holds_alternative<FillPass>(step.pass.effect) && step.pass.at == FinishPass::Stage::kSheet &&
+         step.pass.strength >= 1.0 && step.only.empty() && step.share.empty();
+}
 
 namespace {
 

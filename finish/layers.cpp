@@ -6,6 +6,7 @@
 #include "core/image/check.h"
 #include "finish/finish.h"
 #include "finish/ink_layer.h"
+#include "finish/point_loop.h"
 
 namespace scumble {
 namespace {
@@ -50,13 +51,13 @@ class Layering {
         SCUMBLE_RETURN_IF_ERROR(Apply(begin, i, stage, picture_));
         const Picture before = picture_;
         SCUMBLE_RETURN_IF_ERROR(Apply(i, i + 1, stage, picture_));
-        begin = i + 1;
+        GoOn(i + 1, begin);
         SCUMBLE_RETURN_IF_ERROR(AddInk(steps_[i], before));
       } else if (IsWanted(pass)) {
         Picture after = picture_;
         SCUMBLE_RETURN_IF_ERROR(Apply(begin, i + 1, stage, after));
         SCUMBLE_RETURN_IF_ERROR(AddWhole(pass.name, stage, after));
-        if (StandsAlone(pass)) picture_ = std::move(after), begin = i + 1;
+        if (StandsAlone(pass)) picture_ = std::move(after), GoOn(i + 1, begin);
       }
       if (progress && !progress(double(i + 1) / double(steps_.size()))) return CancelledError();
     }
@@ -74,6 +75,14 @@ class Layering {
 
   Status Apply(std::size_t begin, std::size_t end, FinishPass::Stage stage, Picture& picture) const {
     return ApplyFinish(steps_.subspan(begin, end - begin), stage, frame_, threads_, {}, picture);
+  }
+
+  // The picture has got the steps before `end`.
+  void GoOn(std::size_t end, std::size_t& begin) {
+    for (const FinishStep& step : steps_.subspan(begin, end - begin)) {
+      if (internal::HidesPaint(step)) frame_.strokes = {};
+    }
+    begin = end;
   }
 
   Picture Stepped(Picture picture) const {
@@ -185,7 +194,7 @@ class Layering {
   }
 
   std::span<const FinishStep> steps_;
-  const FinishFrame& frame_;
+  FinishFrame frame_;  // what is known of the picture so far
   const FinishLayerOptions& options_;
   int threads_;
   Picture& picture_;

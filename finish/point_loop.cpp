@@ -352,8 +352,30 @@ class SharedPixels {
     add(colors ? colors->centre[shared.first] : given, pixel, left);
   }
 
-  // The stroke, and the surfaces beneath it in what it leaves of the pixel's paint, or of the sheet.
+  bool IsBeforeAnother(const EdgeStroke& stroke) const {
+    const GuideSet& guides = *frame_.guides;
+    if (!(guides.Plane(Layer::kCoverage)[stroke.pixel] > 0.0f) || !guides.Has(Layer::kObject)) return false;
+    return guides.Plane(Layer::kObject)[stroke.pixel] != guides.Plane(Layer::kObject)[stroke.owner];
+  }
+  // Whether a step puts something else in the place of the paint there, whatever it was.
+  bool IsReplaced(std::size_t pixel) const {
+    return std::ranges::any_of(steps_, [&](const PointStep& one) {
+      const FinishStep& step = *one.step;
+      const auto* const toon = std::get_if<ToonPass>(&step.pass.effect);
+      const bool replaces =
+          std::holds_alternative<RenderPass>(step.pass.effect) || (toon && toon->base == ToonPass::Color::kAlbedo);
+      return replaces && step.pass.strength >= 1.0 && (step.only.empty() || step.only[pixel] != 0) &&
+             (step.share.empty() || step.share[pixel] == 65535);
+    });
+  }
+
+  // The stroke, and the surfaces beneath it in what it leaves of the pixel's paint, or of the sheet. Strokes whose paint
+  // is replaced are none any more: silhouettes before other surfaces are exact then.
   void AddStroke(const EdgeStroke& stroke, const Shared& shared, const Texel& given, Batch& batch) const {
+    if (IsBeforeAnother(stroke) && IsReplaced(stroke.owner)) {
+      if (shared.first != shared.end) AddParts(shared, given, batch);
+      return;
+    }
     const bool is_known = std::equal(given.begin(), given.begin() + 3, stroke.mixed.begin());  // what lies on what
     const float opacity = static_cast<float>(stroke.own[3]) / 65535.0f, alpha = static_cast<float>(given[3]) / 65535.0f;
     const float share = std::min(1.0f, opacity / alpha);
@@ -394,21 +416,22 @@ class ContourPixels {
 
   // The row has been painted without them.
   void PaintRow(const GivenRow& row, Picture& picture) const {
-    Batch batch;
+    std::array<Batch, 2> batches;  // mixed in one after the other
     std::vector<std::uint8_t> is_known(contours_.size() > 1 ? row.width() : 0);
     for (const Contour& contour : contours_) {
       contour.light.ForEachInRow(row.y, [&](int x, std::uint32_t sides) {
         const std::size_t pixel = row.first + std::size_t(x);
         if (!MayChange(*contour.step.step, pixel) || row.Of(pixel)[3] == 0) return;
         if (!is_known.empty() && is_known[std::size_t(x)] != 0) return;
-        const LightContour::Beyond beyond = contour.light.BeyondOf(x, row.y, sides);
-        if (beyond.share < kLeastShare) return;
-        if (!is_known.empty()) is_known[std::size_t(x)] = 1;
-        batch.parts.push_back({pixel, beyond.pixel, beyond.share, row.Of(pixel)[3]});
-        batch.paint.push_back(row.Of(pixel));
+        const auto both = contour.light.BeyondOf(x, row.y, sides);
+        for (std::size_t k = 0; k < 2 && both[k].share >= kLeastShare; ++k) {
+          if (!is_known.empty()) is_known[std::size_t(x)] = 1;
+          batches[k].parts.push_back({pixel, both[k].pixel, both[k].share, row.Of(pixel)[3]});
+          batches[k].paint.push_back(row.Of(pixel));
+        }
       });
     }
-    Put(batch, PaintParts(steps_, batch), picture);
+    for (const Batch& batch : batches) Put(batch, PaintParts(steps_, batch), picture);
   }
 
  private:

@@ -28,6 +28,9 @@ struct PointStep {
 // Whether the step changes the guides.
 bool IsOfGuides(const FinishStep& step);
 
+// Whether nothing of the paint is left to be seen, strokes of painted edges included.
+bool HidesPaint(const FinishStep& step);
+
 // Applies the steps to the picture. False: cancelled.
 bool PaintPoints(std::span<const PointStep> steps, const FinishFrame& frame, RowProgress& progress, Picture& picture);
 

@@ -73,10 +73,10 @@ std::vector<Times> TakeTurns(std::span<const std::function<void()>> contestants,
   std::vector<int> runs;
   double round_seconds = 0.0;
   for (const auto& contestant : contestants) {
-    const double seconds = 1e-3 * Measure(options.before, contestant).wall_ms;
+    const double start = Now().wall_ms, seconds = 1e-3 * Measure(options.before, contestant).wall_ms;
     runs.push_back(static_cast<int>(
         std::clamp(options.turn_seconds / std::max(seconds, 1e-6), 1.0, static_cast<double>(options.most_runs))));
-    round_seconds += seconds * runs.back();
+    round_seconds += 1e-3 * (Now().wall_ms - start) * runs.back();  // with what goes before each run
   }
   const double wanted = std::min(options.seconds / std::max(round_seconds, 1e-6), 1e6);
   const int rounds = std::clamp(static_cast<int>(wanted), options.least_rounds, options.most_rounds);

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include "core/filter/wide_loops.h"
 
@@ -165,16 +166,20 @@ float LightContour::ShareBeyond(int x, int y, int side_x, int side_y) const {
   return area(before) + area(after);
 }
 
-LightContour::Beyond LightContour::BeyondOf(int x, int y, std::uint32_t sides) const {
+std::array<LightContour::Beyond, 2> LightContour::BeyondOf(int x, int y, std::uint32_t sides) const {
   const std::ptrdiff_t pixel = std::ptrdiff_t(y) * width_ + x;
-  Beyond most;
-  const auto look = [&](std::uint32_t side, bool has_side, int side_x, int side_y) {
-    const float share = (sides & side) && has_side ? ShareBeyond(x, y, side_x, side_y) : 0.0f;
-    if (share > most.share) most = {share, static_cast<std::size_t>(pixel + std::ptrdiff_t(side_y) * width_ + side_x)};
+  const auto beyond = [&](std::uint32_t side, bool has_side, int side_x, int side_y) {
+    if (!(sides & side) || !has_side) return Beyond();
+    return Beyond{ShareBeyond(x, y, side_x, side_y),
+                  static_cast<std::size_t>(pixel + std::ptrdiff_t(side_y) * width_ + side_x)};
   };
-  look(kLeft, x > 0, -1, 0), look(kRight, x + 1 < width_, 1, 0);
-  look(kAbove, y > 0, 0, -1), look(kBelow, y + 1 < height_, 0, 1);
-  return most;
+  const Beyond left = beyond(kLeft, x > 0, -1, 0), right = beyond(kRight, x + 1 < width_, 1, 0);
+  const Beyond above = beyond(kAbove, y > 0, 0, -1), below = beyond(kBelow, y + 1 < height_, 0, 1);
+  const bool is_sideways = left.share + right.share >= above.share + below.share;
+  std::array<Beyond, 2> both = {is_sideways ? left : above, is_sideways ? right : below};
+  if (both[0].share < both[1].share) std::swap(both[0], both[1]);
+  if (both[1].share > 0.0f) both[0].share = std::min(1.0f, both[0].share / (1.0f - both[1].share));
+  return both;
 }
 
 }  // namespace scumble::internal

@@ -46,9 +46,10 @@ class LightContour {
   // Sides of a pixel.
   static constexpr std::uint32_t kLeft = 1, kRight = 2, kAbove = 4, kBelow = 8, kAllSides = 15;
 
-  // Of the contours on some sides of a pixel the one that takes the largest share. Near 45 degrees two sides see one
-  // line, so shares are not added. 0 where there is none.
-  Beyond BeyondOf(int x, int y, std::uint32_t sides = kAllSides) const;
+  // What lies beyond the contours on some sides of a pixel: on the left and right, or above and below, where that takes
+  // more. Near 45 degrees sides of both kinds see one line. Shares are for mixing one after the other: each is of the
+  // pixel as the ones before have left it. 0 where there is no contour.
+  std::array<Beyond, 2> BeyondOf(int x, int y, std::uint32_t sides = kAllSides) const;
 
   // Calls visit(x, sides) for the pixels of a row that may have a contour beside them, on those sides. Fast where there
   // is none.

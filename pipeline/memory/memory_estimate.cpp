@@ -125,6 +125,7 @@ void AddStyle(const Style& style, int height, MemoryNeed& need) {
     if (settings.variety > 0.0) prepared += kTones;
     if (settings.shadow == ShadowMode::kPaint) of_texel += 24;
     if (settings.nearest == NearestSearch::kTree) of_texel += 32;
+    if (settings.edge == EdgeMode::kExemplar) of_texel += kPaint;  // the paint near the rim
     prepared += of_texel * texels;
     // Copies while one is extended, resized along x, turned and resized along y; or of the points of a search, or of
     // the planes of a blur.

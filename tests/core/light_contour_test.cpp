@@ -17,7 +17,7 @@ TEST(LightContour, SlantedShadowsHaveTheAreaOfALine) {
     const GuideSet guides = SlantedShadow(64, at, slope);
     const internal::LightContour contour({guides.Plane(Layer::kShadow), 0.1f}, guides);
     const auto shade = [&](int x, int y) {
-      const double beyond = contour.BeyondOf(x, y).share;
+      const double beyond = contour.BeyondOf(x, y)[0].share;
       return guides.Plane(Layer::kShadow)[guides.Index(x, y)] > 0.5f ? 1.0 - beyond : beyond;
     };
     const Errors steps = ErrorsAlong(
@@ -38,7 +38,7 @@ TEST(LightContour, UprightShadowsStayAndCornersAreCutByHalfAPixel) {
   for (int y = 0; y < 32; ++y) {
     for (int x = 0; x < 32; ++x) {
       const bool is_corner = (x == 8 || x == 23) && (y == 10 || y == 19);
-      EXPECT_NEAR(contour.BeyondOf(x, y).share, is_corner ? 0.125 : 0.0, 1e-6) << x << " " << y;
+      EXPECT_NEAR(contour.BeyondOf(x, y)[0].share, is_corner ? 0.125 : 0.0, 1e-6) << x << " " << y;
     }
   }
 }
@@ -54,7 +54,7 @@ TEST(LightContour, GradientsAndObjectsMakeNone) {
   const internal::LightContour contour({guides.Plane(Layer::kLuminance), 0.1f}, guides);
   for (int y = 0; y < 32; ++y) {
     for (int x = 0; x < 32; ++x) {
-      EXPECT_EQ(contour.BeyondOf(x, y).share, 0.0f) << x << " " << y;
+      EXPECT_EQ(contour.BeyondOf(x, y)[0].share, 0.0f) << x << " " << y;
     }
   }
 }
@@ -72,7 +72,7 @@ TEST(LightContour, BordersCutSoftLightByAStraightLine) {
   const internal::LightContour contour({light, 0.0f, 0, 1.0f, borders}, guides);
   const auto share_above = [&](float border) {
     return [&, border](int x, int y) {
-      const internal::LightContour::Beyond beyond = contour.BeyondOf(x, y);
+      const internal::LightContour::Beyond beyond = contour.BeyondOf(x, y)[0];
       const float own = light[guides.Index(x, y)];
       // Of the other border nothing is seen here.
       const bool is_other = beyond.share > 0.0f && (own < border) == (light[beyond.pixel] < border);
@@ -87,14 +87,42 @@ TEST(LightContour, BordersCutSoftLightByAStraightLine) {
   for (int y = 0; y < 64; ++y) {
     contour.ForEachInRow(y, 3, 61, [&](int x, std::uint32_t sides) {
       EXPECT_TRUE(x >= 3 && x < 61);
-      EXPECT_EQ(contour.BeyondOf(x, y, sides).share, contour.BeyondOf(x, y).share);
+      EXPECT_EQ(contour.BeyondOf(x, y, sides)[0].share, contour.BeyondOf(x, y)[0].share);
       ++visited;
     });
-    for (int x = 3; x < 61; ++x) beside += contour.BeyondOf(x, y).share > 0.0f;
+    for (int x = 3; x < 61; ++x) beside += contour.BeyondOf(x, y)[0].share > 0.0f;
   }
   EXPECT_GE(visited, beside);
   EXPECT_LT(visited, 4 * 64);  // two borders with two sides
   EXPECT_GT(beside, 64);
+}
+
+// A pixel between two contours: each of its sides gets the area beyond its line.
+TEST(LightContour, BothSidesOfANarrowBandAreSeen) {
+  GuideSet guides = FlatLight(32);
+  const auto light = guides.Plane(Layer::kLuminance);
+  const double slope = 0.25;
+  const auto left_of = [&](int y) { return 15.2 + slope * (y + 0.5); };  // at the row's middle
+  for (int y = 0; y < 32; ++y) {
+    for (int x = 0; x < 32; ++x) {
+      const double at = x + 0.5 - left_of(y);
+      light[guides.Index(x, y)] = at < 0.0 ? 0.0f : at < 1.0 ? 0.5f : 1.0f;
+    }
+  }
+  const internal::LightContour contour({light, 0.1f}, guides);
+  double dark = 0.0, bright = 0.0;
+  for (int y = 8; y < 24; ++y) {
+    for (int x = 1; x < 31; ++x) {
+      if (light[guides.Index(x, y)] != 0.5f) continue;
+      const auto both = contour.BeyondOf(x, y);
+      const double second = double(both[1].share), first = double(both[0].share) * (1.0 - second);
+      EXPECT_LE(first + second, 1.0);
+      const bool is_first_dark = light[both[0].pixel] == 0.0f;
+      dark += is_first_dark ? first : second, bright += is_first_dark ? second : first;
+    }
+  }
+  EXPECT_NEAR(dark / 16.0, 0.125, 0.05);
+  EXPECT_NEAR(bright / 16.0, 0.125, 0.05);
 }
 
 }  // namespace

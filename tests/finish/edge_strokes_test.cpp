@@ -111,11 +111,40 @@ TEST(EdgeStrokes, OnBackgroundTheyChangeAsTheirOwnerDoes) {
 
 TEST(EdgeStrokes, OnAnotherObjectEachKeepsItsShareAndChangesByItsOwnGuides) {
   const Painted painted(true, 0.25);
-  for (const FinishPass::Effect& effect :
-       {FinishPass::Effect(Haze()), Lift(), BlackShade(), FinishPass::Effect(ToonPass())}) {
+  for (const FinishPass::Effect& effect : {FinishPass::Effect(Haze()), Lift(), BlackShade()}) {
     const Picture made = painted.Made(StepOf(effect));
     ExpectNear(At(made, kBeside), Over(WithAlpha(At(made, kOwner), 0.25), At(made, 7)), "mixed");
   }
+}
+
+// An effect that puts something else in the paint's place leaves no stroke before the wall.
+TEST(EdgeStrokes, BeforeAnotherObjectTheyGoWithTheirPaint) {
+  for (const double opacity : {1.0, 0.3}) {
+    const Painted painted(true, opacity);
+    FinishStep step = StepOf(ToonPass());
+    Picture made = painted.Made(step);
+    EXPECT_EQ(At(made, kBeside), At(made, 7));
+    step.pass.strength = 0.5;  // some of the paint is left
+    made = painted.Made(step);
+    EXPECT_NE(At(made, kBeside), At(made, 7));
+  }
+}
+
+TEST(EdgeStrokes, UnderAFilledSheetThereAreNone) {
+  const Painted painted(false, 0.8);
+  FillPass fill;
+  fill.color = {60000, 50000, 40000};
+  std::vector<FinishStep> steps = {StepOf(fill), StepOf(BlackShade())};
+  for (FinishStep& step : steps) step.pass.at = FinishPass::Stage::kSheet;
+  FinishFrame frame{&painted.guides, {1.0, 5.0, 9.0}, 1.0, 7};
+  frame.strokes = painted.strokes;
+  Picture made = painted.picture;
+  ASSERT_TRUE(ApplyFinish(steps, FinishPass::Stage::kSheet, frame, 0, {}, made));
+  EXPECT_EQ(At(made, kBeside), (Texel{60000, 50000, 40000, 65535}));
+  steps[0].pass.strength = 0.5;
+  made = painted.picture;
+  ASSERT_TRUE(ApplyFinish(steps, FinishPass::Stage::kSheet, frame, 0, {}, made));
+  EXPECT_NE(At(made, kBeside), At(made, 7));
 }
 
 TEST(EdgeStrokes, StepsForSomeObjectsAndMasksTakeThemWithTheirOwner) {

@@ -63,7 +63,8 @@ class EdgePainter {
     }
     texel[3] = static_cast<std::uint16_t>(opacity * 65535.0f + 0.5f);
     pixel[3] = static_cast<std::uint16_t>(below * 65535.0f + 0.5f);
-    EdgeStroke stroke{static_cast<std::uint32_t>(p), static_cast<std::uint32_t>(owner), texel, {}, {}};
+    const std::size_t like = inside ? p : WithinOf(outline, owner);
+    EdgeStroke stroke{static_cast<std::uint32_t>(p), static_cast<std::uint32_t>(like), texel, {}, {}};
     std::copy_n(pixel, 4, stroke.beneath.begin());
     BlendOver(texel.data(), pixel);
     std::copy(texel.begin(), texel.end(), pixel);
@@ -73,6 +74,20 @@ class EdgePainter {
   }
 
  private:
+  // A pixel of the surface a little inside: at the outline itself it is seen from its edge, and normals and light jump
+  // from row to row.
+  std::size_t WithinOf(const OutlinePixel& outline, std::size_t owner) const {
+    const GuideSet& guides = input_.guides;
+    for (const float steps : {2.0f, 1.0f}) {
+      const int x = static_cast<int>(std::floor(static_cast<float>(outline.x) + 0.5f - steps * outline.outward.x));
+      const int y = static_cast<int>(std::floor(static_cast<float>(outline.y) + 0.5f - steps * outline.outward.y));
+      if (x < 0 || y < 0 || x >= guides.width() || y >= guides.height()) continue;
+      const std::size_t p = guides.Index(x, y);
+      if (coverage_[p] >= 1.0f && silhouettes_.Inside(outline, p)) return p;
+    }
+    return owner;
+  }
+
   // Whether the guides are those of the whole pixel.
   bool IsWhole(std::size_t p) const {
     const Fragments* const fragments = input_.guides.fragments.get();

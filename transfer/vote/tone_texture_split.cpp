@@ -185,10 +185,11 @@ std::vector<HybridTone::BorderPixel> HybridTone::BesideBorders(const std::uint8_
     if (!active[x]) return;
     const std::size_t i = first + std::size_t(x);
     if (fragments && std::ranges::binary_search(fragments->pixel, static_cast<std::uint32_t>(i))) return;
-    const LightContour::Beyond beyond = borders_->BeyondOf(x, y, sides);
-    if (beyond.share < kLeastShare) return;
-    BorderPixel& one = beside.emplace_back(BorderPixel{x, {}, beyond});
-    std::copy_n(out.At(x, y), 4, one.vote.begin());
+    for (const LightContour::Beyond& beyond : borders_->BeyondOf(x, y, sides)) {
+      if (beyond.share < kLeastShare) return;
+      BorderPixel& one = beside.emplace_back(BorderPixel{x, {}, beyond});
+      std::copy_n(out.At(x, y), 4, one.vote.begin());
+    }
   });
   return beside;
 }
