@@ -22,7 +22,7 @@
 #include "finish/finish.h"
 #include "finish/jitter.h"
 #include "finish/outline/outline.h"
-#include "finish/point_loop.h"
+#include "finish/points/point_loop.h"
 #include "finish/tone/point_effect.h"
 #include "finish/tone/toon_bands.h"
 
@@ -235,15 +235,6 @@ Status Apply(std::span<const FinishStep* const> steps, FinishFrame frame, const 
   }
   return Ok();
 }
-
-}  // namespace
-
-bool internal::HidesPaint(const FinishStep& step) {
-  return std::holds_alternative<FillPass>(step.pass.effect) && step.pass.at == FinishPass::Stage::kSheet &&
-         step.pass.strength >= 1.0 && step.only.empty() && step.share.empty();
-}
-
-namespace {
 
 std::string DepthText(double given, double measured) {
   char text[80];

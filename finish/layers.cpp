@@ -6,7 +6,7 @@
 #include "core/image/check.h"
 #include "finish/finish.h"
 #include "finish/ink_layer.h"
-#include "finish/point_loop.h"
+#include "finish/points/point_block.h"
 
 namespace scumble {
 namespace {

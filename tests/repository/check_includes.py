@@ -24,7 +24,7 @@ LIBRARIES = {
     "transfer": ("transfer", {"public", "image", "filter"},
                  ["field", "nearest", "exemplar", "seeds", "match", "vote", "vote/edge", "vote/wide", "tint", "frame",
                   "outline", "shadow"]),
-    "finish": ("finish", {"public", "image", "filter"}, ["tone", "area", "smooth", "hatch", "outline"]),
+    "finish": ("finish", {"public", "image", "filter"}, ["tone", "area", "points", "smooth", "hatch", "outline"]),
     "measure": ("measure", {"public", "image", "io", "filter"},
                 ["report", "compare", "mosaic", "energy", "texture", "painting", "crosscheck", "tradeoff"]),
     "pipeline": ("pipeline", {"public", "image", "io", "filter", "guidegen", "style", "transfer", "finish", "measure"},

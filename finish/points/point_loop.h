@@ -8,28 +8,11 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
-#include "core/filter/light_contour.h"
 #include "core/filter/parallel.h"
-#include "finish/finish.h"
-#include "finish/tone/point_effect.h"
+#include "finish/points/point_block.h"
 
 namespace scumble::internal {
-
-struct PointStep {
-  PointEffect apply;
-  const FinishStep* step = nullptr;
-  std::span<const float> coverage;  // the step changes only surfaces, as far as they cover; empty: it changes all
-  PointEffect behind = {};          // what it does to background, where that is another thing; `coverage` parts the two
-  std::vector<HardLight> lights = {};  // that the step looks at
-};
-
-// Whether the step changes the guides.
-bool IsOfGuides(const FinishStep& step);
-
-// Whether nothing of the paint is left to be seen, strokes of painted edges included.
-bool HidesPaint(const FinishStep& step);
 
 // Applies the steps to the picture. False: cancelled.
 bool PaintPoints(std::span<const PointStep> steps, const FinishFrame& frame, RowProgress& progress, Picture& picture);
