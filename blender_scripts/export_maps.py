@@ -41,12 +41,8 @@ def reads_instancer(instance, readers):
 
 
 def add_instancer_map(mesh, uv):
-    shown = shown_map(mesh)
-    if mesh.uv_layers.new(name=INSTANCER_MAP, do_init=False) is None:
-        return  # number_of says so
-    mesh.uv_layers[INSTANCER_MAP].data.foreach_set("uv", np.tile(np.array(uv, np.float32), len(mesh.loops)))
-    if shown:
-        mesh.uv_layers[shown].active_render = True
+    if len(mesh.uv_layers) < MOST_MAPS:  # else number_of says so
+        add_map(mesh, INSTANCER_MAP, np.tile(np.array(uv, np.float32), len(mesh.loops)))
 
 
 def shown_map(mesh):
@@ -62,12 +58,16 @@ def drop_unread(mesh, read):
         mesh.uv_layers.remove(mesh.uv_layers[name])
 
 
-def add_map(mesh, name):
-    """One of zeros, nearly: glTF's v would be 1, which belongs to the other end of an image that repeats. The map that
-    renders take stays."""
+def add_map(mesh, name, values=None):
+    """One that does not become the one that renders take. Where there is none, that is zero everywhere, as is a map
+    without values; nearly, because glTF's v would be 1, which belongs to the other end of an image that repeats."""
+    if values is not None and not mesh.uv_layers:
+        add_map(mesh, "scumble.0")
     shown = shown_map(mesh)
     mesh.uv_layers.new(name=name, do_init=False)
-    mesh.uv_layers[name].data.foreach_set("uv", np.full(2 * len(mesh.loops), NEARLY_ZERO, np.float32))
+    if values is None:
+        values = np.full(2 * len(mesh.loops), NEARLY_ZERO, np.float32)
+    mesh.uv_layers[name].data.foreach_set("uv", values)
     if shown:
         mesh.uv_layers[shown].active_render = True
 

@@ -142,6 +142,21 @@ def coordinates():
     data = thing.data.attributes.new("place", "FLOAT_VECTOR", "POINT").data
     for vertex, item in zip(thing.data.vertices, data):
         item.vector = (vertex.co.y + 0.45, vertex.co.x + 0.45, 1)
+    # Maps that are added, on meshes whose first material takes the map that renders take: there is none.
+    for cell, reads in ((19, {"uv_map": "tint"}), (20, {"from_instancer": True})):
+        thing = plane(f"NoMap{cell}", cell, textured(f"no map {cell}", image, ("TexCoord", {})))
+        thing.data.uv_layers.remove(thing.data.uv_layers[0])
+        thing.data.materials.append(textured(f"added {cell}", image, ("UVMap", reads)))
+        for polygon in thing.data.polygons:
+            polygon.material_index = int(polygon.index % 4 > 0)
+    tinted = bpy.data.objects["NoMap19"]
+    data = tinted.data.attributes.new("tint", "FLOAT_COLOR", "POINT").data
+    for vertex, item in zip(tinted.data.vertices, data):
+        item.color = (vertex.co.y + 0.45, vertex.co.x + 0.45, 1, 1)
+    ground = plane("GroundNoMap", 20, diffuse("ground", (0.2, 0.2, 0.2)))
+    ground.instance_type, ground.show_instancer_for_render = "FACES", False
+    stone = bpy.data.objects["NoMap20"]
+    stone.parent, stone.scale, stone.location = ground, (0.2, 0.2, 0.2), (0, 0, 0)
     for cell, kind in ((16, "TexCoord"), (18, "UVMap")):
         chain = {"from_instancer": True} | ({"uv_map": "UVMap"} if kind == "UVMap" else {})
         stone = plane("Stone" + kind, 39, textured("instancer " + kind, image, (kind, chain)))
