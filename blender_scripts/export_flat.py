@@ -44,7 +44,7 @@ class FlatScene:
     materials: dict = field(default_factory=dict)  # by material_key
     shown_maps: dict = field(default_factory=dict)  # by material_key: its meshes' UV maps that renders take
     normals: dict = field(default_factory=dict)  # of metaballs' vertices, by the object's full name
-    uv_readers: set = field(default_factory=export_maps.instancer_readers)
+    uv_readers: set = field(default_factory=set)  # export_maps.instancer_readers
     corners: dict = field(default_factory=dict)  # how many each mesh had before its faces were cut, by its name
 
 
@@ -187,6 +187,7 @@ def flatten(scene, view_layer, unsupported):
     depsgraph = view_layer.depsgraph
     depsgraph.update()
     flat, meshes = FlatScene(normals=export_normals.of_metaballs(depsgraph)), {}
+    flat.uv_readers = export_maps.instancer_readers(depsgraph, unsupported)
     for instance, name in every_instance(depsgraph):
         place_object(flat, meshes, instance, name, depsgraph, unsupported)
     order_cameras(flat, scene, unsupported)

@@ -4,16 +4,19 @@ glTF's textures give the number of a map, and Blender's exporter takes it from a
 material. So the meshes, the export's own copies, get their maps in one order. Where several materials of a mesh want
 different orders, a copy of the material has another number. A map that a mesh lacks is zero everywhere in Cycles.
 
-The UV of an instancer is one point for each instance. Meshes with a material that reads it are not shared then.
+The UV of an instancer is one point for each instance. Meshes with a material that reads it are not shared then, unless
+there would be too many.
 """
 
 import bpy
 import numpy as np
 
+from blend_common import listed
 from export_nodes import INSTANCER_MAP, coordinates_of
 
 NEARLY_ZERO = 1e-6
 MOST_MAPS = 8  # of a mesh in Blender
+MOST_MESHES, MOST_CORNERS = 1000, 4_000_000  # of those that are not shared: some 5 seconds
 
 
 def maps_of(material):
@@ -24,12 +27,26 @@ def maps_of(material):
                    if node.type == "TEX_IMAGE"})
 
 
-def instancer_readers():
-    """The full names of the materials that take the UV of what instances them."""
-    return {material.name_full for material in bpy.data.materials
-            if material.use_nodes and material.node_tree
-            and any(getattr(node, "from_instancer", False) and node.outputs["UV"].is_linked
-                    for node in material.node_tree.nodes)}
+def instancer_readers(depsgraph, unsupported):
+    """The full names of the materials that take the UV of what instances them; none where that takes too many meshes,
+    whose images are then read at one place."""
+    readers = {material.name_full for material in bpy.data.materials
+               if material.use_nodes and material.node_tree
+               and any(getattr(node, "from_instancer", False) and node.outputs["UV"].is_linked
+                       for node in material.node_tree.nodes)}
+    if not readers:
+        return readers
+    corners = {}
+    for instance in depsgraph.object_instances:
+        if reads_instancer(instance, readers):
+            data = instance.object.data
+            corners[(data.as_pointer(), *instance.uv)] = len(getattr(data, "loops", ()))
+    if len(corners) <= MOST_MESHES and sum(corners.values()) <= MOST_CORNERS:
+        return readers
+    unsupported.add(f"material {listed(sorted(readers))}: takes the UV of the instancer, for which instances cannot share "
+                    f"meshes; {len(corners)} meshes with {sum(corners.values())} corners are more than {MOST_MESHES} or "
+                    f"{MOST_CORNERS}, so its images are read at (0, 0)")
+    return set()
 
 
 def reads_instancer(instance, readers):

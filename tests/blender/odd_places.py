@@ -167,6 +167,16 @@ def coordinates():
     plane("OwnUV", 17, bpy.data.materials["instancer TexCoord"])
 
 
+def scattered():
+    """More instances that take their instancer's UV than meshes may be made for that."""
+    seed = plane("Seed", 39, textured("scattered", picture("Scattered"), ("TexCoord", {"from_instancer": True})))
+    ground = plane("Field", 39, diffuse("ground", (0.2, 0.2, 0.2)))
+    smooth = ground.modifiers.new("Smooth", "SUBSURF")
+    smooth.subdivision_type, smooth.levels, smooth.render_levels = "SIMPLE", 3, 3
+    ground.instance_type, ground.show_instancer_for_render = "FACES", False
+    seed.parent = ground
+
+
 def instancers():
     group = bpy.data.collections.new("Group")
     plane("Member", 0, diffuse("member", (0, 0, 1)), group)
@@ -195,5 +205,6 @@ def build(folder):
 def build_limits(folder):
     lamps()
     flat_instances()
+    scattered()
     instancers()
     link(folder / "assets" / "styled.blend", "Styled")

@@ -36,6 +36,7 @@ LOST = ["lamp 'Panel': is visible to the camera",
         "object 'Diced': its adaptive subdivision is taken for 4 levels more than its modifier's"]
 
 LIMITS = ["lamp 'AREA xy': is flattened along its axis", "lamp 'Sheared': is sheared",
+          "material 'scattered': takes the UV of the instancer, for which instances cannot share meshes; 1024 meshes",
           "object 'Catch': is a shadow catcher", "object 'Dark': is invisible to shadow rays"]
 SHEARED = (0.447742, 0.554991, 0.701079)  # the third axis under the inverse of the scale
 
@@ -161,6 +162,8 @@ def check_limits(document, extras):
     for name in ("Shared", "Shared.001"):
         thickness = math.hypot(*nodes[name]["matrix"][4:7])
         expect(1e-7 < thickness < 1e-6, "what is flat keeps a direction for its normals", nodes[name]["matrix"])
+    scattered = {nodes.pop(name)["mesh"] for name in sorted(nodes) if name.startswith("Field/Seed")}
+    expect(len(scattered) == 1, "instances share a mesh where they would need too many", scattered)
     styles = {name: node["extras"]["scumble"].get("style") for name, node in nodes.items() if "mesh" in node}
     beside = styles.pop("Beside")
     expect(beside.endswith("/assets/paints/ink"), "beside the library", beside)
