@@ -167,6 +167,15 @@ def cameras_of(scene, unsupported):
     return usable
 
 
+def has_direction(name, matrix, unsupported):
+    """Whether a camera at this place looks somewhere: its last axis has a length, and its second one is not along it."""
+    up, backward = (matrix.col[axis].to_3d() for axis in (1, 2))
+    if up.cross(backward).length > 1e-9 * up.length * backward.length:
+        return True
+    unsupported.add(f"camera '{name}': its scale leaves it no direction, left out")
+    return False
+
+
 def note_crooked_camera(name, matrix, unsupported):
     """Cycles takes the lengths of a camera's axes away and keeps their angles and their handedness."""
     axes = [matrix.col[i].to_3d().normalized() for i in range(3)]

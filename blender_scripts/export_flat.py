@@ -10,7 +10,7 @@ import export_normals
 import export_rest
 import export_styles
 import export_viewport
-from blend_common import camera_names, cameras_of, can_be_looked_through, note_crooked_camera
+from blend_common import camera_names, cameras_of, can_be_looked_through, has_direction, note_crooked_camera
 
 MESH_TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 SHAPE_TYPES = MESH_TYPES | {"CURVES"}
@@ -207,6 +207,7 @@ def order_cameras(flat, scene, unsupported):
     for camera in flat.cameras:
         if camera.shown == camera.source:
             camera.name = names[camera.source]
+    flat.cameras = [camera for camera in flat.cameras if has_direction(camera.name, camera.matrix, unsupported)]
     flat.cameras.sort(key=lambda camera: (camera.shown != scene.camera, camera.name))
     for camera in flat.cameras:
         note_crooked_camera(camera.name, camera.matrix, unsupported)

@@ -39,12 +39,12 @@ def cameras(path):
 
 
 def asset():
-    """What wants a style beside this file, and one that is bundled."""
+    """What wants a style beside this file, one that is bundled, and none, though folders are called so."""
     group = bpy.data.collections.new("Styled")
     bpy.context.scene.collection.children.link(group)
     paint = diffuse("styled", (0, 1, 0))
     paint["scumble_style"] = "ink"
-    for name, cell, style in (("Beside", 30, "paints/ink"), ("Bundled", 31, "oil")):
+    for name, cell, style in (("Beside", 30, "paints/ink"), ("Bundled", 31, "oil"), ("Reserved", 32, "catcher")):
         plane(name, cell, paint, group)["scumble_style"] = style
 
 
@@ -81,11 +81,11 @@ def flat_instances():
     bpy.context.scene.collection.objects.link(shared.copy())
 
 
-def short_hair():
+def short_hair(name, place):
     """Two curves of three points, and one of a point."""
-    data = bpy.data.hair_curves.new("Short")
-    thing = bpy.data.objects.new("Short", data)
-    thing.location = (7, 0, 0)
+    data = bpy.data.hair_curves.new(name)
+    thing = bpy.data.objects.new(name, data)
+    thing.location = place
     bpy.context.scene.collection.objects.link(thing)
 
     def build(tree, _):
@@ -102,6 +102,7 @@ def short_hair():
             tree.links.new(radius.outputs[0], join.inputs[0])
         return join.outputs[0]
     nodes(thing, build)
+    return thing
 
 
 def lamps():
@@ -167,6 +168,12 @@ def coordinates():
     plane("OwnUV", 17, bpy.data.materials["instancer TexCoord"])
 
 
+def flat_camera():
+    camera = bpy.data.objects.new("Flat", bpy.data.cameras.new("Flat"))
+    camera.scale = (1, 1, 0)
+    bpy.context.scene.collection.objects.link(camera)
+
+
 def scattered():
     """More instances that take their instancer's UV than meshes may be made for that."""
     seed = plane("Seed", 39, textured("scattered", picture("Scattered"), ("TexCoord", {"from_instancer": True})))
@@ -197,8 +204,9 @@ def build(folder):
     bpy.context.scene.collection.objects.link(clock)
     move(clock, "location", (0, 0, 0), (0.3, 0, 0))
     bpy.context.view_layer.update()
-    for part in (animated, flat, short_hair, coordinates):
+    for part in (animated, flat, coordinates):
         part()
+    short_hair("Short", (7, 0, 0))
     cameras(folder / "rig.blend")
 
 
@@ -206,5 +214,7 @@ def build_limits(folder):
     lamps()
     flat_instances()
     scattered()
+    short_hair("FlatHair", (7, 0, 0)).scale = (1, 1, 0)
+    flat_camera()
     instancers()
     link(folder / "assets" / "styled.blend", "Styled")

@@ -35,7 +35,8 @@ LOST = ["lamp 'Panel': is visible to the camera",
         "material 'velvet': node 'Velvet BSDF' (BSDF_VELVET) cannot be expressed",
         "object 'Diced': its adaptive subdivision is taken for 4 levels more than its modifier's"]
 
-LIMITS = ["lamp 'AREA xy': is flattened along its axis", "lamp 'Sheared': is sheared",
+LIMITS = ["camera 'Flat': its scale leaves it no direction, left out",
+          "lamp 'AREA xy': is flattened along its axis", "lamp 'Sheared': is sheared",
           "material 'scattered': takes the UV of the instancer, for which instances cannot share meshes; 1024 meshes",
           "object 'Catch': is a shadow catcher", "object 'Dark': is invisible to shadow rays"]
 SHEARED = (0.447742, 0.554991, 0.701079)  # the third axis under the inverse of the scale
@@ -167,7 +168,8 @@ def check_limits(document, extras):
     styles = {name: node["extras"]["scumble"].get("style") for name, node in nodes.items() if "mesh" in node}
     beside = styles.pop("Beside")
     expect(beside.endswith("/assets/paints/ink"), "beside the library", beside)
-    wanted = {"Bundled": "oil", "Shared": None, "Shared.001": None, "Plain/Member": None, "Dark/Member": None,
+    expect(nodes["FlatHair"]["matrix"][4:7] == [0, 0, 0], "hair that is flat is left out", nodes["FlatHair"]["matrix"])
+    wanted = {"Bundled": "oil", "Reserved": "catcher", "FlatHair": None, "Shared": None, "Shared.001": None, "Plain/Member": None, "Dark/Member": None,
               "Catch/Member": "catcher", "Wish/Member": "ink"}
     wanted.update({f"{name}/Own": "oil" for name in ("Plain", "Dark", "Catch", "Wish")})
     expect(styles == wanted, styles)
