@@ -191,6 +191,7 @@ def flatten(scene, view_layer, unsupported):
     for instance, name in every_instance(depsgraph):
         place_object(flat, meshes, instance, name, depsgraph, unsupported)
     order_cameras(flat, scene, unsupported)
+    export_styles.note_nested(depsgraph, unsupported)
     if abs(scene.render.pixel_aspect_x - scene.render.pixel_aspect_y) > 1e-6:
         unsupported.add("the render's pixels are not square, which is ignored")
     return flat
@@ -227,7 +228,8 @@ def place_object(flat, meshes, instance, name, depsgraph, unsupported):
         flat.cameras.append(placed)
     else:
         if not seen_by_camera(thing.original, shown, depsgraph.view_layer):
-            unsupported.add(f"object '{thing.original.name}': is not seen by the camera, so it is left out, with its "
+            owner = shown if thing.original.visible_camera else thing.original
+            unsupported.add(f"object '{owner.name}': is not seen by the camera, so it is left out, with its "
                             "shadows and the light from it")
             return
         note_limits(thing.original, shown, depsgraph.view_layer, unsupported)

@@ -41,17 +41,18 @@ def instancer_readers(depsgraph, unsupported):
         if reads_instancer(instance, readers):
             data = instance.object.data
             corners[(data.as_pointer(), *instance.uv)] = len(getattr(data, "loops", ()))
-    if len(corners) <= MOST_MESHES and sum(corners.values()) <= MOST_CORNERS:
+    total = sum(corners.values())
+    if len(corners) <= MOST_MESHES and total <= MOST_CORNERS:
         return readers
-    unsupported.add(f"material {listed(sorted(readers))}: takes the UV of the instancer, for which instances cannot share "
-                    f"meshes; {len(corners)} meshes with {sum(corners.values())} corners are more than {MOST_MESHES} or "
-                    f"{MOST_CORNERS}, so its images are read at (0, 0)")
+    unsupported.add(f"materials that take the UV of the instancer ({listed(sorted(readers))}): instances cannot share "
+                    f"meshes for it, and {len(corners)} meshes with {total} corners are more than {MOST_MESHES} or "
+                    f"{MOST_CORNERS}, so their images are read at (0, 0)")
     return set()
 
 
 def reads_instancer(instance, readers):
-    """Whether a material of an instance is one of those."""
-    if not readers or not instance.is_instance or instance.object.type == "CURVES":
+    """Whether a material of an instance is one of those. Blender 3.4.1 crashes at the slots of an Empty."""
+    if not readers or not instance.is_instance or instance.object.type not in {"MESH", "META"}:
         return False
     materials = [slot.material for slot in instance.object.material_slots]
     return any(material is not None and material.original.name_full in readers for material in materials)

@@ -29,8 +29,8 @@ def split(matrix):
 
 
 def thicken(nodes):
-    """Makes each "matrix" that flattens a mesh onto a plane, which Cycles draws, one that can be inverted; returns these
-    nodes. What is flattened onto a line has no surface."""
+    """Makes each "matrix" that flattens a mesh onto a plane, which Cycles draws, one that can be inverted, and returns
+    these nodes. What is flattened onto a line has no surface."""
     thickened = []
     matrices = np.array([node["matrix"] for node in nodes], dtype=np.float64).reshape(-1, 4, 4)
     linear = matrices[:, :3, :3]

@@ -48,3 +48,13 @@ def style_of(thing, shown=None):
     if style is None and (is_catcher(thing) or (shown is not None and is_catcher(shown))):
         style = "catcher"
     return style
+
+
+def note_nested(depsgraph, unsupported):
+    """Blender says of an instance which object in the scene shows it, and not what is between the two."""
+    wishes = {thing for thing in bpy.data.objects
+              if thing.type == "EMPTY" and thing.instance_type == "COLLECTION" and own_style(thing) is not None}
+    for instance in depsgraph.object_instances if wishes else ():
+        if instance.is_instance and instance.object.original in wishes:
+            unsupported.add(f"object '{instance.object.original.name}': its style does not hold in the instances of "
+                            f"'{instance.parent.original.name}': set it on an Empty in the scene itself")

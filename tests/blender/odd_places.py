@@ -31,11 +31,15 @@ def link(path, name):
 
 
 def cameras(path):
-    """The linked one is active, in a collection that the view layer excludes; the other looks at nothing."""
+    """The linked one is active, in a collection that the view layer excludes; the others look at nothing. One has the
+    name that the linked one would get."""
     scene = bpy.context.scene
     scene.camera.location.x = 100
     scene.camera = link(path, "Rig").objects[0]
     bpy.context.view_layer.layer_collection.children["Rig"].exclude = True
+    third = bpy.data.objects.new("Above#2", scene.camera.data)
+    third.location.x = 200
+    scene.collection.objects.link(third)
 
 
 def asset():
@@ -189,7 +193,8 @@ def instancers():
     plane("Member", 0, diffuse("member", (0, 0, 1)), group)
     plane("Own", 8, diffuse("own", (0, 1, 1)), group)["scumble_style"] = "oil"
     for number, (name, values) in enumerate((("Plain", {}), ("Dark", {"visible_shadow": False}),
-                                             ("Catch", {"is_shadow_catcher": True}), ("Wish", {}))):
+                                             ("Catch", {"is_shadow_catcher": True}), ("Wish", {}),
+                                             ("Unseen", {"visible_camera": False}))):
         empty = bpy.data.objects.new(name, None)
         empty.instance_type, empty.instance_collection = "COLLECTION", group
         empty.location = (number, -4, 0)
@@ -197,6 +202,12 @@ def instancers():
             setattr(empty, key, value)
         bpy.context.scene.collection.objects.link(empty)
     bpy.data.objects["Wish"]["scumble_style"] = "ink"
+    inner, outer = (bpy.data.objects.new(name, None) for name in ("Inner", "Outer"))
+    nest = bpy.data.collections.new("Nest")
+    for empty, instanced, holder in ((inner, group, nest), (outer, nest, bpy.context.scene.collection)):
+        empty.instance_type, empty.instance_collection = "COLLECTION", instanced
+        holder.objects.link(empty)
+    inner["scumble_style"] = "ink"
 
 
 def build(folder):

@@ -37,8 +37,10 @@ LOST = ["lamp 'Panel': is visible to the camera",
 
 LIMITS = ["camera 'Flat': its scale leaves it no direction, left out",
           "lamp 'AREA xy': is flattened along its axis", "lamp 'Sheared': is sheared",
-          "material 'scattered': takes the UV of the instancer, for which instances cannot share meshes; 1024 meshes",
-          "object 'Catch': is a shadow catcher", "object 'Dark': is invisible to shadow rays"]
+          "materials that take the UV of the instancer ('scattered'): instances cannot share meshes for it, and 1024",
+          "object 'Catch': is a shadow catcher", "object 'Dark': is invisible to shadow rays",
+          "object 'Inner': its style does not hold in the instances of 'Outer'",
+          "object 'Unseen': is not seen by the camera"]
 SHEARED = (0.447742, 0.554991, 0.701079)  # the third axis under the inverse of the scale
 
 
@@ -139,7 +141,8 @@ def check_filter(document, has_surfaces, has_hair):
 def check_placed(document, extras):
     nodes = {node["name"]: node for node in document["nodes"]}
     seen = [(node["name"], node["matrix"][12]) for node in document["nodes"] if "camera" in node]
-    expect(seen == [("Above#2", 3.5), ("Above", 100)], "the active camera first, whatever its name", seen)
+    expect(seen == [("Above#3", 3.5), ("Above", 100), ("Above#2", 200)],
+           "the active camera first, whatever its name", seen)
     strands = document["meshes"][nodes["Short"]["mesh"]]["primitives"]
     segments = [document["accessors"][primitive["indices"]]["count"] for primitive in strands]
     expect(segments == [4], "curves beside one of a single point", segments)
@@ -169,9 +172,10 @@ def check_limits(document, extras):
     beside = styles.pop("Beside")
     expect(beside.endswith("/assets/paints/ink"), "beside the library", beside)
     expect(nodes["FlatHair"]["matrix"][4:7] == [0, 0, 0], "hair that is flat is left out", nodes["FlatHair"]["matrix"])
-    wanted = {"Bundled": "oil", "Reserved": "catcher", "FlatHair": None, "Shared": None, "Shared.001": None, "Plain/Member": None, "Dark/Member": None,
-              "Catch/Member": "catcher", "Wish/Member": "ink"}
-    wanted.update({f"{name}/Own": "oil" for name in ("Plain", "Dark", "Catch", "Wish")})
+    wanted = {"Bundled": "oil", "Reserved": "catcher", "FlatHair": None, "Shared": None, "Shared.001": None,
+              "Plain/Member": None, "Dark/Member": None, "Catch/Member": "catcher", "Wish/Member": "ink",
+              "Outer/Member": None}
+    wanted.update({f"{name}/Own": "oil" for name in ("Plain", "Dark", "Catch", "Wish", "Outer")})
     expect(styles == wanted, styles)
     styled = [material["extras"]["scumble"].get("style") for material in document["materials"]
               if material["name"] == "styled"]
