@@ -141,12 +141,18 @@ def choose_layer(scene, name=None):
 
 
 def camera_names(cameras):
-    """The name of each camera. A linked one may have the name of a local one, and is then that name's #2."""
-    names, taken = {}, {}
+    """The name of each camera. A linked one may have the name of a local one, and is then that name's #2, or the next
+    one that is free."""
+    named, others = {}, []
     for camera in sorted(cameras, key=lambda camera: camera.name_full):
-        taken[camera.name] = taken.get(camera.name, 0) + 1
-        names[camera] = camera.name if taken[camera.name] == 1 else f"{camera.name}#{taken[camera.name]}"
-    return names
+        if named.setdefault(camera.name, camera) != camera:
+            others.append(camera)
+    for camera in others:
+        number = 2
+        while f"{camera.name}#{number}" in named:
+            number += 1
+        named[f"{camera.name}#{number}"] = camera
+    return {camera: name for name, camera in named.items()}
 
 
 def can_be_looked_through(thing):
@@ -165,6 +171,16 @@ def cameras_of(scene, unsupported):
             what = "panoramic" if thing.type == "CAMERA" else f"of type {thing.type}"
             unsupported.add(f"camera '{thing.name}': is {what}, left out")
     return usable
+
+
+def has_direction(name, matrix, unsupported):
+    """Whether a camera at this place looks somewhere: its axes up and backward have a length, and
+    are not parallel."""
+    up, backward = (matrix.col[axis].to_3d() for axis in (1, 2))
+    if up.cross(backward).length > 1e-9 * up.length * backward.length:
+        return True
+    unsupported.add(f"camera '{name}': its scale leaves it no direction, left out")
+    return False
 
 
 def note_crooked_camera(name, matrix, unsupported):

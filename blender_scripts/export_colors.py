@@ -8,7 +8,7 @@ of other types white. It writes our colours as an attribute of its own, which ex
 import numpy as np
 
 from export_flat import material_key
-from export_maps import MOST_MAPS, maps_of, shown_map
+from export_maps import MOST_MAPS, add_map, maps_of
 
 ATTRIBUTE = "_scumble_color"  # as in export_rest.py
 # How attributes of each type that Cycles reads store their values: the property and the number of them.
@@ -102,26 +102,34 @@ def colors_of_mesh(mesh, attributes):
     return "CORNER", colors
 
 
+def meshes_with_slots(flat):
+    """(mesh, materials) of each of the export's meshes once."""
+    return {placed.mesh.name: (placed.mesh, placed.slots) for placed in flat.meshes}.values()
+
+
+def maps_of_slots(slots, materials):
+    return {name for slot in slots for name in maps_of(materials[material_key(slot)]["material"])}
+
+
 def add_maps(flat, materials):
     """A UV Map node takes attributes of every kind by their name: those become maps, as far as there is room."""
-    for mesh, slots in {placed.mesh.name: (placed.mesh, placed.slots) for placed in flat.meshes}.values():
-        for name in sorted({name for slot in slots for name in maps_of(materials[material_key(slot)]["material"])}):
+    for mesh, slots in meshes_with_slots(flat):
+        for name in sorted(maps_of_slots(slots, materials)):
             if name not in mesh.attributes or name in mesh.uv_layers or len(mesh.uv_layers) >= MOST_MAPS:
                 continue
-            values, shown = at_corners(mesh, *read(mesh, name, False))[:, :2], shown_map(mesh)
+            values = at_corners(mesh, *read(mesh, name, False))[:, :2]
             mesh.attributes.remove(mesh.attributes[name])  # names are unique from Blender 3.5 on
-            mesh.uv_layers.new(name=name, do_init=False)
-            mesh.uv_layers[name].data.foreach_set("uv", np.ascontiguousarray(values, np.float32).ravel())
-            if shown:
-                mesh.uv_layers[shown].active_render = True
+            add_map(mesh, name, np.ascontiguousarray(values, np.float32).ravel())
 
 
 def add_colors(flat, materials):
-    """Replaces the colour attributes of all meshes, the export's own copies; returns whether any is read."""
+    """Replaces the colour attributes of all meshes, the export's own copies, except those that become maps; returns
+    whether any is read."""
     found = False
-    for mesh, slots in {placed.mesh.name: (placed.mesh, placed.slots) for placed in flat.meshes}.values():
+    for mesh, slots in meshes_with_slots(flat):
         result = colors_of_mesh(mesh, [materials[material_key(slot)]["color_attribute"] for slot in slots])
-        for name in [attribute.name for attribute in mesh.color_attributes]:
+        kept = maps_of_slots(slots, materials)
+        for name in [attribute.name for attribute in mesh.color_attributes if attribute.name not in kept]:
             mesh.color_attributes.remove(mesh.color_attributes[name])
         if result is not None:
             found = True

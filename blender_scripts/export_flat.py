@@ -10,7 +10,7 @@ import export_normals
 import export_rest
 import export_styles
 import export_viewport
-from blend_common import camera_names, cameras_of, can_be_looked_through, note_crooked_camera
+from blend_common import camera_names, cameras_of, can_be_looked_through, has_direction, note_crooked_camera
 
 MESH_TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 SHAPE_TYPES = MESH_TYPES | {"CURVES"}
@@ -44,7 +44,7 @@ class FlatScene:
     materials: dict = field(default_factory=dict)  # by material_key
     shown_maps: dict = field(default_factory=dict)  # by material_key: its meshes' UV maps that renders take
     normals: dict = field(default_factory=dict)  # of metaballs' vertices, by the object's full name
-    uv_readers: set = field(default_factory=export_maps.instancer_readers)
+    uv_readers: set = field(default_factory=set)  # export_maps.instancer_readers
     corners: dict = field(default_factory=dict)  # how many each mesh had before its faces were cut, by its name
 
 
@@ -187,9 +187,11 @@ def flatten(scene, view_layer, unsupported):
     depsgraph = view_layer.depsgraph
     depsgraph.update()
     flat, meshes = FlatScene(normals=export_normals.of_metaballs(depsgraph)), {}
+    flat.uv_readers = export_maps.instancer_readers(depsgraph, unsupported)
     for instance, name in every_instance(depsgraph):
         place_object(flat, meshes, instance, name, depsgraph, unsupported)
     order_cameras(flat, scene, unsupported)
+    export_styles.note_nested(depsgraph, unsupported)
     if abs(scene.render.pixel_aspect_x - scene.render.pixel_aspect_y) > 1e-6:
         unsupported.add("the render's pixels are not square, which is ignored")
     return flat
@@ -206,6 +208,7 @@ def order_cameras(flat, scene, unsupported):
     for camera in flat.cameras:
         if camera.shown == camera.source:
             camera.name = names[camera.source]
+    flat.cameras = [camera for camera in flat.cameras if has_direction(camera.name, camera.matrix, unsupported)]
     flat.cameras.sort(key=lambda camera: (camera.shown != scene.camera, camera.name))
     for camera in flat.cameras:
         note_crooked_camera(camera.name, camera.matrix, unsupported)
@@ -225,7 +228,8 @@ def place_object(flat, meshes, instance, name, depsgraph, unsupported):
         flat.cameras.append(placed)
     else:
         if not seen_by_camera(thing.original, shown, depsgraph.view_layer):
-            unsupported.add(f"object '{thing.original.name}': is not seen by the camera, so it is left out, with its "
+            owner = shown if thing.original.visible_camera else thing.original
+            unsupported.add(f"object '{owner.name}': is not seen by the camera, so it is left out, with its "
                             "shadows and the light from it")
             return
         note_limits(thing.original, shown, depsgraph.view_layer, unsupported)

@@ -4,16 +4,19 @@ glTF's textures give the number of a map, and Blender's exporter takes it from a
 material. So the meshes, the export's own copies, get their maps in one order. Where several materials of a mesh want
 different orders, a copy of the material has another number. A map that a mesh lacks is zero everywhere in Cycles.
 
-The UV of an instancer is one point for each instance. Meshes with a material that reads it are not shared then.
+The UV of an instancer is one point for each instance. Meshes with a material that reads it are not shared then, unless
+there would be too many.
 """
 
 import bpy
 import numpy as np
 
+from blend_common import listed
 from export_nodes import INSTANCER_MAP, coordinates_of
 
 NEARLY_ZERO = 1e-6
 MOST_MAPS = 8  # of a mesh in Blender
+MOST_MESHES, MOST_CORNERS = 1000, 4_000_000  # of those that are not shared: some 5 seconds
 
 
 def maps_of(material):
@@ -24,29 +27,40 @@ def maps_of(material):
                    if node.type == "TEX_IMAGE"})
 
 
-def instancer_readers():
-    """The full names of the materials that take the UV of what instances them."""
-    return {material.name_full for material in bpy.data.materials
-            if material.use_nodes and material.node_tree
-            and any(getattr(node, "from_instancer", False) and node.outputs["UV"].is_linked
-                    for node in material.node_tree.nodes)}
+def instancer_readers(depsgraph, unsupported):
+    """The full names of the materials that take the UV of what instances them; none where that takes too many meshes,
+    whose images are then read at one place."""
+    readers = {material.name_full for material in bpy.data.materials
+               if material.use_nodes and material.node_tree
+               and any(getattr(node, "from_instancer", False) and node.outputs["UV"].is_linked
+                       for node in material.node_tree.nodes)}
+    if not readers:
+        return readers
+    corners = {}
+    for instance in depsgraph.object_instances:
+        if reads_instancer(instance, readers):
+            data = instance.object.data
+            corners[(data.as_pointer(), *instance.uv)] = len(getattr(data, "loops", ()))
+    total = sum(corners.values())
+    if len(corners) <= MOST_MESHES and total <= MOST_CORNERS:
+        return readers
+    unsupported.add(f"materials that take the UV of the instancer ({listed(sorted(readers))}): instances cannot share "
+                    f"meshes for it, and {len(corners)} meshes with {total} corners are more than {MOST_MESHES} or "
+                    f"{MOST_CORNERS}, so their images are read at (0, 0)")
+    return set()
 
 
 def reads_instancer(instance, readers):
-    """Whether a material of an instance is one of those."""
-    if not readers or not instance.is_instance or instance.object.type == "CURVES":
+    """Whether a material of an instance is one of those. Blender 3.4.1 crashes at the slots of an Empty."""
+    if not readers or not instance.is_instance or instance.object.type not in {"MESH", "META"}:
         return False
     materials = [slot.material for slot in instance.object.material_slots]
     return any(material is not None and material.original.name_full in readers for material in materials)
 
 
 def add_instancer_map(mesh, uv):
-    shown = shown_map(mesh)
-    if mesh.uv_layers.new(name=INSTANCER_MAP, do_init=False) is None:
-        return  # number_of says so
-    mesh.uv_layers[INSTANCER_MAP].data.foreach_set("uv", np.tile(np.array(uv, np.float32), len(mesh.loops)))
-    if shown:
-        mesh.uv_layers[shown].active_render = True
+    if len(mesh.uv_layers) < MOST_MAPS:  # else number_of says so
+        add_map(mesh, INSTANCER_MAP, np.tile(np.array(uv, np.float32), len(mesh.loops)))
 
 
 def shown_map(mesh):
@@ -62,12 +76,16 @@ def drop_unread(mesh, read):
         mesh.uv_layers.remove(mesh.uv_layers[name])
 
 
-def add_map(mesh, name):
-    """One of zeros, nearly: glTF's v would be 1, which belongs to the other end of an image that repeats. The map that
-    renders take stays."""
+def add_map(mesh, name, values=None):
+    """One that does not become the one that renders take. Where there is none, that is zero everywhere, as is a map
+    without values; nearly, because glTF's v would be 1, which belongs to the other end of an image that repeats."""
+    if values is not None and not mesh.uv_layers:
+        add_map(mesh, "scumble.0")
     shown = shown_map(mesh)
     mesh.uv_layers.new(name=name, do_init=False)
-    mesh.uv_layers[name].data.foreach_set("uv", np.full(2 * len(mesh.loops), NEARLY_ZERO, np.float32))
+    if values is None:
+        values = np.full(2 * len(mesh.loops), NEARLY_ZERO, np.float32)
+    mesh.uv_layers[name].data.foreach_set("uv", values)
     if shown:
         mesh.uv_layers[shown].active_render = True
 

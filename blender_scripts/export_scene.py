@@ -81,7 +81,7 @@ def export(scene, view_layer, output, unsupported):
         document, binary = export_glb.read(raw)
     curves = export_hair.curve_settings(scene)
     binary = export_glb.complete(document, binary, flat, materials, lamps, cameras, curves)
-    binary = export_stretch.bake(document, binary, document.get("nodes", []))
+    binary = export_stretch.bake(document, binary, document.get("nodes", []), unsupported)
     document["scenes"][document["scene"]]["name"] = scene.name
     document["scenes"][document["scene"]]["extras"] = {"scumble": {
         "world": world, "blender": bpy.app.version_string, "frame": scene.frame_current,

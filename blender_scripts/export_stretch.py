@@ -10,6 +10,7 @@ with one keeps the stretch in its extras, so that a reader can undo it.
 import numpy as np
 
 FLOAT = 5126
+POINTS, TRIANGLES = 0, 4  # modes of primitives; points are strands of hair
 TINY = 1e-6  # relative; below it a stretch is a float's rounding
 FLAT = 2e-6  # relative: how thick what is flattened becomes, so that its normals have a way into the world
 
@@ -28,8 +29,9 @@ def split(matrix):
 
 
 def thicken(nodes):
-    """Makes each "matrix" that flattens a mesh onto a plane, which Cycles draws, one that can be inverted. What is
-    flattened onto a line has no surface."""
+    """Makes each "matrix" that flattens a mesh onto a plane, which Cycles draws, one that can be inverted, and returns
+    these nodes. What is flattened onto a line has no surface."""
+    thickened = []
     matrices = np.array([node["matrix"] for node in nodes], dtype=np.float64).reshape(-1, 4, 4)
     linear = matrices[:, :3, :3]
     thin = np.abs(np.linalg.det(linear)) <= TINY * np.linalg.norm(linear, axis=(1, 2)) ** 3
@@ -39,6 +41,8 @@ def thicken(nodes):
             sizes[2] = FLAT * sizes[0] * np.sign(np.linalg.det(left) * np.linalg.det(right))
             linear[number] = left @ np.diag(sizes) @ right
             nodes[number]["matrix"] = matrices[number].ravel().tolist()
+            thickened.append(nodes[number])
+    return thickened
 
 
 def values_of(document, buffer, accessor):
@@ -56,12 +60,21 @@ def numbers_of(document, buffer, accessor):
     return np.frombuffer(buffer, np.float32, accessor["count"], view.get("byteOffset", 0))
 
 
-def bake(document, binary, nodes):
+def thicken_surfaces(document, nodes, unsupported):
+    """As above; what is hair alone stays flat, and is left out by the reader."""
+    kinds = [{primitive.get("mode", TRIANGLES) for primitive in mesh["primitives"]}
+             for mesh in document.get("meshes", [])]
+    for node in thicken([node for node in nodes if "mesh" in node and kinds[node["mesh"]] != {POINTS}]):
+        if POINTS in kinds[node["mesh"]]:
+            unsupported.add(f"object '{node['name']}': is flattened, so its hair is too thin to be seen")
+
+
+def bake(document, binary, nodes, unsupported):
     """Thickens what is flat, stretches the meshes of those nodes that are their mesh's only users, and makes their
     "matrix" orthogonal. Returns the binary."""
     buffer = bytearray(binary)
     users = {}
-    thicken([node for node in nodes if "mesh" in node])
+    thicken_surfaces(document, nodes, unsupported)
     for node in nodes:
         users.setdefault(node.get("mesh"), []).append(node)
     accessor_users = {}

@@ -5,6 +5,7 @@ import os
 import bpy
 
 PROPERTY = "scumble_style"
+RESERVED = {"rendered", "catcher"}
 
 
 def owner_of(thing):
@@ -14,17 +15,22 @@ def owner_of(thing):
     return linked if linked is not None and linked.get(PROPERTY) == thing.get(PROPERTY) else thing
 
 
+def is_style(path):
+    """A picture may be one, too."""
+    return os.path.isfile(path) or os.path.isfile(os.path.join(path, "style.toml"))
+
+
 def own_style(thing):
-    """The property's text, None without one. A path that exists beside the library that the property is from, is that
+    """The property's text, None without one. The path of a style beside the library that the property is from, is that
     path, whichever file links it."""
     style = thing.get(PROPERTY)
     if not isinstance(style, str):
         return None
     library = owner_of(thing).library
-    if library is not None:
+    if library is not None and style and style not in RESERVED:
         folder = os.path.dirname(bpy.path.abspath(library.filepath, library=library.parent))
         path = os.path.normpath(os.path.join(folder, style))
-        if style and os.path.exists(path):
+        if is_style(path):
             return path
     return style
 
@@ -42,3 +48,13 @@ def style_of(thing, shown=None):
     if style is None and (is_catcher(thing) or (shown is not None and is_catcher(shown))):
         style = "catcher"
     return style
+
+
+def note_nested(depsgraph, unsupported):
+    """Blender says of an instance which object in the scene shows it, and not what is between the two."""
+    wishes = {thing for thing in bpy.data.objects
+              if thing.type == "EMPTY" and thing.instance_type == "COLLECTION" and own_style(thing) is not None}
+    for instance in depsgraph.object_instances if wishes else ():
+        if instance.is_instance and instance.object.original in wishes:
+            unsupported.add(f"object '{instance.object.original.name}': its style does not hold in the instances of "
+                            f"'{instance.parent.original.name}': set it on an Empty in the scene itself")

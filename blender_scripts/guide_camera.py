@@ -11,7 +11,8 @@ def choose(scene, name, unsupported):
     """Makes the camera of that name the scene's; without a name the first one that export_scene.py writes."""
     usable = blend_common.cameras_of(scene, unsupported)
     names = blend_common.camera_names(usable)
-    cameras = {names[thing]: thing for thing in usable}
+    cameras = {names[thing]: thing for thing in usable
+               if blend_common.has_direction(names[thing], thing.matrix_world, unsupported)}
     if name and name not in cameras:
         raise LookupError(f"there is no camera '{name}'; there are: " + (", ".join(cameras) or "none"))
     if not cameras:

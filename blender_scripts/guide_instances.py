@@ -35,7 +35,7 @@ def name_apart(scene, view_layer, unsupported):
     depsgraph = view_layer.depsgraph
     depsgraph.update()
     standing, copies, instancers, made, too_long = [], [], [], {}, 0
-    readers = instancer_readers()
+    readers = instancer_readers(depsgraph, unsupported)
     for instance, name in every_instance(depsgraph):
         thing = instance.object
         if not instance.is_instance or is_made_of_itself(instance):

@@ -107,7 +107,10 @@ def make_placed(folder):
 
 
 def make_limits(folder):
-    (folder / "assets" / "paints" / "ink").mkdir(parents=True)
+    for name in ("paints/ink", "oil", "catcher"):
+        (folder / "assets" / name).mkdir(parents=True)
+    for name in ("paints/ink", "catcher"):
+        (folder / "assets" / name / "style.toml").touch()
     clear()
     odd_places.asset()
     save(folder / "assets", "styled")

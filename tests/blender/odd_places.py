@@ -31,20 +31,24 @@ def link(path, name):
 
 
 def cameras(path):
-    """The linked one is active, in a collection that the view layer excludes; the other looks at nothing."""
+    """The linked one is active, in a collection that the view layer excludes; the others look at nothing. One has the
+    name that the linked one would get."""
     scene = bpy.context.scene
     scene.camera.location.x = 100
     scene.camera = link(path, "Rig").objects[0]
     bpy.context.view_layer.layer_collection.children["Rig"].exclude = True
+    third = bpy.data.objects.new("Above#2", scene.camera.data)
+    third.location.x = 200
+    scene.collection.objects.link(third)
 
 
 def asset():
-    """What wants a style beside this file, and one that is bundled."""
+    """What wants a style beside this file, one that is bundled, and none, though folders are called so."""
     group = bpy.data.collections.new("Styled")
     bpy.context.scene.collection.children.link(group)
     paint = diffuse("styled", (0, 1, 0))
     paint["scumble_style"] = "ink"
-    for name, cell, style in (("Beside", 30, "paints/ink"), ("Bundled", 31, "oil")):
+    for name, cell, style in (("Beside", 30, "paints/ink"), ("Bundled", 31, "oil"), ("Reserved", 32, "catcher")):
         plane(name, cell, paint, group)["scumble_style"] = style
 
 
@@ -81,11 +85,11 @@ def flat_instances():
     bpy.context.scene.collection.objects.link(shared.copy())
 
 
-def short_hair():
+def short_hair(name, place):
     """Two curves of three points, and one of a point."""
-    data = bpy.data.hair_curves.new("Short")
-    thing = bpy.data.objects.new("Short", data)
-    thing.location = (7, 0, 0)
+    data = bpy.data.hair_curves.new(name)
+    thing = bpy.data.objects.new(name, data)
+    thing.location = place
     bpy.context.scene.collection.objects.link(thing)
 
     def build(tree, _):
@@ -102,6 +106,7 @@ def short_hair():
             tree.links.new(radius.outputs[0], join.inputs[0])
         return join.outputs[0]
     nodes(thing, build)
+    return thing
 
 
 def lamps():
@@ -142,6 +147,21 @@ def coordinates():
     data = thing.data.attributes.new("place", "FLOAT_VECTOR", "POINT").data
     for vertex, item in zip(thing.data.vertices, data):
         item.vector = (vertex.co.y + 0.45, vertex.co.x + 0.45, 1)
+    # Maps that are added, on meshes whose first material takes the map that renders take: there is none.
+    for cell, reads in ((19, {"uv_map": "tint"}), (20, {"from_instancer": True})):
+        thing = plane(f"NoMap{cell}", cell, textured(f"no map {cell}", image, ("TexCoord", {})))
+        thing.data.uv_layers.remove(thing.data.uv_layers[0])
+        thing.data.materials.append(textured(f"added {cell}", image, ("UVMap", reads)))
+        for polygon in thing.data.polygons:
+            polygon.material_index = int(polygon.index % 4 > 0)
+    tinted = bpy.data.objects["NoMap19"]
+    data = tinted.data.attributes.new("tint", "FLOAT_COLOR", "POINT").data
+    for vertex, item in zip(tinted.data.vertices, data):
+        item.color = (vertex.co.y + 0.45, vertex.co.x + 0.45, 1, 1)
+    ground = plane("GroundNoMap", 20, diffuse("ground", (0.2, 0.2, 0.2)))
+    ground.instance_type, ground.show_instancer_for_render = "FACES", False
+    stone = bpy.data.objects["NoMap20"]
+    stone.parent, stone.scale, stone.location = ground, (0.2, 0.2, 0.2), (0, 0, 0)
     for cell, kind in ((16, "TexCoord"), (18, "UVMap")):
         chain = {"from_instancer": True} | ({"uv_map": "UVMap"} if kind == "UVMap" else {})
         stone = plane("Stone" + kind, 39, textured("instancer " + kind, image, (kind, chain)))
@@ -152,12 +172,29 @@ def coordinates():
     plane("OwnUV", 17, bpy.data.materials["instancer TexCoord"])
 
 
+def flat_camera():
+    camera = bpy.data.objects.new("Flat", bpy.data.cameras.new("Flat"))
+    camera.scale = (1, 1, 0)
+    bpy.context.scene.collection.objects.link(camera)
+
+
+def scattered():
+    """More instances that take their instancer's UV than meshes may be made for that."""
+    seed = plane("Seed", 39, textured("scattered", picture("Scattered"), ("TexCoord", {"from_instancer": True})))
+    ground = plane("Field", 39, diffuse("ground", (0.2, 0.2, 0.2)))
+    smooth = ground.modifiers.new("Smooth", "SUBSURF")
+    smooth.subdivision_type, smooth.levels, smooth.render_levels = "SIMPLE", 3, 3
+    ground.instance_type, ground.show_instancer_for_render = "FACES", False
+    seed.parent = ground
+
+
 def instancers():
     group = bpy.data.collections.new("Group")
     plane("Member", 0, diffuse("member", (0, 0, 1)), group)
     plane("Own", 8, diffuse("own", (0, 1, 1)), group)["scumble_style"] = "oil"
     for number, (name, values) in enumerate((("Plain", {}), ("Dark", {"visible_shadow": False}),
-                                             ("Catch", {"is_shadow_catcher": True}), ("Wish", {}))):
+                                             ("Catch", {"is_shadow_catcher": True}), ("Wish", {}),
+                                             ("Unseen", {"visible_camera": False}))):
         empty = bpy.data.objects.new(name, None)
         empty.instance_type, empty.instance_collection = "COLLECTION", group
         empty.location = (number, -4, 0)
@@ -165,6 +202,12 @@ def instancers():
             setattr(empty, key, value)
         bpy.context.scene.collection.objects.link(empty)
     bpy.data.objects["Wish"]["scumble_style"] = "ink"
+    inner, outer = (bpy.data.objects.new(name, None) for name in ("Inner", "Outer"))
+    nest = bpy.data.collections.new("Nest")
+    for empty, instanced, holder in ((inner, group, nest), (outer, nest, bpy.context.scene.collection)):
+        empty.instance_type, empty.instance_collection = "COLLECTION", instanced
+        holder.objects.link(empty)
+    inner["scumble_style"] = "ink"
 
 
 def build(folder):
@@ -172,13 +215,17 @@ def build(folder):
     bpy.context.scene.collection.objects.link(clock)
     move(clock, "location", (0, 0, 0), (0.3, 0, 0))
     bpy.context.view_layer.update()
-    for part in (animated, flat, short_hair, coordinates):
+    for part in (animated, flat, coordinates):
         part()
+    short_hair("Short", (7, 0, 0))
     cameras(folder / "rig.blend")
 
 
 def build_limits(folder):
     lamps()
     flat_instances()
+    scattered()
+    short_hair("FlatHair", (7, 0, 0)).scale = (1, 1, 0)
+    flat_camera()
     instancers()
     link(folder / "assets" / "styled.blend", "Styled")

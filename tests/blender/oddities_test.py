@@ -35,8 +35,12 @@ LOST = ["lamp 'Panel': is visible to the camera",
         "material 'velvet': node 'Velvet BSDF' (BSDF_VELVET) cannot be expressed",
         "object 'Diced': its adaptive subdivision is taken for 4 levels more than its modifier's"]
 
-LIMITS = ["lamp 'AREA xy': is flattened along its axis", "lamp 'Sheared': is sheared",
-          "object 'Catch': is a shadow catcher", "object 'Dark': is invisible to shadow rays"]
+LIMITS = ["camera 'Flat': its scale leaves it no direction, left out",
+          "lamp 'AREA xy': is flattened along its axis", "lamp 'Sheared': is sheared",
+          "materials that take the UV of the instancer ('scattered'): instances cannot share meshes for it, and 1024",
+          "object 'Catch': is a shadow catcher", "object 'Dark': is invisible to shadow rays",
+          "object 'Inner': its style does not hold in the instances of 'Outer'",
+          "object 'Unseen': is not seen by the camera"]
 SHEARED = (0.447742, 0.554991, 0.701079)  # the third axis under the inverse of the scale
 
 
@@ -137,7 +141,8 @@ def check_filter(document, has_surfaces, has_hair):
 def check_placed(document, extras):
     nodes = {node["name"]: node for node in document["nodes"]}
     seen = [(node["name"], node["matrix"][12]) for node in document["nodes"] if "camera" in node]
-    expect(seen == [("Above#2", 3.5), ("Above", 100)], "the active camera first, whatever its name", seen)
+    expect(seen == [("Above#3", 3.5), ("Above", 100), ("Above#2", 200)],
+           "the active camera first, whatever its name", seen)
     strands = document["meshes"][nodes["Short"]["mesh"]]["primitives"]
     segments = [document["accessors"][primitive["indices"]]["count"] for primitive in strands]
     expect(segments == [4], "curves beside one of a single point", segments)
@@ -161,12 +166,16 @@ def check_limits(document, extras):
     for name in ("Shared", "Shared.001"):
         thickness = math.hypot(*nodes[name]["matrix"][4:7])
         expect(1e-7 < thickness < 1e-6, "what is flat keeps a direction for its normals", nodes[name]["matrix"])
+    scattered = {nodes.pop(name)["mesh"] for name in sorted(nodes) if name.startswith("Field/Seed")}
+    expect(len(scattered) == 1, "instances share a mesh where they would need too many", scattered)
     styles = {name: node["extras"]["scumble"].get("style") for name, node in nodes.items() if "mesh" in node}
     beside = styles.pop("Beside")
     expect(beside.endswith("/assets/paints/ink"), "beside the library", beside)
-    wanted = {"Bundled": "oil", "Shared": None, "Shared.001": None, "Plain/Member": None, "Dark/Member": None,
-              "Catch/Member": "catcher", "Wish/Member": "ink"}
-    wanted.update({f"{name}/Own": "oil" for name in ("Plain", "Dark", "Catch", "Wish")})
+    expect(nodes["FlatHair"]["matrix"][4:7] == [0, 0, 0], "hair that is flat is left out", nodes["FlatHair"]["matrix"])
+    wanted = {"Bundled": "oil", "Reserved": "catcher", "FlatHair": None, "Shared": None, "Shared.001": None,
+              "Plain/Member": None, "Dark/Member": None, "Catch/Member": "catcher", "Wish/Member": "ink",
+              "Outer/Member": None}
+    wanted.update({f"{name}/Own": "oil" for name in ("Plain", "Dark", "Catch", "Wish", "Outer")})
     expect(styles == wanted, styles)
     styled = [material["extras"]["scumble"].get("style") for material in document["materials"]
               if material["name"] == "styled"]

@@ -105,8 +105,9 @@ class GltfLoader {
       scene_.cameras.push_back(std::move(camera));
       rig_.camera_nodes.push_back(static_cast<int>(index));
     }
+    if (visit.is_hidden) return Ok();
     SCUMBLE_ASSIGN(std::optional<Light> light, ReadLight(model_, file_, visit, warnings_));
-    if (light && !visit.is_hidden) scene_.lights.push_back(*std::move(light));
+    if (light) scene_.lights.push_back(*std::move(light));
     return Ok();
   }
 
@@ -128,7 +129,8 @@ class GltfLoader {
     SCUMBLE_ASSIGN(const std::vector<double> weights, MorphWeights(visit.node));
     const bool morphs = rig_.animation.Morphs(visit.node) ||
                         std::any_of(weights.begin(), weights.end(), [](double weight) { return weight != 0.0; });
-    SCUMBLE_ASSIGN(const std::vector<glm::dmat4> copies, ReadGpuInstances(model_, file_, visit.node, zeros_));
+    SCUMBLE_ASSIGN(const std::vector<glm::dmat4> copies,
+                   ReadGpuInstances(model_, file_, visit.node, zeros_, warnings_));
     if (node.skin >= 0 || morphs) {
       if (!copies.empty())
         warnings_.Add("copies of a mesh that is deformed are ignored, it is seen once", Label(visit.node));
@@ -355,7 +357,7 @@ class GltfLoader {
   UniqueNames copy_names_;
   bool has_copies_ = false;
   std::uint64_t bytes_of_copies_ = 0;
-  std::vector<std::string> names_;  // of the object at each visit; empty where there is no mesh
+  std::vector<std::string> names_;  // of the object at each visit; empty where none is seen
   std::map<int, std::vector<int>> loaded_meshes_;
   std::map<int, int> loaded_skins_;
   std::unordered_map<int, int> rig_node_of_;  // by the node in the file

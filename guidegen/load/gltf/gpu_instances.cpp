@@ -13,7 +13,7 @@
 namespace scumble {
 
 Expected<std::vector<glm::dmat4>> ReadGpuInstances(const tinygltf::Model& model, const std::string& file, int node,
-                                                   ZeroBudget& zeros) {
+                                                   ZeroBudget& zeros, WarningCounter& warnings) {
   const auto& extensions = model.nodes[std::size_t(node)].extensions;
   const auto found = extensions.find("EXT_mesh_gpu_instancing");
   if (found == extensions.end() || !found->second.Has("attributes")) return std::vector<glm::dmat4>();
@@ -41,6 +41,9 @@ Expected<std::vector<glm::dmat4>> ReadGpuInstances(const tinygltf::Model& model,
   SCUMBLE_ASSIGN(const FloatTable translation, read("TRANSLATION", 3));
   SCUMBLE_ASSIGN(const FloatTable rotation, read("ROTATION", 4));
   SCUMBLE_ASSIGN(const FloatTable scale, read("SCALE", 3));
+  if (counted.empty() && attributes.IsObject() && attributes.Size() > 0) {
+    warnings.Add("copies of a mesh without places for them are ignored, it is seen once", NodeLabel(model, node));
+  }
   std::vector<glm::dmat4> instances;
   for (std::size_t i = 0; i < count; ++i) {
     const auto vector = [&](const FloatTable& table, double none) {

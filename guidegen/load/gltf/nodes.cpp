@@ -180,7 +180,7 @@ class ObjectNamer {
   Expected<std::vector<std::string>> NameAll() const {
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
-      if (model_.nodes[std::size_t(nodes_[i].node)].mesh >= 0) order.push_back(i);
+      if (model_.nodes[std::size_t(nodes_[i].node)].mesh >= 0 && !nodes_[i].is_hidden) order.push_back(i);
     }
     std::sort(order.begin(), order.end(),
               [&](std::size_t a, std::size_t b) { return nodes_[a].node < nodes_[b].node; });

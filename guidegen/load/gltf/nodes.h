@@ -28,8 +28,8 @@ std::optional<int> LightOf(const tinygltf::Node& node);
 Expected<std::vector<RigNode>> ReadNodes(const tinygltf::Model& model, const std::string& file,
                                          const GltfAnimation& animation, WarningCounter& warnings);
 
-// The names of the objects at those nodes, all different; empty where a node has no mesh. Names beyond the limit in
-// total are a kInput error.
+// The names of the objects at those nodes, all different; empty where a node has no mesh, or is hidden. Names beyond
+// the limit in total are a kInput error.
 Expected<std::vector<std::string>> NameObjects(const tinygltf::Model& model, const std::string& file,
                                                const std::vector<RigNode>& nodes);
 

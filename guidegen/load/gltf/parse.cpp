@@ -343,13 +343,33 @@ void SetFileCallbacks(Loader& loader, Surroundings& surroundings, Callbacks call
   loader.SetFsCallbacks(callbacks);
 }
 
+// Takes all occurrences away, of which there may be as many as the file likes; whether there were any.
+bool Remove(const std::string& part, std::string& text) {
+  std::string kept;
+  std::size_t from = 0;
+  for (std::size_t at; (at = text.find(part, from)) != std::string::npos; from = at + part.size()) {
+    kept.append(text, from, at - from);
+  }
+  kept.append(text, from);
+  const bool found = kept.size() < text.size();
+  text = std::move(kept);
+  return found;
+}
+
 // tinygltf's message about an accepted file becomes a warning, except where tinygltf is stricter than glTF.
-void WarnOfComplaints(std::string complaints, WarningCounter& warnings) {
+void WarnOfComplaints(std::string complaints, const tinygltf::Model& model, WarningCounter& warnings) {
   // The materials' own warnings name textures without an index.
   for (const std::string harmless :
        {"JSON Chunk end does not aligned to a 4-byte boundary.", "'inverseBindMatrices' property is missing in Skin.\n",
         "'index' property is missing in TextureInfo.\n", "'index' property is missing in NormalTextureInfo.\n"}) {
-    for (std::size_t at; (at = complaints.find(harmless)) != std::string::npos;) complaints.erase(at, harmless.size());
+    Remove(harmless, complaints);
+  }
+  const std::vector<std::string>& used = model.extensionsUsed;
+  if (std::find(used.begin(), used.end(), "KHR_animation_pointer") != used.end()) {
+    const std::string no_node = "'node' property is missing.\n`node` field is missing in animation.channels.target\n";
+    if (Remove(no_node, complaints)) {
+      warnings.Add("animation of visibility and other properties is left out", "KHR_animation_pointer");
+    }
   }
   if (!complaints.empty()) warnings.Add("some of the file is not valid glTF and is left out", Excerpt(complaints));
 }
@@ -382,7 +402,7 @@ Status RunTinygltf(const std::string& file, Surroundings& surroundings, std::spa
     errors = e.what();
   }
   if (ok) {
-    WarnOfComplaints(errors, counter);
+    WarnOfComplaints(errors, model, counter);
     return Ok();
   }
   if (errors.empty()) errors = warnings.empty() ? "no reason given" : warnings;

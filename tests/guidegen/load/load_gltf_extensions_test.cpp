@@ -1,13 +1,17 @@
 // KHR_node_visibility and EXT_mesh_gpu_instancing.
 #include <gtest/gtest.h>
 
+#include "guidegen/guidegen.h"
 #include "tests/guidegen/load/load_gltf.h"
 
 namespace scumble {
 namespace {
 
 using nlohmann::json;
+using ::testing::Contains;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 json Visible(bool visible) { return {{"KHR_node_visibility", {{"visible", visible}}}}; }
 
@@ -19,7 +23,8 @@ TEST_F(LoadGltf, HiddenNodesHideWhatIsBelowButNoCamera) {
   b.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1.0}, {"znear", 0.1}}}}};
   const std::size_t first = b.json["nodes"].size();
   b.Append("nodes", {{"mesh", 0}, {"name", "Below"}, {"extensions", Visible(true)}});
-  b.Append("nodes", {{"name", "Lamp"}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+  b.Append("nodes",
+           {{"name", "Lamp"}, {"scale", {0, 0, 0}}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
   b.Append("nodes", {{"name", "Eye"}, {"camera", 0}});
   b.Root({{"name", "Off"}, {"extensions", Visible(false)}, {"children", {first, first + 1, first + 2}}});
   const Scene scene = Load(b);
@@ -27,6 +32,25 @@ TEST_F(LoadGltf, HiddenNodesHideWhatIsBelowButNoCamera) {
   EXPECT_EQ(scene.instances[0].object, "Seen");
   EXPECT_TRUE(scene.lights.empty());
   EXPECT_EQ(scene.cameras.size(), 1u);
+}
+
+TEST_F(LoadGltf, HiddenNodesTakeNoNames) {
+  GltfBuilder b;
+  b.json["nodes"][b.Triangle("Tree")]["extensions"] = Visible(false);
+  b.Root({{"name", "Tree"}, {"mesh", 0}});
+  EXPECT_THAT(ObjectNames(Load(b)), ElementsAre("Tree"));
+}
+
+TEST_F(LoadGltf, AnimatedVisibilityIsLeftOut) {
+  GltfBuilder b;
+  const int node = b.Triangle("Seen");
+  b.Animate(node, "pointer", {0, 1}, {0, 0, 0, 1, 1, 1});
+  json& target = b.json["animations"][0]["channels"][0]["target"];
+  target.erase("node");
+  target["extensions"]["KHR_animation_pointer"]["pointer"] = "/nodes/0/extensions/KHR_node_visibility/visible";
+  b.json["extensionsUsed"] = {"KHR_animation_pointer"};
+  EXPECT_THAT(Load(b).warnings, Contains(HasSubstr("animation of visibility and other properties is left out")));
+  EXPECT_THAT(Load(b).warnings, Not(Contains(HasSubstr("not valid glTF"))));
 }
 
 class GpuInstances : public LoadGltf {
@@ -59,6 +83,29 @@ TEST_F(GpuInstances, AreObjectsOfTheirOwn) {
     const glm::dvec4 place = scene.instances[i].world_from_object * glm::dvec4(1, 0, 0, 1);
     for (int k = 0; k < 4; ++k) EXPECT_NEAR(place[k], expected[i][k], 1e-12) << i;
   }
+}
+
+TEST_F(GpuInstances, FollowTheirParents) {
+  GltfBuilder b = Copies();
+  const int parent = b.Append("nodes", {{"name", "Parent"}, {"children", {0}}});
+  b.json["scenes"][0]["nodes"] = {parent};
+  b.Animate(parent, "translation", {0, 1}, {0, 0, 0, 0, 0, 8});
+  const Expected<AnimatedScene> animated = AnimatedScene::Load(Write("scene.glb", b.Glb()), {});
+  ASSERT_TRUE(animated.ok()) << animated.error().message;
+  const Expected<Scene> scene = animated->SceneAt(0.5);
+  ASSERT_TRUE(scene.ok()) << scene.error().message;
+  ASSERT_EQ(scene->instances.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(glm::dvec3(scene->instances[i].world_from_object[3]), glm::dvec3(10, i, 4)) << i;
+  }
+}
+
+TEST_F(GpuInstances, WithoutPlacesAreSeenOnce) {
+  GltfBuilder b = Copies();
+  b.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {{"_ID", b.Floats({0, 1, 2}, 1)}};
+  const Scene scene = Load(b);
+  EXPECT_EQ(scene.instances.size(), 1u);
+  EXPECT_THAT(scene.warnings, Contains(HasSubstr("without places for them are ignored, it is seen once")));
 }
 
 TEST_F(GpuInstances, ListsMustFitEachOther) {
