@@ -153,25 +153,19 @@ bool IsNotFinite(std::string_view word) {
   return begins_with("nan") || begins_with("inf") || begins_with("1.#");
 }
 
-// Whether the word is there as a number, well written or not, and is no option or name.
-bool IsMeantAsNumber(std::string_view word) {
-  const std::size_t first = word.front() == '+' || word.front() == '-';
-  if (first == word.size()) return false;
-  return (word[first] >= '0' && word[first] <= '9') || word[first] == '.' || IsNotFinite(word);
-}
-
 // Lines of one kind whose words are numbers.
 struct NumberLine {
   std::string_view key;
   int numbers = 0;               // how many are read at most
   bool may_be_infinite = false;  // or NaN, which is taken for none
-  bool has_options = false;      // or names, which end the numbers
+  bool has_others = false;       // instead of numbers: a curve, another space, a halo
 };
 
 // Exporters write NaN as the normal of a face without area.
 constexpr NumberLine kObjNumbers[] = {{"v", 6}, {"vn", 3, true}, {"vt", 2, true}};
 constexpr NumberLine kMtlNumbers[] = {{"Kd", 3, false, true}, {"Ks", 3, false, true}, {"Ke", 3, false, true},
-                                      {"Ns", 1, false, true}, {"d", 1, false, true},  {"Tr", 1, false, true}};
+                                      {"Ns", 1, true},        {"d", 1, false, true},  {"Tr", 1, false, true}};
+constexpr std::string_view kOthers[] = {"spectral", "xyz", "-halo"};
 
 // The first of the numbers from `at` to `end` that is none; empty where all are. tinyobjloader would take it for 0.
 std::string_view FirstNoNumber(const char* at, const char* end, const NumberLine& line) {
@@ -183,7 +177,7 @@ std::string_view FirstNoNumber(const char* at, const char* end, const NumberLine
     if (at && (at == end || IsBlank(*at))) continue;
     at = std::find_if(begin, end, IsBlank);
     const std::string_view word(begin, std::size_t(at - begin));
-    if (line.has_options && !IsMeantAsNumber(word)) return {};
+    if (line.has_others && i == 0 && std::ranges::find(kOthers, word) != std::end(kOthers)) return {};
     if (!line.may_be_infinite || !IsNotFinite(word)) return word;
   }
   return {};
@@ -202,7 +196,8 @@ Status CheckNumbers(const std::string& file, std::string_view text, std::span<co
       if (line.size() <= size || !IsBlank(line[size]) || line.substr(0, size) != one.key) continue;
       const std::string_view word = FirstNoNumber(begin + size, end, one);
       if (word.empty()) continue;
-      const auto number = 1 + std::count(text.data(), begin, '\n');
+      std::size_t number = 1;
+      for (const char* c = text.data(); c != begin; ++c) number += *c == '\n' || (*c == '\r' && c[1] != '\n');
       return InputError(file + ", line " + std::to_string(number) + ", is '" + Excerpt(std::string(line), 80) +
                         "', where '" + Excerpt(std::string(word), 40) +
                         "' is no finite number; expected digits with a decimal point, such as 1.5: export it again");

@@ -222,7 +222,7 @@ Expected<SequenceTotals> RunSequence(const Sequence& sequence, const SequenceWor
       const std::string output = sequence.output.At(frame);
       // Outputs that might be kept were not checked; one stands for their folder.
       const bool is_first = sequence.resume && frames.empty();
-      if (is_first || IsWriteProtected(output)) SCUMBLE_RETURN_IF_ERROR(CheckWritable(output));
+      if (is_first || MayRefuseWriting(output)) SCUMBLE_RETURN_IF_ERROR(CheckWritable(output));
       frames.push_back(frame);
     }
     if (frames.empty()) return Ok();

@@ -103,13 +103,10 @@ Status RunInputs::CheckOutputs(std::span<const std::string> outputs, const std::
     const std::string also = is_named_so ? "" : ", by the name " + input.path;
     return UsageError(option + " " + output + " would overwrite " + input.what + also + ": give another name");
   }
-  std::error_code failed;
   bool knows_folder = false;
   for (const std::string& output : outputs) {
     if (resumes && IdentityOf(output)) continue;  // RunSequence checks those that it does not keep
-    const bool look =
-        !knows_folder || IsWriteProtected(output) || fs::is_symlink(output, failed) || fs::is_directory(output, failed);
-    if (look) SCUMBLE_RETURN_IF_ERROR(CheckWritable(output));
+    if (!knows_folder || MayRefuseWriting(output)) SCUMBLE_RETURN_IF_ERROR(CheckWritable(output));
     knows_folder = true;
   }
   checked_ = read;

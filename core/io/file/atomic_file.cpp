@@ -125,6 +125,11 @@ bool IsWriteProtected(const fs::path& path) {
   return ::faccessat(AT_FDCWD, path.c_str(), W_OK, AT_EACCESS) != 0 && errno != ENOENT && errno != ENOTDIR;
 }
 
+bool MayRefuseWriting(const fs::path& path) {
+  std::error_code failed;
+  return IsWriteProtected(path) || fs::is_symlink(path, failed) || fs::is_directory(path, failed);
+}
+
 Status CheckWritable(const fs::path& path) {
   SCUMBLE_ASSIGN(const Target target, CheckTarget(path));
   if (target.is_special) return ::access(target.path.c_str(), W_OK) == 0 ? Ok() : Status(WriteFailure(path, errno));

@@ -27,6 +27,9 @@ Status CheckWritable(const std::filesystem::path& path);
 
 // Whether a file is there that this user may not write.
 bool IsWriteProtected(const std::filesystem::path& path);
+// Whether something is there that CheckWritable may refuse although its folder can be written: such a file, a folder or
+// a link.
+bool MayRefuseWriting(const std::filesystem::path& path);
 
 // The whole file, `limit` bytes at most. If it is larger, that is an error, and `remedy` ends the message.
 Expected<std::vector<std::byte>> ReadWholeFile(const std::filesystem::path& path,

@@ -93,7 +93,8 @@ TEST_F(Misread, ObjWordsThatAreNoNumbers) {
 
 TEST_F(Misread, MtlWordsThatAreNoNumbers) {
   const auto path = Write("a.obj", "mtllib a.mtl\n" + kObjTriangle + "usemtl m\nf 1 2 3\n");
-  for (const char* line : {"Kd 0,5 0,5 0,5", "Ks 0 0 .5f", "Ke nan 0 0", " Ns 1.#INF", "d -.", "Tr 0,25"}) {
+  for (const char* line :
+       {"Kd 0,5 0,5 0,5", "Kd 0.5 x 0.5", "Ks 0 0 .5f", "Ke nan 0 0", " Ns ten", "d -.", "d O.2", "Tr 0,25"}) {
     Write("a.mtl", "newmtl m\n"s + line + "\n");
     const auto scene = LoadScene(path);
     ASSERT_FALSE(scene) << line;
@@ -102,6 +103,7 @@ TEST_F(Misread, MtlWordsThatAreNoNumbers) {
   }
   Write("a.mtl", "newmtl m\nKd spectral a.rfl 1,0\nKs xyz 0 0 0\nd -halo 0.5\nNs 10 # a,b\nNi 1,5\n"s);
   EXPECT_EQ(Load(path).materials.size(), 1u);
+  EXPECT_THAT(Refusal(Write("mac.obj", "v 0 0 0\rv 1 0 0\r\nv 0 x 0\rf 1 2 3\r"s)), HasSubstr("line 3, is 'v 0 x 0'"));
 }
 
 // MeshLab writes `Tr 1` for what is opaque; to the letter it is what cannot be seen.
