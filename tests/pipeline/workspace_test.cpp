@@ -193,15 +193,15 @@ TEST(Workspace, LightConcernsOnlyTheLayersThatDependOnIt) {
 }
 
 // In any order of changes: attributes too, which tell the light and the seed of a file.
-TEST(Workspace, GuidesAreThoseOfAFreshOne) {
+// Whatever changes at random. A scene without frames is asked for none.
+void ExpectGuidesOfAFreshOne(SceneRequest scene, bool has_frames, int steps) {
   Workspace workspace(Context());
   const std::vector<LayerSet> sets = {{}, {Layer::kAlbedo}, {Layer::kLuminance, Layer::kShadow}, {Layer::kLpeLDE}};
-  SceneRequest scene = SceneOf("toys");
   scene.size = {24, 16};
   std::optional<int> frame;
   std::size_t layers = 0;
   std::mt19937 random(7);
-  for (int step = 0; step < 40; ++step) {
+  for (int step = 0; step < steps; ++step) {
     switch (random() % 7) {
       case 0:
         scene.light = LightAngles{double(random() % 3) * 40.0, 20.0};
@@ -216,7 +216,7 @@ TEST(Workspace, GuidesAreThoseOfAFreshOne) {
         scene.samples = 1 + int(random() % 2);
         break;
       case 4:
-        frame = random() % 2 ? std::nullopt : std::optional(int(random() % 3));
+        frame = !has_frames || random() % 2 ? std::nullopt : std::optional(int(random() % 3));
         break;
       case 5:
         scene.view = random() % 2 ? std::nullopt : std::optional(ViewAngles{double(random() % 2) * 30.0, 10.0});
@@ -237,7 +237,20 @@ TEST(Workspace, GuidesAreThoseOfAFreshOne) {
       }
     }
   }
-  EXPECT_LT(workspace.counters().guides_cast, 40u);
+  EXPECT_LT(workspace.counters().guides_cast, std::size_t(steps));
+}
+
+TEST(Workspace, GuidesAreThoseOfAFreshOne) { ExpectGuidesOfAFreshOne(SceneOf("toys"), true, 40); }
+
+// Its meshes glow, and keep their place in the structure while lights come and go.
+TEST(Workspace, GuidesOfAGlowingSceneAreThoseOfAFreshOne) {
+  const TemporaryFolder folder;
+  SceneRequest scene = SceneOf("ball");
+  scene.scene = (folder.path() / "lamp.obj").string();
+  std::ofstream(folder.path() / "lamp.mtl") << "newmtl glow\nKd 1 1 1\nKe 3 2 1\nnewmtl grey\nKd 0.5 0.5 0.5\n";
+  std::ofstream(scene.scene) << "mtllib lamp.mtl\nv -2 0 -2\nv 2 0 -2\nv 2 0 2\nv -2 0 2\nv -1 1 -1\nv 1 1 -1\n"
+                                "v 1 2 -1\nv -1 2 -1\nusemtl grey\nf 4 3 2 1\nusemtl glow\nf 5 6 7 8\n";
+  ExpectGuidesOfAFreshOne(scene, false, 30);
 }
 
 TEST(Workspace, TellsOfASceneOnce) {
