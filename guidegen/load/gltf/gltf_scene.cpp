@@ -309,7 +309,7 @@ class GltfLoader {
     std::set<int> seen;
     for (const RigNode& visit : rig_.nodes) {
       const int mesh = model_.nodes[std::size_t(visit.node)].mesh;
-      if (mesh < 0 || !seen.insert(mesh).second) continue;
+      if (mesh < 0 || visit.is_hidden || !seen.insert(mesh).second) continue;
       for (const tinygltf::Primitive& primitive : model_.meshes[std::size_t(mesh)].primitives) {
         const auto position = primitive.attributes.find("POSITION");
         const bool is_drawn = primitive.mode >= TINYGLTF_MODE_TRIANGLES || position == primitive.attributes.end();

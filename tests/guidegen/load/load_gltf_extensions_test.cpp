@@ -53,6 +53,16 @@ TEST_F(LoadGltf, AnimatedVisibilityIsLeftOut) {
   EXPECT_THAT(Load(b).warnings, Not(Contains(HasSubstr("not valid glTF"))));
 }
 
+// Points that nobody sees are no reason to refuse a scene.
+TEST_F(LoadGltf, HiddenPointsAreNotAskedFor) {
+  GltfBuilder b;
+  const int node = b.Triangle("Cloud");
+  b.json["meshes"][0]["primitives"][0]["mode"] = 0;
+  EXPECT_THAT(ErrorOf(b), HasSubstr("points"));
+  b.json["nodes"][node]["extensions"] = Visible(false);
+  EXPECT_TRUE(Load(b).instances.empty());
+}
+
 class GpuInstances : public LoadGltf {
  protected:
   // A triangle, three times, in a node that is moved by 10 along x.
