@@ -17,7 +17,6 @@
 #include <string>
 #include <vector>
 
-#include "core/image/edge_strokes.h"
 #include "core/image/finish_pass.h"
 #include "core/image/fragments.h"
 #include "core/image/guides.h"

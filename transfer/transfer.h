@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "core/filter/region.h"
-#include "core/image/edge_strokes.h"
 #include "core/image/fragments.h"
 #include "core/image/guides.h"
 #include "core/image/progress.h"

@@ -6,7 +6,7 @@
 #include <thread>
 #include <vector>
 
-#include "core/image/edge_strokes.h"
+#include "core/image/fragments.h"
 #include "core/io/picture_file.h"
 #include "core/style/kit/sphere_template.h"
 #include "finish/finish.h"

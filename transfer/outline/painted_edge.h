@@ -8,7 +8,7 @@
 
 #include "core/filter/parallel.h"
 #include "core/filter/region.h"
-#include "core/image/edge_strokes.h"
+#include "core/image/fragments.h"
 #include "core/image/guides.h"
 #include "scumble/picture.h"
 #include "transfer/field/source_field.h"
