@@ -114,9 +114,15 @@ class FrameCounters {
   bool HasAny() const { return totals_.made + totals_.kept > 0 || !totals_.failed.empty(); }
   // The error that ends the sequence, unless the other frames may go better.
   Status Fail(int frame, const Error& error) {
-    if (error.kind != ErrorKind::kInput) return Error{error.kind, fmt::format("frame {}: {}", frame, error.message)};
-    Failed(frame, error.message);
-    return Ok();
+    if (error.kind == ErrorKind::kInput) {
+      Failed(frame, error.message);
+      return Ok();
+    }
+    if (HasAny() && error.kind != ErrorKind::kCancelled) {
+      if (listener_.failed) listener_.failed(frame, sequence_.output.At(frame), error.message);
+      totals_.failed.push_back(frame);
+    }
+    return Error{error.kind, fmt::format("frame {}: {}", frame, error.message)};
   }
   SequenceTotals Totals(double total_ms) {
     totals_.total_ms = total_ms, totals_.resumed = sequence_.resume;

@@ -53,5 +53,32 @@ TEST(RunInputs, AResumedRangeWritesOnlyWhatItDoesNotKeep) {
   EXPECT_EQ(WEXITSTATUS(status), 0);
 }
 
+// A full disk, say, ends a sequence, and a farm reads at which frame.
+TEST(RunInputs, TheFrameThatEndsASequenceIsNamed) {
+  const TemporaryFolder folder;
+  for (const bool is_cancelled : {false, true}) {
+    const Sequence sequence{{1, 2, 3}, *FrameName::Parse((folder / "p.#.png").string()), false};
+    std::vector<int> made, failed;
+    SequenceWork work;
+    work.begin = [](std::span<const int>, const Progress&) { return Ok(); };
+    work.make = [&](int frame, const std::string& output, const Progress&) -> Expected<FrameWrite> {
+      return FrameWrite([=]() -> Expected<FrameReport> {
+        if (frame == 2) return Error{is_cancelled ? ErrorKind::kCancelled : ErrorKind::kOutput, output + ": full"};
+        return FrameReport();
+      });
+    };
+    SequenceListener listener;
+    listener.made = [&](int frame, const std::string&, const FrameReport&) { made.push_back(frame); };
+    listener.failed = [&](int frame, const std::string&, const std::string&) { failed.push_back(frame); };
+    const auto totals = RunSequence(sequence, work, listener, RunContext(), {});
+    ASSERT_TRUE(totals);
+    EXPECT_EQ(made, std::vector{1});
+    EXPECT_EQ(failed, is_cancelled ? std::vector<int>() : std::vector{2});
+    EXPECT_EQ(totals->failed, failed);
+    ASSERT_TRUE(totals->ended_by);
+    EXPECT_NE(StatusOf(*totals).error().message.find("frame 2"), std::string::npos);
+  }
+}
+
 }  // namespace
 }  // namespace scumble
