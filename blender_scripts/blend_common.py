@@ -95,6 +95,20 @@ def action_curves(thing):
     return [curve for bag in bags if bag is not None for curve in bag.fcurves]
 
 
+def release(thing, paths):
+    """Takes animation and drivers off the settings whose paths match: the next evaluation would bring them back."""
+    data = getattr(thing, "animation_data", None)
+    if data is None:
+        return
+    curves = list(action_curves(thing))
+    for strip in (strip for track in data.nla_tracks for strip in track.strips if strip.action):
+        curves += getattr(strip.action, "fcurves", [])
+    for curve in curves:
+        curve.mute = curve.mute or paths.search(curve.data_path) is not None
+    for driver in [driver for driver in data.drivers if paths.search(driver.data_path)]:
+        data.drivers.remove(driver)
+
+
 def listed(names, most=3):
     """'a', 'b', 'c' and 4 more"""
     more = len(names) - most

@@ -104,14 +104,13 @@ def image_fault(node, spaces):
         return f"node '{node.name}' with a projection or limits in its Texture Mapping panel"
     if node.image.source not in {"FILE", "GENERATED"}:
         return f"node '{node.name}' with an image of source {node.image.source}"
-    space, is_float = node.image.colorspace_settings.name, node.image.is_float
+    space, keeps = node.image.colorspace_settings.name, keeps_its_depth(node.image)
     is_colour = space == "sRGB"
-    known = {"colour": is_colour and not is_float, "data": not is_colour and keeps_its_depth(node.image),
+    known = {"colour": is_colour and keeps, "data": not is_colour and keeps,
              "alpha": True,  # is not managed
-             "any": (is_colour and not is_float) or
-                    (space in {"Non-Color", "Raw", "Linear", "Linear Rec.709"} and keeps_its_depth(node.image))}
+             "any": (is_colour or space in {"Non-Color", "Raw", "Linear", "Linear Rec.709"}) and keeps}
     if not known[spaces]:
-        return f"node '{node.name}' with an image in {space}{', float' if is_float else ''}"
+        return f"node '{node.name}' with an image in {space}{'' if keeps else ', of more than 8 bits'}"
     return coordinates_of(node.inputs["Vector"])[1]
 
 

@@ -8,7 +8,7 @@ import re
 
 import bpy
 
-from blend_common import action_curves
+from blend_common import release
 
 # Of a modifier, by its type: the viewport's property and the render's.
 MODIFIERS = {"SUBSURF": ("levels", "render_levels"), "MULTIRES": ("levels", "render_levels"),
@@ -29,20 +29,6 @@ OF_VIEWPORT = re.compile(r"(hide_viewport|show_viewport|\.levels|\.steps|viewpor
                          r"|show_instancer_for_viewport|display_percentage|display_step|child_nbr|child_percent)$")
 
 
-def release(thing):
-    """Takes animation and drivers off the viewport's own settings, which the next evaluation would bring back."""
-    data = getattr(thing, "animation_data", None)
-    if data is None:
-        return
-    curves = list(action_curves(thing))
-    for strip in (strip for track in data.nla_tracks for strip in track.strips if strip.action):
-        curves += getattr(strip.action, "fcurves", [])
-    for curve in curves:
-        curve.mute = curve.mute or OF_VIEWPORT.search(curve.data_path) is not None
-    for driver in [driver for driver in data.drivers if OF_VIEWPORT.search(driver.data_path)]:
-        data.drivers.remove(driver)
-
-
 def put(owner, name, value):
     """Each change costs an evaluation."""
     if getattr(owner, name) != value:
@@ -50,7 +36,7 @@ def put(owner, name, value):
 
 
 def use_render_particles(settings):
-    release(settings)
+    release(settings, OF_VIEWPORT)
     put(settings, "display_percentage", 100)
     if settings.child_type != "NONE":
         shown = "child_nbr" if hasattr(settings, "child_nbr") else "child_percent"  # from Blender 4.0 on
@@ -106,7 +92,7 @@ def use_render_modifiers(thing, scene):
 
 
 def use_render_data(data):
-    release(data)
+    release(data, OF_VIEWPORT)
     for viewport, render in DATA:
         if getattr(data, render, 0) and hasattr(data, viewport):
             put(data, viewport, getattr(data, render))
@@ -142,7 +128,7 @@ def take_settings(scene, view_layer):
             use_render_nodes(tree)
     cameras = {thing for thing in scene.objects if thing.type == "CAMERA"}
     for thing in bpy.data.objects:
-        release(thing)
+        release(thing, OF_VIEWPORT)
         # Cameras are never rendered; those of instanced collections stay hidden.
         is_camera = thing in cameras
         put(thing, "hide_viewport", thing.hide_render and not is_camera)

@@ -18,6 +18,8 @@ def choose(scene, name, unsupported):
     if not cameras:
         raise LookupError("the scene has no perspective or orthographic camera: add one")
     scene.camera = cameras[name] if name else next(iter(cameras.values()))
+    for marker in scene.timeline_markers:
+        marker.camera = None  # the render would take the camera of the frame's marker again
     bpy.context.view_layer.update()
     blend_common.note_crooked_camera(scene.camera.name, scene.camera.matrix_world, unsupported)
 

@@ -24,6 +24,7 @@ Lines on stderr: "scumble: rendering …", "scumble: unsupported: …" for what 
 
 import argparse
 import os
+import re
 import shutil
 import sys
 import traceback
@@ -46,6 +47,9 @@ DATA_PASSES = {"normal", "z", "position", "diffuse_color", "glossy_color", "emit
 LIGHT_PASSES = {"combined", "emit"} | {f"{lobe}_{part}" for lobe in ("diffuse", "glossy")
                                        for part in ("direct", "indirect", "color")}
 TERMINATOR_OFFSETS = [f"shadow_terminator_{kind}offset" for kind in ("", "normal_", "geometry_", "shading_")]
+# Paths of animated properties that set_up_output, set_up_cycles, set_up_layer and render_to set.
+SET_HERE = re.compile(r"^(render\.(?!use_simplify$|simplify_)|cycles\.|view_layers\[|dof\.use_dof$"
+                      r"|shadow_terminator_\w*offset$)")
 BOUNCES = ("max_bounces", "diffuse_bounces", "glossy_bounces", "transmission_bounces", "volume_bounces")
 
 
@@ -92,6 +96,8 @@ def open_scene(options, unsupported):
         bpy.context.window.scene = scene
         set_size(scene.render, options.size)
         scene.frame_set(scene.frame_current if options.frame is None else options.frame)
+        for thing in (scene, *bpy.data.cameras, *bpy.data.lights, *bpy.data.objects):
+            blend_common.release(thing, SET_HERE)
         layer = blend_common.choose_layer(scene, options.view_layer)
         blend_check.check_file(layer, unsupported)
         guide_instances.name_apart(scene, layer, unsupported)
@@ -123,7 +129,8 @@ def set_up_output(scene):
 def set_up_cycles(scene):
     """Nothing approximate, nothing clamped, nothing that only one of the two programs has."""
     render, cycles = scene.render, scene.cycles
-    render.use_simplify = render.use_motion_blur = False
+    render.use_motion_blur = False
+    cycles.texture_limit_render, cycles.use_camera_cull, cycles.use_distance_cull = "OFF", False, False  # of Simplify
     cycles.device = "CPU"
     cycles.pixel_filter_type, cycles.filter_width = "BLACKMAN_HARRIS", 0.01
     cycles.film_exposure = 1.0

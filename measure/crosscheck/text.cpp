@@ -111,6 +111,7 @@ Json ReportJson(const CrosscheckReport& report) {
   json["too_thin"] = report.too_thin;
   json["skipped"] = report.skipped;
   json["problems"] = report.problems;
+  json["reasons"] = WhyCrosscheckFails(report);
   json["unsupported"] = report.unsupported;
   json["warnings"] = report.warnings;
   json["figures"] = Json::array();

@@ -50,7 +50,7 @@ class CrosscheckBlender : public CliTest {
     said_ = result.err;
     return result.Json();
   }
-  // room.blend, scatter.blend and crooked.blend, which make_crosscheck.py describes.
+  // The scenes that make_crosscheck.py describes.
   void MakeScenes() {
     const std::string make = "blender -b -noaudio --factory-startup -P '" SCUMBLE_SOURCE_DIR
                              "/tests/blender/make_crosscheck.py' -- '" +
@@ -187,6 +187,26 @@ TEST_F(CrosscheckBlender, WhatCannotAgreeIsNamedOnce) {
               1)
         << cause;
   }
+}
+
+TEST_F(CrosscheckBlender, MarkersAndAnimationDoNotUndoTheReferencesSettings) {
+  MakeScenes();
+  const Json reports =
+      Check({"keyed.blend", "--camera", "Second", "--size", "160x90", "--samples", "0", "--keep", "kept"}, 0);
+  EXPECT_TRUE(reports[0]["unsupported"].empty()) << reports[0]["unsupported"];
+  GuideReadOptions read;
+  read.required = {Layer::kCoverage, Layer::kNormal};
+  const auto guides = ReadGuides(At("kept/keyed.cycles.exr"), read);
+  ASSERT_TRUE(guides.ok()) << guides.error().message;
+  EXPECT_EQ(guides->camera->name, "Second");
+}
+
+TEST_F(CrosscheckBlender, SimplifyAndPicturesOf16BitsHoldOnBothSides) {
+  MakeScenes();
+  const Json reports = Check({"simplified.blend", "deep.blend", "--size", "160x90", "--samples", "0"}, 0);
+  ASSERT_EQ(reports.size(), 2u);
+  EXPECT_TRUE(reports[1]["unsupported"].empty()) << reports[1]["unsupported"];
+  EXPECT_TRUE(reports[1]["reasons"].empty());
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-"""Makes the scenes of crosscheck_test.cpp: room.blend, scatter.blend, crooked.blend.
+"""Makes the scenes of crosscheck_test.cpp: room, scatter, crooked, keyed, simplified and deep.blend.
 
     blender -b -noaudio --factory-startup -P tests/blender/make_crosscheck.py -- FOLDER
 """
@@ -178,12 +178,65 @@ def crooked():
     bpy.context.view_layer.material_override = material("Clay", "ShaderNodeBsdfDiffuse", (0.5, 0.5, 0.5))
 
 
+def keyed():
+    """Two cameras bound to markers, and animation and a driver of settings that the reference sets itself."""
+    scene = bpy.context.scene
+    grey = material("Grey", "ShaderNodeBsdfDiffuse", (0.5, 0.5, 0.5))
+    mesh("Ball", lambda b: bmesh.ops.create_uvsphere(b, u_segments=48, v_segments=24, radius=1.0), (0, 0, 0.7), grey,
+         True)
+    scene.camera, other = camera("First"), camera("Second", 0.8)
+    for frame, bound in ((1, scene.camera), (10, other)):
+        scene.timeline_markers.new(bound.name, frame=frame).camera = bound
+    lens = other.data.dof
+    lens.use_dof, lens.aperture_fstop, lens.focus_distance = True, 0.1, 2.0
+    lens.keyframe_insert("use_dof", frame=1)
+    scene.render.film_transparent = False
+    scene.render.keyframe_insert("film_transparent", frame=1)
+    scene.driver_add("cycles.filter_width").driver.expression = "3.0"
+
+
+def simplified():
+    """Simplify leaves one of three levels, by animation."""
+    render = bpy.context.scene.render
+    grey = material("Grey", "ShaderNodeBsdfDiffuse", (0.5, 0.5, 0.5))
+    cube = mesh("Cube", box(2.0), (0, 0, 0.7), grey)
+    bends = cube.modifiers.new("Subdivision", "SUBSURF")
+    bends.levels, bends.render_levels = 0, 3
+    render.use_simplify, render.simplify_subdivision, render.simplify_subdivision_render = True, 0, 1
+    render.keyframe_insert("simplify_subdivision_render", frame=1)
+    render.simplify_subdivision_render = 3
+    bpy.context.scene.camera = camera("Camera")
+
+
+def deep():
+    """A PNG of 16 bits a channel is the colour of a plane, and its alpha the plane's."""
+    scene = bpy.context.scene
+    scene.view_settings.view_transform = "Standard"
+    settings = scene.render.image_settings
+    settings.file_format, settings.color_mode, settings.color_depth = "PNG", "RGBA", "16"
+    drawn = bpy.data.images.new("Drawn", 32, 16, float_buffer=True, alpha=True)
+    drawn.pixels.foreach_set([value for y in range(16) for x in range(32)
+                              for value in (x / 32, y / 16, 0.3, 0.0 if x < 4 else 1.0)])
+    drawn.save_render(output("deep.png"))
+    painted = bpy.data.materials.new("Painted")
+    painted.use_nodes = True
+    tree = painted.node_tree
+    texture = tree.nodes.new("ShaderNodeTexImage")
+    texture.image = bpy.data.images.load(output("deep.png"))
+    for name in ("Color", "Alpha"):
+        tree.links.new(texture.outputs[name],
+                       tree.nodes["Principled BSDF"].inputs["Base Color" if name == "Color" else name])
+    bpy.ops.mesh.primitive_plane_add(size=4.0)
+    bpy.context.object.data.materials.append(painted)
+    scene.camera = camera("Camera")
+
+
 def output(name):
     return str(Path(sys.argv[sys.argv.index("--") + 1]) / name)
 
 
 def main():
-    for build in (room, scatter, crooked):
+    for build in (room, scatter, crooked, keyed, simplified, deep):
         bpy.ops.wm.read_factory_settings(use_empty=True)
         build()
         bpy.ops.wm.save_as_mainfile(filepath=output(build.__name__ + ".blend"))

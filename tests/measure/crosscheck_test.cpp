@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "core/io/file/atomic_file.h"
 #include "measure/crosscheck/html.h"
@@ -49,6 +50,7 @@ TEST(Crosscheck, EqualGuidesAgreeInsideTheErodedMasks) {
   // Two pixels less on every side of each object: 15 - 4 and 20 - 4 columns of 20 - 4 rows.
   EXPECT_EQ(report->compared, std::size_t((11 + 16) * 16));
   for (const CrosscheckFigure& figure : report->figures) EXPECT_EQ(figure.value, 0.0) << figure.layer;
+  EXPECT_NE(CrosscheckToJson({*report}).find("\"reasons\": []"), std::string::npos);
 }
 
 TEST(Crosscheck, EveryLimitCanBreak) {
@@ -92,6 +94,9 @@ TEST(Crosscheck, NothingToCompareFailsTheVerdictAndUnequalSizesAreAnError) {
   const auto report = Crosscheck("scene", empty, empty);
   ASSERT_TRUE(report.ok());
   EXPECT_FALSE(report->passed());
+  const auto json = nlohmann::json::parse(CrosscheckToJson({*report}), nullptr, false);
+  ASSERT_TRUE(json.is_array());
+  EXPECT_EQ(json[0]["reasons"][0], "nothing to compare: no object is wide enough, or the pictures do not agree at all");
   GuideSet small(39, 20);
   for (const Layer layer : {Layer::kCoverage, Layer::kNormal, Layer::kDepth, Layer::kObject}) small.Add(layer);
   EXPECT_FALSE(Crosscheck("scene", empty, small).ok());
