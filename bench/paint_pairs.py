@@ -1,18 +1,18 @@
 #!/usr/bin/env python3
 """Pairs of pictures to be judged by eye alone, for choosing a measure of paint (docs/paint-texture.md).
 
-    /usr/bin/python3 bench/paint_pairs.py --choose        # anew: forgets all votes
-    /usr/bin/python3 bench/paint_pairs.py --draw locked   # pictures and sheets without names, into out/paint-pairs/
-    /usr/bin/python3 bench/paint_pairs.py --read FILE     # a reading of the locked pairs: {"121": ["A", "why"], …}
-    /usr/bin/python3 bench/paint_pairs.py                 # agreement of the readings; of figures, on the open pairs
-    /usr/bin/python3 bench/paint_pairs.py --measure       # anew: the figures of all pairs (build/bench/paint_figures)
-    /usr/bin/python3 bench/paint_pairs.py --locked        # of figures, on the locked pairs: has been used
+    /usr/bin/python3 bench/paint_pairs.py                    # agreement of the readings, and of figures, on all sets
+    /usr/bin/python3 bench/paint_pairs.py --choose later     # the pairs of a set anew: forgets its votes
+    /usr/bin/python3 bench/paint_pairs.py --draw later       # pictures, sheets without names, into out/paint-pairs/
+    /usr/bin/python3 bench/paint_pairs.py --measure later    # figures of what is drawn (build/bench/paint_figures)
+    /usr/bin/python3 bench/paint_pairs.py --read later FILE  # a reading: {"121": ["A", "why"], …}
 
-Two sets of pairs of ways to draw a painting on a scene, good ones and deliberately bad ones: 120 by which the measure
-was chosen, and 80 that were locked away until it was. Every third pair holds the style as it is. Which pairs, which
-side is A and what part is shown is decided by hashes. A sheet shows the exemplar beside A and B, at the size at which
-it is used. Whoever reads the sheets must not have seen anything else. One reading is a vote for each pair with a
-reason. Figures are those of what the sheet shows: of a part, if it shows a part.
+Sets of pairs of ways to draw a painting on a scene, good ones and deliberately bad ones: 120 *open* pairs by which the
+measure was chosen, 80 *locked* ones that were kept away until it was, and *later* ones that were drawn and read long
+after. Every third pair holds the style as it is. Which pairs, which side is A and what part is shown is decided by
+hashes. A sheet shows the exemplar beside A and B, at the size at which it is used. Whoever reads the sheets must not
+have seen anything else. One reading is a vote for each pair with a reason. Figures are those of what the sheet shows:
+of a part, if it shows a part. Styles have changed since the first two sets were drawn.
 """
 
 import argparse
@@ -37,10 +37,10 @@ OPEN = [("oil", "suzanne"), ("watercolour", "snail"), ("graphite", "toys"), ("go
 LOCKED = [("chiaroscuro", "toys"), ("sanguine", "suzanne"), ("sumi-e", "snail"), ("pointillism", "stilllife"),
           ("scene-oil", "toys"), ("oil", "stilllife"), ("watercolour", "toys"), ("pastel", "snail"),
           ("plein-air", "suzanne"), ("gouache", "suzanne")]
-PAIRS_OF_EACH = {False: 12, True: 8}  # open, locked
-# Keys that styles had when the open pairs were read, and have no longer.
-KEYS_THEN = {"oil": ["threshold=0.07", "hybrid=0", "variety=15"],
-             "watercolour": ["threshold=0.08", "hybrid=0", "blend_radius=2", "variety=15"]}
+LATER = [("ink", "toys"), ("charcoal", "stilllife"), ("woodcut", "snail"), ("coloured-pencil", "suzanne"),
+         ("graphite", "suzanne"), ("sanguine", "snail"), ("sumi-e", "toys"), ("chiaroscuro", "stilllife"),
+         ("pointillism", "suzanne"), ("watercolour", "stilllife"), ("gouache", "toys"), ("oil", "snail")]
+SETS = {"open": (OPEN, 12), "locked": (LOCKED, 8), "later": (LATER, 8)}  # pairs of each painting and scene
 CROPS = {"snail": [(380, 60), (130, 180), (330, 240)], "stilllife": [(280, 140), (480, 60), (400, 240)],
          "suzanne": [(280, 30), (60, 240), (400, 240)], "toys": [(230, 20), (60, 220), (420, 150)]}
 CROP = 300
@@ -76,17 +76,18 @@ def lot(*parts):
     return int.from_bytes(hashlib.sha256(" ".join(map(str, parts)).encode()).digest()[:6], "big")
 
 
-def choose():
+def choose(pairs, of):
+    samples, count = SETS[of]
+    others = [pair for pair in pairs if pair["set"] != of]
     pairs = []
-    for locked, samples in ((False, OPEN), (True, LOCKED)):
-        for style, scene in samples:
-            chosen = set()
-            while len(chosen) < PAIRS_OF_EACH[locked]:
-                pairs.append(chosen_pair(style, scene, locked, chosen, len(pairs)))
-    save(pairs)
+    for style, scene in samples:
+        chosen = set()
+        while len(chosen) < count:
+            pairs.append(chosen_pair(style, scene, of, chosen, len(others) + len(pairs)))
+    save(sorted(others + pairs, key=lambda pair: list(SETS).index(pair["set"])))
 
 
-def chosen_pair(style, scene, locked, chosen, count):
+def chosen_pair(style, scene, of, chosen, count):
     """One that is not among the `chosen`, which it joins. `count`: of pairs before it."""
     turn = len(chosen)
     names = sorted(WAYS, key=lambda way: lot(style, scene, turn, way, count))
@@ -98,7 +99,7 @@ def chosen_pair(style, scene, locked, chosen, count):
         two = sorted(WAYS, key=lambda way: lot(style, scene, turn, way, salt))[:2]
     chosen.add(frozenset(two))
     crop = CROPS[scene][lot("crop", style, turn) % 3] if turn % 2 else None
-    return {"style": style, "scene": scene, "A": two[0], "B": two[1], "crop": crop, "locked": locked, "votes": []}
+    return {"style": style, "scene": scene, "A": two[0], "B": two[1], "crop": crop, "set": of, "votes": []}
 
 
 def save(pairs):
@@ -186,14 +187,12 @@ def guides(style, scene, height):
 def picture_file(style, scene, way, height):
     """Without paper."""
     name = "%s-%s-%d-%s" % (style, scene, height, way.replace(" ", "_").replace(",", ""))
-    keys = KEYS_THEN.get(style, []) if (style, scene) in OPEN else []
     file = OUT / "pictures" / (name + ".png")
     if not file.exists():
         file.parent.mkdir(parents=True, exist_ok=True)
         marks = [part for part in WAYS[way] if part.isupper()]
         options = ["--set", "transfer.paper="]
-        given = [part.split("=")[0] for part in WAYS[way]]
-        for part in [key for key in keys if key.split("=")[0] not in given] + WAYS[way]:
+        for part in WAYS[way]:
             if "=" in part:
                 options += ["--set", "transfer." + part]
             elif not part.isupper():
@@ -250,11 +249,11 @@ def draw_row(pair):
     return np.concatenate([head, row], 0), panels[0].shape[1] + 8, panels[1].shape[1] + 8
 
 
-def draw(pairs, locked):
+def draw(pairs, of):
     """Two whole pictures or three crops a sheet."""
     (OUT / "sheets").mkdir(parents=True, exist_ok=True)
     for is_crop, rows_a_sheet in ((False, 2), (True, 3)):
-        numbers = [i for i, pair in enumerate(pairs) if bool(pair["crop"]) == is_crop and pair["locked"] == locked]
+        numbers = [i for i, pair in enumerate(pairs) if bool(pair["crop"]) == is_crop and pair["set"] == of]
         for begin in range(0, len(numbers), rows_a_sheet):
             part = numbers[begin:begin + rows_a_sheet]
             rows = [draw_row(pairs[i]) for i in part]
@@ -271,10 +270,10 @@ def draw(pairs, locked):
             print(file, ", ".join(str(i + 1) for i in part), flush=True)
 
 
-def add_reading(pairs, path):
+def add_reading(pairs, of, path):
     votes = json.loads(Path(path).read_text(encoding="utf-8"))
     for number, pair in enumerate(pairs, 1):
-        if not pair["locked"]:
+        if pair["set"] != of:
             continue
         vote = votes.get(str(number))
         if not vote or vote[0] not in ("A", "B", "=") or not vote[1].strip():
@@ -283,13 +282,15 @@ def add_reading(pairs, path):
     save(pairs)
 
 
-def measure(pairs):
-    """The figures of what each sheet shows, whole pictures or parts."""
+def measure(pairs, of):
+    """The figures of what the sheets of a set show, whole pictures or parts."""
     wanted = {}
     for pair in pairs:
+        if pair["set"] != of:
+            continue
         for side in "AB":
             wanted.setdefault((pair["style"], pair["scene"], tuple(pair["crop"] or ())), set()).add(pair[side])
-    figures = {}
+    figures = json.loads(FIGURES.read_text(encoding="utf-8"))
     for (style, scene, crop), ways in sorted(wanted.items()):
         height = 540 if crop else 360
         files = {str(picture_file(style, scene, way, height)): way for way in sorted(ways)}
@@ -310,13 +311,12 @@ def key_of(style, scene, crop):
     return "%s %s %s " % (style, scene, "%d,%d" % tuple(crop) if crop else "whole")
 
 
-def agreement(pairs, locked):
+def agreement(pairs, of):
     """By figure: in how many pairs the smaller one is on the side that a majority chose, of those on which all readings
     agree, and of all that a majority decided."""
     figures = json.loads(FIGURES.read_text(encoding="utf-8"))
-    part = [pair for pair in pairs if pair["locked"] == locked and majority(pair)]
-    print("%s: %d pairs that a majority decided, %d of them unanimously"
-          % ("locked" if locked else "open", len(part), sum(map(is_agreed, part))))
+    part = [pair for pair in pairs if pair["set"] == of and majority(pair)]
+    print("%s: %d pairs that a majority decided, %d of them unanimously" % (of, len(part), sum(map(is_agreed, part))))
     for name in ("energy", "both", "missing", "paint", "texture"):
         def agrees(pair):
             a, b = (figures[key_of(pair["style"], pair["scene"], pair["crop"]) + pair[side]][name] for side in "AB")
@@ -339,40 +339,39 @@ def is_agreed(pair):
     return {vote[0] for vote in pair["votes"]} in ({"A"}, {"B"})
 
 
-def report(pairs):
-    for locked in (False, True):
-        part = [pair for pair in pairs if pair["locked"] == locked]
-        readings = len(part[0]["votes"])
-        print("%s: %d pairs, %d readings; all readings agree on %d, a majority chose in %d"
-              % ("locked" if locked else "open", len(part), readings, sum(map(is_agreed, part)),
-                 sum(majority(pair) is not None for pair in part)))
-        for i in range(readings):
-            for j in range(i):
-                both = [p for p in part if "=" not in (p["votes"][i][0], p["votes"][j][0])]
-                same = sum(p["votes"][i][0] == p["votes"][j][0] for p in both)
-                print("readings %d and %d: the same side in %d of %d" % (j + 1, i + 1, same, len(both)))
+def report(pairs, of):
+    part = [pair for pair in pairs if pair["set"] == of]
+    readings = len(part[0]["votes"])
+    print("%s: %d pairs, %d readings; all readings agree on %d, a majority chose in %d"
+          % (of, len(part), readings, sum(map(is_agreed, part)), sum(majority(pair) is not None for pair in part)))
+    for i in range(readings):
+        for j in range(i):
+            both = [p for p in part if "=" not in (p["votes"][i][0], p["votes"][j][0])]
+            same = sum(p["votes"][i][0] == p["votes"][j][0] for p in both)
+            print("readings %d and %d: the same side in %d of %d" % (j + 1, i + 1, same, len(both)))
+    if readings:
+        agreement(pairs, of)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--choose", action="store_true", help="pick the pairs anew and forget all votes")
-    parser.add_argument("--draw", choices=("open", "locked"), help="draw pictures and sheets of these pairs")
-    parser.add_argument("--measure", action="store_true", help="measure all pictures anew")
-    parser.add_argument("--locked", action="store_true", help="judge the figures by the locked pairs")
-    parser.add_argument("--read", metavar="FILE", help="add one reading of the locked pairs")
+    parser.add_argument("--choose", choices=SETS, help="pick the pairs of a set anew and forget their votes")
+    parser.add_argument("--draw", choices=SETS, help="draw pictures and sheets of these pairs")
+    parser.add_argument("--measure", choices=SETS, help="measure their pictures")
+    parser.add_argument("--read", nargs=2, metavar=("SET", "FILE"), help="add one reading of a set")
     options = parser.parse_args()
-    if options.choose:
-        choose()
     pairs = json.loads(PAIRS.read_text(encoding="utf-8"))
-    if options.draw:
-        draw(pairs, options.draw == "locked")
-    elif options.read:
-        add_reading(pairs, options.read)
+    if options.choose:
+        choose(pairs, options.choose)
+    elif options.draw:
+        draw(pairs, options.draw)
     elif options.measure:
-        measure(pairs)
-    elif not options.choose:
-        report(pairs)
-        agreement(pairs, options.locked)
+        measure(pairs, options.measure)
+    elif options.read:
+        add_reading(pairs, *options.read)
+    else:
+        for of in SETS:
+            report(pairs, of)
 
 
 if __name__ == "__main__":
