@@ -1,4 +1,4 @@
-#include "guidegen/load/obj.h"
+#include "guidegen/load/obj/obj.h"
 
 #include <tiny_obj_loader.h>
 
@@ -20,8 +20,8 @@
 #include "guidegen/load/doubled_faces.h"
 #include "guidegen/load/loader_util.h"
 #include "guidegen/load/mesh_normals.h"
-#include "guidegen/load/mtl_materials.h"
-#include "guidegen/load/obj_parse.h"
+#include "guidegen/load/obj/mtl_materials.h"
+#include "guidegen/load/obj/obj_parse.h"
 #include "guidegen/load/tangents.h"
 
 namespace scumble {
