@@ -10,7 +10,7 @@
 #include "core/image/check.h"
 #include "guidegen/load/gltf/gltf_scene.h"
 #include "guidegen/load/loader_util.h"
-#include "guidegen/load/obj.h"
+#include "guidegen/load/obj/obj.h"
 #include "guidegen/load/ply.h"
 #include "guidegen/scene_textures.h"
 

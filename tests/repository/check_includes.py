@@ -20,7 +20,7 @@ LIBRARIES = {
     "filter": ("core/filter", {"public", "image"}, []),
     "style": ("core/style", {"public", "image", "io"}, ["kit", "scan"]),
     "guidegen": ("guidegen", {"public", "image", "io", "filter"},
-                 ["scene", "load", "load/gltf", "surface", "rays", "light", "cast"]),
+                 ["scene", "load", "load/gltf", "load/obj", "surface", "rays", "light", "cast"]),
     "transfer": ("transfer", {"public", "image", "filter"},
                  ["field", "nearest", "exemplar", "seeds", "match", "vote", "vote/edge", "vote/wide", "tint", "frame",
                   "outline", "shadow"]),

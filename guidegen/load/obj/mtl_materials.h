@@ -1,4 +1,4 @@
-// Materials of Wavefront's MTL, as guidegen/load/obj.h describes them.
+// Materials of Wavefront's MTL, as guidegen/load/obj/obj.h describes them.
 #pragma once
 
 #include <tiny_obj_loader.h>

@@ -1,4 +1,4 @@
-#include "guidegen/load/obj_parse.h"
+#include "guidegen/load/obj/obj_parse.h"
 
 #include <algorithm>
 #include <array>

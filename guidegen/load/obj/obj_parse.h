@@ -30,6 +30,11 @@ struct ObjContents {
   std::vector<std::uint32_t> corner_counts;
   std::vector<ObjSection> sections;  // in order
   bool has_smoothing = false;        // there are lines `s`; faces before the first one are in no smoothing group
+
+  // Whether each vertex has a colour.
+  bool HasColors() const {
+    return !attributes.colors.empty() && attributes.colors.size() == attributes.vertices.size();
+  }
 };
 
 // Fills `contents` from a file. A missing library becomes a warning; tinyobjloader's refusals and exceptions become

@@ -1,15 +1,13 @@
-#include "guidegen/load/obj.h"
+#include "guidegen/load/obj/obj.h"
 
 #include <tiny_obj_loader.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <map>
 #include <memory>
 #include <numeric>
-#include <span>
 #include <unordered_map>
 #include <utility>
 
@@ -17,76 +15,20 @@
 #include "core/image/hash.h"
 #include "core/io/picture_file.h"
 #include "guidegen/load/auto_smooth.h"
-#include "guidegen/load/doubled_faces.h"
 #include "guidegen/load/loader_util.h"
 #include "guidegen/load/mesh_normals.h"
-#include "guidegen/load/mtl_materials.h"
-#include "guidegen/load/obj_parse.h"
+#include "guidegen/load/obj/mtl_materials.h"
+#include "guidegen/load/obj/obj_normals.h"
+#include "guidegen/load/obj/obj_parse.h"
+#include "guidegen/load/obj/obj_places.h"
 #include "guidegen/load/tangents.h"
 
 namespace scumble {
 namespace {
 
-// If an object's middle lies within this distance of 0 or of a neighbour's origin, that origin is good enough: floats
-// step by at most 1/256 there. So scenes in millimetres, 60 m of them, keep the file's one origin.
-constexpr double kOneOrigin = 65536.0;
-
-bool IsFar(const glm::dvec3& a, const glm::dvec3& b) {
-  const glm::dvec3 away = glm::abs(a - b);
-  return std::max({away.x, away.y, away.z}) > kOneOrigin;
-}
-
-// Origins that are far from each other, found by cells of that size.
-struct NearOrigins {
-  std::vector<glm::dvec3> origins;
-  std::map<std::array<double, 3>, std::vector<std::size_t>> cells;
-
-  // The index of the first origin that is near; otherwise the place becomes an origin.
-  std::size_t Find(const glm::dvec3& place) {
-    const glm::dvec3 cell = glm::floor(place / kOneOrigin);
-    std::size_t first = origins.size();
-    for (int i = 0; i < 27; ++i) {
-      const auto found = cells.find({cell.x + i % 3 - 1, cell.y + i / 3 % 3 - 1, cell.z + i / 9 - 1});
-      if (found == cells.end()) continue;
-      for (const std::size_t origin : found->second) {
-        if (!IsFar(place, origins[origin])) first = std::min(first, origin);
-      }
-    }
-    if (first == origins.size()) {
-      origins.push_back(place);
-      cells[{cell.x, cell.y, cell.z}].push_back(first);
-    }
-    return first;
-  }
-};
-
-// `normal` is an index into the file's normals, or -1 - an index into those made here.
-struct Corner {
-  int position = 0;
-  int uv = -1;
-  std::int64_t normal = 0;
-  bool operator==(const Corner&) const = default;
-};
+// Corners that are equal share a vertex of their mesh.
 struct CornerHash {
-  std::size_t operator()(const Corner& c) const { return Hash(c.position, c.uv, c.normal); }
-};
-
-// Corners of smoothing groups with equal keys share a normal.
-struct SmoothKey {
-  std::uint32_t place = 0;  // the same for positions that are equal
-  unsigned group = 0;
-  bool operator==(const SmoothKey&) const = default;
-};
-struct SmoothKeyHash {
-  std::size_t operator()(const SmoothKey& k) const { return Hash(k.place, k.group); }
-};
-
-struct ObjTriangle {
-  Corner corners[3];
-  std::size_t face = 0;  // counted through the whole file
-  unsigned smoothing_group = 0;
-  int shape = 0;
-  int material = -1;
+  std::size_t operator()(const ObjCorner& c) const { return Hash(c.position, c.uv, c.normal); }
 };
 
 class ObjLoader {
@@ -99,11 +41,11 @@ class ObjLoader {
     SCUMBLE_RETURN_IF_ERROR(CheckAttributes());
     DropNormalsOfNone();
     for (std::size_t s = 0; s < shapes_.size(); ++s) SCUMBLE_RETURN_IF_ERROR(CheckShape(s));
-    ChooseOrigins();
-    PlacePositions();
+    places_ = PlaceVertices(contents_);
+    normals_.given = attributes_.normals;
     for (std::size_t s = 0; s < shapes_.size(); ++s) AddShape(s);
     SCUMBLE_RETURN_IF_ERROR(CheckHasTriangles());
-    if (without_normals_ > 0) ComputeNormals();
+    if (without_normals_ > 0) MakeNormals();
     LoadMaterials();
     BuildMeshes();
     WarnOfUsedMaterials();
@@ -135,84 +77,6 @@ class ObjLoader {
       if (!is_named) continue;
       warnings_.Add("faces name normals, but the file has none: they are taken for faces without",
                     "'" + Excerpt(shape.name, 80) + "'");
-    }
-  }
-
-  glm::dvec3 PlaceOf(std::size_t vertex) const {
-    const double* v = attributes_.vertices.data() + 3 * vertex;
-    return {v[0], v[1], v[2]};
-  }
-
-  // Text holds any number of digits: surveyors' files lie millions of metres from 0. If one origin is enough for the
-  // file, it has only one, because objects that touch must round their corners alike. Otherwise objects at 0 may stand
-  // beside a surveyor's, and each far shape has its own origin.
-  void ChooseOrigins() {
-    PlaceBox whole;
-    for (const tinyobj::shape_t& shape : shapes_) {
-      PlaceBox box;
-      for (const tinyobj::index_t& index : shape.mesh.indices) box.Add(PlaceOf(std::size_t(index.vertex_index)));
-      origins_.push_back(OriginOf(box));
-      if (shape.mesh.indices.empty()) continue;
-      whole.Add(box.low);
-      whole.Add(box.high);
-    }
-    const glm::dvec3 common = OriginOf(whole);
-    frames_.push_back({0, common});
-    // Ordered by place, so that their order in the file does not matter.
-    std::map<std::array<double, 3>, std::vector<std::size_t>> far_shapes;
-    for (std::size_t s = 0; s < shapes_.size(); ++s) {
-      const glm::dvec3 own = origins_[s];
-      if (common == glm::dvec3(0.0) && IsFar(own, common)) {
-        far_shapes[{own.x, own.y, own.z}].push_back(s);
-      } else {
-        origins_[s] = common;
-      }
-    }
-    NearOrigins near;
-    std::vector<std::vector<std::size_t>> of_origin;
-    for (const auto& [place, shapes] : far_shapes) {
-      const std::size_t origin = near.Find(glm::dvec3(place[0], place[1], place[2]));
-      of_origin.resize(near.origins.size());
-      of_origin[origin].insert(of_origin[origin].end(), shapes.begin(), shapes.end());
-    }
-    for (std::size_t i = 0; i < of_origin.size(); ++i) {
-      frames_.push_back({attributes_.vertices.size() / 3, near.origins[i]});
-      for (const std::size_t s : of_origin[i]) {
-        origins_[s] = near.origins[i];
-        CopyVertices(shapes_[s].mesh);
-      }
-    }
-  }
-
-  // Gives a shape its own vertices, after all others.
-  void CopyVertices(tinyobj::mesh_t& mesh) {
-    const bool has_colors = HasColors();
-    const auto copy = [](std::vector<double>& values, std::size_t vertex) {
-      for (std::size_t axis = 0; axis < 3; ++axis) values.push_back(double(values[3 * vertex + axis]));
-    };
-    std::vector<int> used;
-    for (const tinyobj::index_t& index : mesh.indices) used.push_back(index.vertex_index);
-    std::sort(used.begin(), used.end());
-    used.erase(std::unique(used.begin(), used.end()), used.end());
-    const std::size_t first = attributes_.vertices.size() / 3;
-    for (const int vertex : used) {
-      copy(attributes_.vertices, std::size_t(vertex));
-      if (has_colors) copy(attributes_.colors, std::size_t(vertex));
-    }
-    for (tinyobj::index_t& index : mesh.indices) {
-      const auto at = std::lower_bound(used.begin(), used.end(), index.vertex_index) - used.begin();
-      index.vertex_index = static_cast<int>(first + std::size_t(at));
-    }
-  }
-
-  std::size_t EndOf(std::size_t frame) const {
-    return frame + 1 < frames_.size() ? frames_[frame + 1].first : attributes_.vertices.size() / 3;
-  }
-
-  void PlacePositions() {
-    positions_.reserve(attributes_.vertices.size() / 3);
-    for (std::size_t f = 0; f < frames_.size(); ++f) {
-      for (std::size_t v = frames_[f].first; v < EndOf(f); ++v) positions_.emplace_back(PlaceOf(v) - frames_[f].origin);
     }
   }
 
@@ -280,7 +144,7 @@ class ObjLoader {
     const tinyobj::mesh_t& mesh = shapes_[shape_index].mesh;
     std::vector<glm::vec3> polygon;
     for (std::size_t i = 0; i < count; ++i) {
-      polygon.push_back(positions_[std::size_t(mesh.indices[first + i].vertex_index)]);
+      polygon.push_back(places_.positions[std::size_t(mesh.indices[first + i].vertex_index)]);
     }
     std::vector<glm::uvec3> cuts;
     TriangulatePolygon(polygon, cuts);
@@ -290,7 +154,7 @@ class ObjLoader {
       for (int i = 0; i < 3; ++i) {
         const tinyobj::index_t& index = mesh.indices[first + cut[i]];
         triangle.corners[i] = {index.vertex_index, index.texcoord_index, index.normal_index};
-        if (index.normal_index >= 0 && !HasDirection(NormalAt(triangle.corners[i]))) {
+        if (index.normal_index >= 0 && !HasDirection(normals_.At(triangle.corners[i]))) {
           warnings_.Add("normals without a direction were computed anew",
                         "'" + Excerpt(shapes_[shape_index].name, 80) + "'");
           triangle.corners[i].normal = -1;
@@ -308,111 +172,15 @@ class ObjLoader {
   }
 
   Status CheckHasTriangles() const {
-    if (!triangles_.empty() || positions_.empty()) return Ok();
+    if (!triangles_.empty() || places_.positions.empty()) return Ok();
     const bool has_lines = std::any_of(shapes_.begin(), shapes_.end(),
                                        [](const tinyobj::shape_t& shape) { return !shape.lines.indices.empty(); });
-    return NoTrianglesError(file_, positions_.size(), has_lines ? ", lines" : "");
+    return NoTrianglesError(file_, places_.positions.size(), has_lines ? ", lines" : "");
   }
 
-  // Welds each frame separately: equal positions are one place only if they share an origin.
-  std::vector<std::uint32_t> WeldFrames() const {
-    std::vector<std::uint32_t> weld = WeldByPosition(std::span(positions_).first(EndOf(0)));
-    for (std::size_t f = 1; f < frames_.size(); ++f) {
-      const std::size_t first = frames_[f].first;
-      for (const std::uint32_t id : WeldByPosition(std::span(positions_).subspan(first, EndOf(f) - first))) {
-        weld.push_back(static_cast<std::uint32_t>(first) + id);
-      }
-    }
-    return weld;
-  }
-
-  // Normals that the file lacks. They are smooth over all shapes with one origin, so that no seam shows between shapes
-  // or materials.
-  void ComputeNormals() {
+  void MakeNormals() {
     const auto rule = contents_.has_smoothing ? MissingNormals::Rule::kGroups : MissingNormals::Rule::kAngle;
-    const std::optional<double> degrees = missing_.Take(rule, without_normals_);
-    const std::vector<std::uint32_t> weld = WeldFrames();
-    std::vector<glm::uvec3> triangles, places;
-    std::vector<std::uint32_t> faces;
-    for (const ObjTriangle& triangle : triangles_) {
-      const Corner* const c = triangle.corners;
-      triangles.emplace_back(c[0].position, c[1].position, c[2].position);
-      places.emplace_back(weld[triangles.back().x], weld[triangles.back().y], weld[triangles.back().z]);
-      faces.push_back(static_cast<std::uint32_t>(triangle.face));
-    }
-    const std::vector<DoubledFace> doubled = FindDoubledFaces(positions_, places, faces);
-    const auto is_kept = [&](std::size_t t) { return doubled.empty() || doubled[faces[t]].under == faces[t]; };
-    std::vector<std::size_t> kept;
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-      if (!is_kept(t)) continue;
-      triangles[kept.size()] = triangles[t], faces[kept.size()] = faces[t];
-      kept.push_back(t);
-    }
-    triangles.resize(kept.size()), faces.resize(kept.size());
-    const SmoothingInput input{positions_, triangles, weld, faces};
-    // Where there are groups, these are the normals of faces outside of all groups.
-    CornerNormals normals = AutoSmoothNormals(input, degrees.value_or(0.0));
-    if (!degrees) SmoothInsideGroups(kept, weld, normals);
-    for (std::size_t k = 0; k < kept.size(); ++k) {
-      for (int i = 0; i < 3; ++i) {
-        Corner& corner = triangles_[kept[k]].corners[i];
-        if (corner.normal < 0) corner.normal = -1 - std::int64_t(normals.of_corners[k][i]);
-      }
-    }
-    made_normals_ = std::move(normals.normals);
-    if (!doubled.empty()) TakeNormalsFromUnder(doubled, weld);
-  }
-
-  // Faces that lie on others have the normals of those, turned over as they are.
-  void TakeNormalsFromUnder(std::span<const DoubledFace> doubled, std::span<const std::uint32_t> weld) {
-    std::vector<bool> is_under(doubled.size(), false);
-    for (std::size_t f = 0; f < doubled.size(); ++f) {
-      if (doubled[f].under != f) is_under[doubled[f].under] = true;
-    }
-    std::map<std::pair<std::size_t, std::uint32_t>, Corner> corners;  // by face and place
-    std::map<std::int64_t, std::int64_t> turned;
-    for (ObjTriangle& triangle : triangles_) {
-      const DoubledFace& face = doubled[triangle.face];
-      for (Corner& corner : triangle.corners) {
-        const std::uint32_t place = weld[std::size_t(corner.position)];
-        if (is_under[triangle.face]) corners.try_emplace({triangle.face, place}, corner);
-        if (face.under == triangle.face || corner.normal >= 0) continue;
-        const Corner& under = corners.at({face.under, place});
-        corner.normal = under.normal;
-        if (!face.is_turned) continue;
-        const auto [found, is_new] = turned.try_emplace(under.normal, -1 - std::int64_t(made_normals_.size()));
-        if (is_new) made_normals_.push_back(-NormalAt(under));
-        corner.normal = found->second;
-      }
-    }
-  }
-
-  // All faces of a group at one place share a normal there. `normals` are those of the triangles in `kept`.
-  void SmoothInsideGroups(std::span<const std::size_t> kept, std::span<const std::uint32_t> weld,
-                          CornerNormals& normals) const {
-    std::unordered_map<SmoothKey, std::uint32_t, SmoothKeyHash> ids;
-    std::vector<glm::vec3> positions;
-    std::vector<glm::uvec3> triangles;
-    const auto first = static_cast<std::uint32_t>(normals.normals.size());
-    for (std::size_t k = 0; k < kept.size(); ++k) {
-      const ObjTriangle& triangle = triangles_[kept[k]];
-      const unsigned group = triangle.smoothing_group;
-      if (group == 0) continue;
-      glm::uvec3 indices(0);
-      for (int i = 0; i < 3; ++i) {
-        const std::uint32_t place = weld[std::size_t(triangle.corners[i].position)];
-        const auto [it, is_new] =
-            ids.try_emplace(SmoothKey{place, group}, static_cast<std::uint32_t>(positions.size()));
-        if (is_new) positions.push_back(positions_[place]);
-        indices[i] = it->second;
-      }
-      triangles.push_back(indices);
-      normals.of_corners[k] = indices + first;
-    }
-    std::vector<std::uint32_t> own(positions.size());
-    std::iota(own.begin(), own.end(), 0u);
-    const std::vector<glm::vec3> smooth = SmoothNormals(positions, triangles, own);
-    normals.normals.insert(normals.normals.end(), smooth.begin(), smooth.end());
+    MakeObjNormals(places_, missing_.Take(rule, without_normals_), triangles_, normals_);
   }
 
   void LoadMaterials() {
@@ -467,15 +235,11 @@ class ObjLoader {
       Material material;
       material.name = material_names_.Take("default");
       material.bsdf = Bsdf::kDiffuse;
-      if (!HasColors()) material.base_color = kPlainColor;
+      if (!contents_.HasColors()) material.base_color = kPlainColor;
       plain_material_ = static_cast<int>(scene_.materials.size());
       scene_.materials.push_back(std::move(material));
     }
     return plain_material_;
-  }
-
-  bool HasColors() const {
-    return !attributes_.colors.empty() && attributes_.colors.size() == attributes_.vertices.size();
   }
 
   // The objects' names, for each shape. A group of an object that is named again goes on.
@@ -517,21 +281,21 @@ class ObjLoader {
   void AddMesh(const std::string& object, int material, const std::vector<std::size_t>& members) {
     Mesh mesh;
     mesh.material = material >= 0 && std::size_t(material) < mtl_->materials.size() ? material : PlainMaterial();
-    const bool has_colors = HasColors();
+    const bool has_colors = contents_.HasColors();
     bool has_uvs = false;
     for (std::size_t t : members) {
-      for (const Corner& corner : triangles_[t].corners) has_uvs |= corner.uv >= 0;
+      for (const ObjCorner& corner : triangles_[t].corners) has_uvs |= corner.uv >= 0;
     }
-    std::unordered_map<Corner, std::uint32_t, CornerHash> vertices;
+    std::unordered_map<ObjCorner, std::uint32_t, CornerHash> vertices;
     for (std::size_t t : members) {
       glm::uvec3 indices(0);
       for (int i = 0; i < 3; ++i) {
-        const Corner& corner = triangles_[t].corners[i];
+        const ObjCorner& corner = triangles_[t].corners[i];
         const auto [it, is_new] = vertices.try_emplace(corner, static_cast<std::uint32_t>(mesh.positions.size()));
         indices[i] = it->second;
         if (!is_new) continue;
-        mesh.positions.push_back(positions_[std::size_t(corner.position)]);
-        mesh.normals.push_back(NormalAt(corner));
+        mesh.positions.push_back(places_.positions[std::size_t(corner.position)]);
+        mesh.normals.push_back(normals_.At(corner));
         if (has_uvs) mesh.uvs[0].push_back(UvAt(corner));
         if (has_colors) mesh.colors.push_back(ColorAt(corner));
       }
@@ -541,36 +305,23 @@ class ObjLoader {
     const TextureUse& normal_map = scene_.materials[std::size_t(mesh.material)].normal_texture;
     if (normal_map.texture >= 0 && has_uvs) FillTangents(mesh, 0, normal_map.uv_transform);
     scene_.meshes.push_back(std::move(mesh));
-    const glm::dvec3& origin = origins_[std::size_t(triangles_[members[0]].shape)];
+    const glm::dvec3& origin = places_.origins[std::size_t(triangles_[members[0]].shape)];
     scene_.instances.push_back(
         {object, static_cast<int>(scene_.meshes.size()) - 1, glm::translate(glm::dmat4(1.0), origin)});
   }
 
-  glm::vec3 NormalAt(const Corner& corner) const {
-    if (corner.normal < 0) return made_normals_[std::size_t(-1 - corner.normal)];
-    const double* n = attributes_.normals.data() + 3 * std::size_t(corner.normal);
-    return {n[0], n[1], n[2]};
-  }
-
-  glm::vec2 UvAt(const Corner& corner) const {
+  glm::vec2 UvAt(const ObjCorner& corner) const {
     if (corner.uv < 0) return glm::vec2(0.0f);
     const double* uv = attributes_.texcoords.data() + 2 * std::size_t(corner.uv);
     const glm::vec2 turned(static_cast<float>(uv[0]), 1.0f - static_cast<float>(uv[1]));
     return IsFinite(turned) ? turned : glm::vec2(0.0f);
   }
 
-  glm::vec4 ColorAt(const Corner& corner) const {
+  glm::vec4 ColorAt(const ObjCorner& corner) const {
     const double* c = attributes_.colors.data() + 3 * std::size_t(corner.position);
     const glm::vec4 color(SrgbToLinear(float(c[0])), SrgbToLinear(float(c[1])), SrgbToLinear(float(c[2])), 1.0f);
     return IsFinite(color) ? glm::max(color, glm::vec4(0.0f)) : glm::vec4(1.0f);
   }
-
-  // The file's vertices, or the own vertices of far shapes: from the first one to the next frame's, relative to one
-  // origin.
-  struct Frame {
-    std::size_t first = 0;
-    glm::dvec3 origin{0.0};
-  };
 
   const std::filesystem::path& path_;
   const std::string file_;
@@ -582,16 +333,14 @@ class ObjLoader {
   WarningCounter warnings_;
   UniqueNames material_names_;
   int plain_material_ = -1;
-  std::vector<glm::dvec3> origins_;  // of the shapes
-  std::vector<Frame> frames_;
-  std::vector<glm::vec3> positions_;  // of all vertices, each relative to its frame's origin
-  std::shared_ptr<MtlLibrary> mtl_;   // once it is loaded
+  ObjPlaces places_;
+  std::shared_ptr<MtlLibrary> mtl_;                               // once it is loaded
   std::vector<std::shared_ptr<std::vector<std::size_t>>> users_;  // of each texture: materials
-  std::vector<ObjTriangle> triangles_;
+  std::vector<ObjTriangle> triangles_;                            // by shape, in the order of the faces
+  ObjNormals normals_;
   MissingNormals missing_;
   const FileListener& on_file_;
-  std::size_t without_normals_ = 0;  // triangles with a corner without a normal
-  std::vector<glm::vec3> made_normals_;
+  std::size_t without_normals_ = 0;                        // triangles with a corner without a normal
   std::vector<std::vector<std::uint32_t>> corner_counts_;  // of the faces of each shape
   std::size_t counted_faces_ = 0;
   std::size_t faces_ = 0;

@@ -1,4 +1,4 @@
-#include "guidegen/load/mtl_materials.h"
+#include "guidegen/load/obj/mtl_materials.h"
 
 #include <algorithm>
 #include <cmath>
