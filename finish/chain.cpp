@@ -149,7 +149,7 @@ std::optional<PointEffect> PointEffectOf(const FinishStep& step, const FinishFra
     std::optional<PointEffect> operator()(const DepthPass& one) {
       if (one.blur > 0.0) {
         const Picture before = step.share.empty() ? Picture() : picture;
-        internal::BlurByDepth(one, step.pass.strength, step.only, frame, picture);
+        internal::BlurByDepth(step, frame, picture);
         if (!before.empty()) MixByShare(before, step.share, picture);
       }
       return internal::MakeDepth(one, step.pass.at, frame);

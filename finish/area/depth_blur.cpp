@@ -6,9 +6,12 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <span>
+#include <variant>
 #include <vector>
 
 #include "core/filter/region.h"
+#include "core/image/fragments.h"
 #include "finish/area/area_effects.h"
 #include "finish/area/gaussian_rows.h"
 #include "finish/area/oklab_blocks.h"
@@ -176,8 +179,17 @@ HWY_EXPORT(GatherHere);
 constexpr double kFinest = 1.0;    // sigma of the finest level, at most, pixels
 constexpr double kSmallest = 1.0;  // sigma of a level in its own pixels, at least
 
-BlurSource SourceOf(const DepthPass& pass, double most, const FinishFrame& frame, const Picture& picture) {
-  const DepthScale scale(pass, frame.measures);
+// A pixel that a stroke of a painted edge fills for the most part is blurred as the stroke's surface.
+void TakeSigmaOfOwners(std::span<const EdgeStroke> strokes, FloatPlane& sigma) {
+  std::vector<float> of_strokes;
+  for (const EdgeStroke& stroke : strokes) of_strokes.push_back(sigma[stroke.owner]);
+  for (std::size_t i = 0; i < strokes.size(); ++i) {
+    if (2 * strokes[i].own[3] >= strokes[i].mixed[3]) sigma[strokes[i].pixel] = of_strokes[i];
+  }
+}
+
+BlurSource SourceOf(const FinishStep& step, double most, const FinishFrame& frame, const Picture& picture) {
+  const DepthScale scale(std::get<DepthPass>(step.pass.effect), frame.measures);
   const auto depth = frame.guides->Plane(Layer::kDepth);
   BlurSource source;
   source.width = picture.width, source.height = picture.height;
@@ -200,6 +212,8 @@ BlurSource SourceOf(const DepthPass& pass, double most, const FinishFrame& frame
       sigmas[i] *= static_cast<float>(scale.IsBeforeFocus(depth[p]) ? -most : most);
     }
   });
+  // On a sheet what lies beside strokes is blurred as the background: as their surface they would be cut out of that.
+  if (step.pass.at != FinishPass::Stage::kSheet) TakeSigmaOfOwners(frame.strokes, source.sigma);
   return source;
 }
 
@@ -342,10 +356,10 @@ BlurSide SideOf(const BlurSource& source, float side, double most) {
 
 }  // namespace
 
-void BlurByDepth(const DepthPass& pass, double strength, std::span<const std::uint8_t> only, const FinishFrame& frame,
-                 Picture& picture) {
-  const double most = pass.blur * frame.scale;
-  const BlurSource source = SourceOf(pass, most, frame, picture);
+void BlurByDepth(const FinishStep& step, const FinishFrame& frame, Picture& picture) {
+  const auto strength = static_cast<float>(step.pass.strength);
+  const double most = std::get<DepthPass>(step.pass.effect).blur * frame.scale;
+  const BlurSource source = SourceOf(step, most, frame, picture);
   const BlurSide sides[2] = {SideOf(source, 1.0f, most), SideOf(source, -1.0f, most)};
   tbb::parallel_for(tbb::blocked_range<int>(0, picture.height, 8), [&](const auto& rows) {
     for (int y = rows.begin(); y != rows.end(); ++y) {
@@ -361,7 +375,7 @@ void BlurByDepth(const DepthPass& pass, double strength, std::span<const std::ui
           if (!side.levels.empty())
             HWY_DYNAMIC_DISPATCH(GatherHere)(side, source.sigma.data() + first, x, y, count, made);
         }
-        PutBlock(given, static_cast<float>(strength), only.empty() ? nullptr : only.data() + first, count, made,
+        PutBlock(given, strength, step.only.empty() ? nullptr : step.only.data() + first, count, made,
                  picture.At(x, y));
       }
     }
