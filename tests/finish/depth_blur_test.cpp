@@ -135,5 +135,26 @@ TEST_F(WithStrokes, InFocusTheyKeepTheirBytes) {
   for (const int x : {30, 31}) EXPECT_EQ(made.At(x, 20)[0], 5000);
 }
 
+// A blurred object at a slant before what is blurred more: each pixel has both, as far as they cover it.
+TEST(DepthBlur, SilhouettesAreSmooth) {
+  const auto left_of = [](glm::vec2 at) { return at.x < 20.0f + 0.1f * at.y; };
+  const GuideSet guides = GuidesOf(60, 60, [&](glm::vec2 at) {
+    return left_of(at) ? SeenPoint{true, {0, 0, 1}, 1.6f, 1.0f} : SeenPoint{};
+  });
+  Picture picture = PlainPicture(60, 60, 50000, 50000, 50000);
+  for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
+    const float share = guides.Plane(Layer::kCoverage)[i];
+    std::fill_n(&picture.rgba[4 * i], 3, static_cast<std::uint16_t>(10000.0f + 40000.0f * share));
+  }
+  const Picture made = Finished(BlurStep(6.0), &guides, picture);
+  // Along a column the border's lightness falls in steps of a tenth, not from the one side to the other at once.
+  for (const int x : {22, 23, 24}) {
+    double largest = 0.0;
+    for (int y = 10; y < 58; ++y)
+      largest = std::max(largest, std::fabs(LightnessOnRow(made, x, y + 1) - LightnessOnRow(made, x, y)));
+    EXPECT_LT(largest, 0.08) << x;
+  }
+}
+
 }  // namespace
 }  // namespace scumble
