@@ -31,8 +31,8 @@ namespace {
 
 using internal::HardLight, internal::IsOfGuides, internal::OklabBlock, internal::PointEffect, internal::PointStep;
 
-// Background has no light and no colour of its own: what looks at them leaves it as it is, a renderer's sky too. It is
-// infinitely far.
+// Background has no light and no colour of its own: what looks at them leaves it as it is, a renderer's sky too. What
+// depth does to it is another thing.
 std::span<const float> CoverageFor(const FinishPass& pass, const FinishFrame& frame) {
   const auto* const tones = std::get_if<TonesPass>(&pass.effect);
   const bool looks = (tones && tones->tone == TonesPass::Tone::kLight) ||
@@ -149,10 +149,10 @@ std::optional<PointEffect> PointEffectOf(const FinishStep& step, const FinishFra
     std::optional<PointEffect> operator()(const DepthPass& one) {
       if (one.blur > 0.0) {
         const Picture before = step.share.empty() ? Picture() : picture;
-        internal::BlurByDepth(one, step.pass.strength, step.only, frame, picture);
+        internal::BlurByDepth(step, frame, picture);
         if (!before.empty()) MixByShare(before, step.share, picture);
       }
-      return internal::MakeDepth(one, frame);
+      return internal::MakeDepth(one, step.pass.at, frame);
     }
     std::optional<PointEffect> operator()(const PalettePass& one) {
       return internal::MakePalette(one, SourceOf(one, step, picture));
@@ -217,7 +217,7 @@ Status Apply(std::span<const FinishStep* const> steps, FinishFrame frame, const 
       if (!effect) break;
       points.push_back({*std::move(effect), steps[i], CoverageFor(steps[i]->pass, frame), {}, std::move(lights)});
       if (const auto* depth = std::get_if<DepthPass>(&steps[i]->pass.effect))
-        points.back().behind = internal::MakeDepthOfBackground(*depth, frame);
+        points.back().behind = internal::MakeDepthOfBackground(*depth, steps[i]->pass.at, frame);
     }
     if (!points.empty()) {
       internal::RowProgress rows(progress, share * double(begin), share * double(i), std::max(1, picture.height));

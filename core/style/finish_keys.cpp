@@ -149,7 +149,9 @@ void TurnDial(const std::string& dial, double factor, FinishPass& pass) {
     auto* const smooth = std::get_if<SmoothPass>(&pass.effect);
     auto* const tones = std::get_if<TonesPass>(&pass.effect);
     if (smooth && even > 1.0) smooth->radius = std::min(32.0, smooth->radius * even);
-    if (tones && even > 1.0) tones->bins = std::max(2, static_cast<int>(tones->bins / even + 0.5));
+    // Of the paint's own lightness fewer tones would be rougher: more strokes cross the higher steps.
+    if (tones && even > 1.0 && tones->tone == TonesPass::Tone::kLight)
+      tones->bins = std::max(2, static_cast<int>(tones->bins / even + 0.5));
     if (smooth) pass.strength = UpTo(1.0, pass.strength * even);
     if (tones) pass.strength *= std::min(1.0, even);
     // Lines inside objects.

@@ -46,10 +46,11 @@ void DrawHatch(const HatchPass& pass, double strength, std::span<const std::uint
 
 // The blur of DepthPass: a Gaussian with a sigma of blur · u, over the pixels that are on the same side of the focus
 // and blurred by half as much or more, so that nothing sharp runs into what is blurred and what is in focus keeps its
-// bytes. By levels of doubling sigma, each a smaller picture, blended so that the second moment is exact; alpha stays.
-// O(pixels · log(blur)).
-void BlurByDepth(const DepthPass& pass, double strength, std::span<const std::uint8_t> only, const FinishFrame& frame,
-                 Picture& picture);
+// bytes. Strokes of painted edges are blurred as their surface, but on a sheet. By levels of doubling sigma, each a
+// smaller picture, blended so that the second moment is exact; alpha stays. Opaque pixels of a blurred surface that
+// does not cover them show background, too, in its own blur. O(pixels · log(blur)).
+// `step`: of a DepthPass.
+void BlurByDepth(const FinishStep& step, const FinishFrame& frame, Picture& picture);
 
 // Watercolour. A density δ of pigment, 1 where nothing asks for more or less, is the product of (1 + edge · x e^(1-x)),
 // x being the distance to the object's border over half its width, of noise in clouds and in grains, and of what light

@@ -6,9 +6,12 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <span>
+#include <variant>
 #include <vector>
 
 #include "core/filter/region.h"
+#include "core/image/fragments.h"
 #include "finish/area/area_effects.h"
 #include "finish/area/gaussian_rows.h"
 #include "finish/area/oklab_blocks.h"
@@ -31,6 +34,9 @@ constexpr std::size_t kBlurSpare = 16;  // values that a vector may reach beyond
 struct BlurSource {
   int width = 0, height = 0;
   FloatPlane lightness, a, b, alpha, sigma;
+  // Of the surface whose sigma it is; the rest is background, which is blurred by `most`. 1 in focus.
+  FloatPlane share;
+  float most = 0.0f;
 };
 
 // One side of the focus under a Gaussian of `sigma`, smaller by `factor` each way: colours times weights, and weights.
@@ -176,12 +182,23 @@ HWY_EXPORT(GatherHere);
 constexpr double kFinest = 1.0;    // sigma of the finest level, at most, pixels
 constexpr double kSmallest = 1.0;  // sigma of a level in its own pixels, at least
 
-BlurSource SourceOf(const DepthPass& pass, double most, const FinishFrame& frame, const Picture& picture) {
-  const DepthScale scale(pass, frame.measures);
-  const auto depth = frame.guides->Plane(Layer::kDepth);
+// A pixel that a stroke of a painted edge fills for the most part is blurred as the stroke's surface.
+void TakeSigmaOfOwners(std::span<const EdgeStroke> strokes, BlurSource& source) {
+  std::vector<float> of_strokes;
+  for (const EdgeStroke& stroke : strokes) of_strokes.push_back(source.sigma[stroke.owner]);
+  for (std::size_t i = 0; i < strokes.size(); ++i) {
+    if (2 * strokes[i].own[3] < strokes[i].mixed[3]) continue;
+    source.sigma[strokes[i].pixel] = of_strokes[i], source.share[strokes[i].pixel] = 1.0f;
+  }
+}
+
+BlurSource SourceOf(const FinishStep& step, double most, const FinishFrame& frame, const Picture& picture) {
+  const DepthScale scale(std::get<DepthPass>(step.pass.effect), frame.measures);
+  const auto depth = frame.guides->Plane(Layer::kDepth), coverage = frame.guides->Plane(Layer::kCoverage);
   BlurSource source;
   source.width = picture.width, source.height = picture.height;
-  for (auto* plane : {&source.lightness, &source.a, &source.b, &source.alpha, &source.sigma}) {
+  source.most = static_cast<float>(most);
+  for (auto* plane : {&source.lightness, &source.a, &source.b, &source.alpha, &source.sigma, &source.share}) {
     plane->resize(depth.size() + kBlurSpare);
     std::fill(plane->end() - kBlurSpare, plane->end(), 0.0f);
   }
@@ -198,8 +215,13 @@ BlurSource SourceOf(const DepthPass& pass, double most, const FinishFrame& frame
       const std::size_t p = first + i;
       source.alpha[p] = static_cast<float>(texels[4 * i + 3]) * (1.0f / 65535.0f);
       sigmas[i] *= static_cast<float>(scale.IsBeforeFocus(depth[p]) ? -most : most);
+      const bool is_mixed = texels[4 * i + 3] == 65535 && coverage[p] > 0.0f && sigmas[i] != 0.0f;
+      source.share[p] = is_mixed ? std::min(coverage[p], 1.0f) : 1.0f;
     }
   });
+  // On a sheet what lies beside strokes is blurred as the background: as their surface they would be cut out of that.
+  if (step.pass.at != FinishPass::Stage::kSheet) TakeSigmaOfOwners(frame.strokes, source);
+  if (step.pass.at == FinishPass::Stage::kGuides) std::ranges::fill(source.share, 1.0f);  // nothing is mixed in
   return source;
 }
 
@@ -242,13 +264,17 @@ BlurRegions RegionsOf(const BlurSource& source, float side, const std::vector<Bl
       [&](const auto& rows, BlurRegions regions) {
         for (int y = rows.begin(); y != rows.end(); ++y) {
           const float* const row = source.sigma.data() + std::size_t(y) * std::size_t(source.width);
+          const float* const shares = source.share.data() + std::size_t(y) * std::size_t(source.width);
           for (int x = 0; x < source.width; ++x) {
-            const float sigma = row[x] * side;
-            if (!(sigma > 0.0f)) continue;
-            const std::size_t level = level_of(sigma);
-            const Region pixel{x, y, x + 1, y + 1};
-            Widen(regions.of_level[level], pixel);
-            if (level > 0) Widen(regions.of_level[level - 1], pixel);
+            const auto look = [&](float sigma) {
+              if (!(sigma > 0.0f)) return;
+              const std::size_t level = level_of(sigma);
+              const Region pixel{x, y, x + 1, y + 1};
+              Widen(regions.of_level[level], pixel);
+              if (level > 0) Widen(regions.of_level[level - 1], pixel);
+            };
+            look(row[x] * side);
+            if (shares[x] < 1.0f) look(source.most * side);
           }
         }
         for (const Region& one : regions.of_level) Widen(regions.all, one);
@@ -340,12 +366,29 @@ BlurSide SideOf(const BlurSource& source, float side, double most) {
   return made;
 }
 
+// Where a pixel shows background beside its surface, that is blurred by its own sigma.
+void MixBackground(const BlurSource& source, const BlurSide& beyond, int x, int y, std::size_t count,
+                   const OklabBlock& given, OklabBlock& block) {
+  const float* const shares = source.share.data() + std::size_t(y) * std::size_t(source.width) + std::size_t(x);
+  if (beyond.levels.empty() || std::all_of(shares, shares + count, [](float share) { return share >= 1.0f; })) return;
+  std::array<float, kOklabBlock> sigmas;
+  for (std::size_t i = 0; i < count; ++i) sigmas[i] = shares[i] < 1.0f ? source.most : 0.0f;
+  OklabBlock behind = given;
+  HWY_DYNAMIC_DISPATCH(GatherHere)(beyond, sigmas.data(), x, y, count, behind);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!(shares[i] < 1.0f)) continue;
+    block.lightness[i] = behind.lightness[i] + (block.lightness[i] - behind.lightness[i]) * shares[i];
+    block.a[i] = behind.a[i] + (block.a[i] - behind.a[i]) * shares[i];
+    block.b[i] = behind.b[i] + (block.b[i] - behind.b[i]) * shares[i];
+  }
+}
+
 }  // namespace
 
-void BlurByDepth(const DepthPass& pass, double strength, std::span<const std::uint8_t> only, const FinishFrame& frame,
-                 Picture& picture) {
-  const double most = pass.blur * frame.scale;
-  const BlurSource source = SourceOf(pass, most, frame, picture);
+void BlurByDepth(const FinishStep& step, const FinishFrame& frame, Picture& picture) {
+  const auto strength = static_cast<float>(step.pass.strength);
+  const double most = std::get<DepthPass>(step.pass.effect).blur * frame.scale;
+  const BlurSource source = SourceOf(step, most, frame, picture);
   const BlurSide sides[2] = {SideOf(source, 1.0f, most), SideOf(source, -1.0f, most)};
   tbb::parallel_for(tbb::blocked_range<int>(0, picture.height, 8), [&](const auto& rows) {
     for (int y = rows.begin(); y != rows.end(); ++y) {
@@ -361,7 +404,8 @@ void BlurByDepth(const DepthPass& pass, double strength, std::span<const std::ui
           if (!side.levels.empty())
             HWY_DYNAMIC_DISPATCH(GatherHere)(side, source.sigma.data() + first, x, y, count, made);
         }
-        PutBlock(given, static_cast<float>(strength), only.empty() ? nullptr : only.data() + first, count, made,
+        MixBackground(source, sides[0], x, y, count, given, made);
+        PutBlock(given, strength, step.only.empty() ? nullptr : step.only.data() + first, count, made,
                  picture.At(x, y));
       }
     }

@@ -92,34 +92,53 @@ FloatPlane LaidOut(std::span<const float> plane, const SmoothPlanes& planes) {
 // Neighbours that a speck must be unlike: of two pixels by themselves neither is one.
 constexpr float kLeastAround = 3.0f;
 
-// Filters that weigh by difference leave a pixel that is unlike all of its neighbours as it is, pass after pass. Here
-// it takes their mean.
-void FillLonePixels(double range, SmoothPlanes& planes) {
-  const float per_square = BiweightPerSquare(range);
+// Filters that weigh by difference leave a pixel that is unlike all of its neighbours as it is, pass after pass, and a
+// pair of pixels likewise. Here they take the mean of those around. A pass may even out a pixel's like neighbours and
+// so leave it alone. Colours are unlike from a distance d with d² · per_square = 1 on.
+void FillLonePixels(float per_square, SmoothPlanes& planes) {
   const auto stride = static_cast<std::ptrdiff_t>(planes.stride);
   const auto color_at = [&](std::size_t p) { return glm::vec3(planes.lightness[p], planes.a[p], planes.b[p]); };
+  const auto is_like = [&](const glm::vec3& one, const glm::vec3& other) {
+    const glm::vec3 off = other - one;
+    return glm::dot(off, off) * per_square < 1.0f;
+  };
+  const auto has_other_like = [&](std::size_t p, std::size_t known) {
+    const glm::vec3 color = color_at(p);
+    for (const std::ptrdiff_t to : {std::ptrdiff_t{1}, stride - 1, stride, stride + 1}) {
+      for (const std::ptrdiff_t offset : {-to, to}) {
+        const std::size_t q = std::size_t(std::ptrdiff_t(p) + offset);
+        if (q != known && planes.key[q] == planes.key[p] && is_like(color, color_at(q))) return true;
+      }
+    }
+    return false;
+  };
   planes.MakeNext();
   ForEachSmoothRow(planes.height, [&](std::size_t y) {
     for (std::size_t x = 0; x < planes.width; ++x) {
       const std::size_t p = planes.At(x, y);
       glm::vec3 color = color_at(p);
       float found = 0.0f;
-      bool is_alone = true;
+      int likes = 0;
+      std::size_t like = p;
       // By pairs: the sum is that of the turned picture.
       const auto pair = [&](std::ptrdiff_t to) {
         glm::vec3 sum(0.0f);
         for (const std::ptrdiff_t offset : {-to, to}) {
           const std::size_t q = std::size_t(std::ptrdiff_t(p) + offset);
           if (planes.key[q] != planes.key[p]) continue;
-          const glm::vec3 other = color_at(q), off = other - color;
-          is_alone = is_alone && glm::dot(off, off) * per_square >= 1.0f;
-          sum += other, found += 1.0f;
+          const glm::vec3 other = color_at(q);
+          if (is_like(color, other)) {
+            ++likes, like = q;
+          } else {
+            sum += other, found += 1.0f;
+          }
         }
         return sum;
       };
       const glm::vec3 straight = pair(1) + pair(stride);
-      if (is_alone) {  // as most are not, the other neighbours need not be looked at
+      if (likes < 2) {  // as it rarely is, the other neighbours need not be looked at
         const glm::vec3 sum = straight + (pair(stride - 1) + pair(stride + 1));
+        const bool is_alone = likes == 0 || (likes == 1 && !has_other_like(like, p));
         if (is_alone && found >= kLeastAround) color = sum / found;
       }
       planes.next_lightness[p] = color.x, planes.next_a[p] = color.y, planes.next_b[p] = color.z;
@@ -203,8 +222,8 @@ void Smooth(const SmoothPass& pass, double strength, std::span<const std::uint8_
              LaidOut(guides.Plane(Layer::kNormal, 2), planes), LaidOut(guides.Plane(Layer::kDepth), planes)};
   }
   const bool weighs = pass.filter == SmoothPass::Filter::kBilateral || pass.filter == SmoothPass::Filter::kWavelets;
-  if (weighs) FillLonePixels(pass.range, planes);
   for (int i = 0; i < pass.passes; ++i) {
+    if (weighs) FillLonePixels(BiweightPerSquare(pass.range), planes);
     switch (pass.filter) {
       case SmoothPass::Filter::kBilateral:
         BilateralFilter(sigma, pass.range, planes);
@@ -220,6 +239,8 @@ void Smooth(const SmoothPass& pass, double strength, std::span<const std::uint8_
         break;
     }
   }
+  // What is around is even now: a smaller difference shows.
+  if (weighs) FillLonePixels(static_cast<float>(1.0 / (pass.range * pass.range)), planes);
   PutSmoothed(planes, strength, only, picture);
 }
 

@@ -47,11 +47,14 @@ SCUMBLE_WIDE_LOOPS void Fade(const Haze& haze, const float* shares, std::size_t 
 
 // `depth_of`: of the pixels from `first` on, kOklabBlock at most.
 template <typename DepthOf>
-PointEffect Make(const DepthPass& pass, const FinishFrame& frame, DepthOf depth_of) {
+PointEffect Make(const DepthPass& pass, FinishPass::Stage at, const FinishFrame& frame, DepthOf depth_of) {
   // Copies of the effect share their tables.
   const auto scale = std::make_shared<const DepthScale>(pass, frame.measures);
   const auto air = std::make_shared<const Air>(pass.air);
   const LabColor color = ToOklab(pass.color);
+  // What a picture shows behind all surfaces, such as a sky, is its painter's own. A sheet is bare there.
+  const float infinity = BackgroundValue(Layer::kDepth);
+  const double behind = at == FinishPass::Stage::kSheet ? air->Share(scale->Distance(infinity)) : air->Share(1.0);
   const bool has_air = pass.air > 0.0;
   const Haze haze{static_cast<float>(pass.desaturate), static_cast<float>(pass.tint), color};
   return [=](std::size_t first, std::size_t count, OklabBlock& block) {
@@ -60,7 +63,8 @@ PointEffect Make(const DepthPass& pass, const FinishFrame& frame, DepthOf depth_
     scale->Shares(depth, count, shares.data());
     Fade(haze, shares.data(), count, block.a.data(), block.b.data());
     for (std::size_t i = 0; i < count && has_air; ++i) {
-      const auto share = static_cast<float>(air->Share(scale->Distance(depth[i])));
+      const bool is_behind = depth[i] == infinity;
+      const auto share = static_cast<float>(is_behind ? behind : air->Share(scale->Distance(depth[i])));
       block.lightness[i] += (color.lightness - block.lightness[i]) * share;
       block.a[i] += (color.a - block.a[i]) * share, block.b[i] += (color.b - block.b[i]) * share;
     }
@@ -69,15 +73,15 @@ PointEffect Make(const DepthPass& pass, const FinishFrame& frame, DepthOf depth_
 
 }  // namespace
 
-PointEffect MakeDepth(const DepthPass& pass, const FinishFrame& frame) {
+PointEffect MakeDepth(const DepthPass& pass, FinishPass::Stage at, const FinishFrame& frame) {
   const std::span<const float> depth = frame.guides->Plane(Layer::kDepth);
-  return Make(pass, frame, [depth](std::size_t first) { return depth.data() + first; });
+  return Make(pass, at, frame, [depth](std::size_t first) { return depth.data() + first; });
 }
 
-PointEffect MakeDepthOfBackground(const DepthPass& pass, const FinishFrame& frame) {
+PointEffect MakeDepthOfBackground(const DepthPass& pass, FinishPass::Stage at, const FinishFrame& frame) {
   std::array<float, kOklabBlock> depth;
   depth.fill(BackgroundValue(Layer::kDepth));
-  return Make(pass, frame, [depth](std::size_t) { return depth.data(); });
+  return Make(pass, at, frame, [depth](std::size_t) { return depth.data(); });
 }
 
 }  // namespace scumble::internal

@@ -21,8 +21,10 @@ PointEffect MakeRender(const RenderPass& pass, const FinishFrame& frame);
 PointEffect MakeTones(const TonesPass& pass, std::span<const float> light = {});
 // `soft`: by pixel how much of it is in shade, and must outlive the effect; empty: what ShadeOf says.
 PointEffect MakeShadows(const ShadowsPass& pass, const FinishFrame& frame, std::span<const float> soft = {});
-PointEffect MakeDepth(const DepthPass& pass, const FinishFrame& frame);
-PointEffect MakeDepthOfBackground(const DepthPass& pass, const FinishFrame& frame);  // as if all were infinitely far
+// `at`: of a sheet the background, which is infinitely far, has all the air; else as much as a surface at `far`.
+PointEffect MakeDepth(const DepthPass& pass, FinishPass::Stage at, const FinishFrame& frame);
+// As if all were background.
+PointEffect MakeDepthOfBackground(const DepthPass& pass, FinishPass::Stage at, const FinishFrame& frame);
 // The linear map of Monge and Kantorovich between two normal distributions (Pitié, Kokaram, "The linear
 // Monge-Kantorovitch linear colour mapping for example-based colour transfer", 2007), A = S^-½ (S^½ T S^½)^½ S^-½, in
 // Oklab. `source` are the picture's colours; the pass has a target. Eigenvalues of A end at the pass's gain; those of S

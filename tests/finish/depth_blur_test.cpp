@@ -1,9 +1,12 @@
 // Blur by depth: its second moment, what it leaves alone, and that nothing sharp runs into it.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "core/image/color.h"
+#include "core/image/fragments.h"
 #include "core/image/oklab.h"
 #include "tests/finish/finish_fixtures.h"
 
@@ -93,6 +96,64 @@ TEST_F(NearAndFar, InfiniteDepthIsFar) {
   const Picture made = Finished(BlurStep(6.0), &guides_, picture_);
   EXPECT_EQ(made.At(40, 40)[0], 65535);
   EXPECT_NEAR(made.At(10, 10)[0], made.At(14, 10)[0], 400);
+}
+
+// A light object on the left of clear background, with dark strokes of its edge on that.
+class WithStrokes : public ::testing::Test {
+ protected:
+  Picture Blurred(float depth, int height = 40) {
+    GuideSet guides = GuidesOf(60, height, [=](glm::vec2 at) {
+      return at.x < 30.0f ? SeenPoint{true, {0, 0, 1}, depth, 1.0f} : SeenPoint{};
+    });
+    Picture picture = PlainPicture(60, height, 50000, 50000, 50000);
+    EdgeStrokes strokes;
+    for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
+      if (i % 60 < 30) continue;
+      const EdgeStroke::Texel dark = {5000, 5000, 5000, 65535};
+      const bool is_stroke = i % 60 < 32 && i / 60 % 4 < 2;
+      std::fill_n(&picture.rgba[4 * i], 4, std::uint16_t{0});
+      if (!is_stroke) continue;
+      std::copy_n(dark.begin(), 4, &picture.rgba[4 * i]);
+      strokes.push_back({std::uint32_t(i), std::uint32_t(i / 60 * 60 + 29), dark, {}, dark});
+    }
+    FinishFrame frame;
+    frame.guides = &guides, frame.strokes = strokes;
+    const FinishStep step = BlurStep(6.0);
+    EXPECT_TRUE(ApplyFinish(std::span(&step, 1), FinishPass::Stage::kPaint, frame, 0, {}, picture));
+    return picture;
+  }
+};
+
+TEST_F(WithStrokes, TheyAreBlurredWithTheirObject) {
+  const Picture made = Blurred(2.4f);
+  EXPECT_GT(made.At(30, 20)[0], 20000);
+  EXPECT_EQ(made.At(30, 20)[3], 65535) << "alpha stays";
+}
+
+TEST_F(WithStrokes, InFocusTheyKeepTheirBytes) {
+  const Picture made = Blurred(1.0f);
+  for (const int x : {30, 31}) EXPECT_EQ(made.At(x, 20)[0], 5000);
+}
+
+// A blurred object at a slant before what is blurred more: each pixel has both, as far as they cover it.
+TEST(DepthBlur, SilhouettesAreSmooth) {
+  const auto left_of = [](glm::vec2 at) { return at.x < 20.0f + 0.1f * at.y; };
+  const GuideSet guides = GuidesOf(60, 60, [&](glm::vec2 at) {
+    return left_of(at) ? SeenPoint{true, {0, 0, 1}, 1.6f, 1.0f} : SeenPoint{};
+  });
+  Picture picture = PlainPicture(60, 60, 50000, 50000, 50000);
+  for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
+    const float share = guides.Plane(Layer::kCoverage)[i];
+    std::fill_n(&picture.rgba[4 * i], 3, static_cast<std::uint16_t>(10000.0f + 40000.0f * share));
+  }
+  const Picture made = Finished(BlurStep(6.0), &guides, picture);
+  // Along a column the border's lightness falls in steps of a tenth, not from the one side to the other at once.
+  for (const int x : {22, 23, 24}) {
+    double largest = 0.0;
+    for (int y = 10; y < 58; ++y)
+      largest = std::max(largest, std::fabs(LightnessOnRow(made, x, y + 1) - LightnessOnRow(made, x, y)));
+    EXPECT_LT(largest, 0.08) << x;
+  }
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "core/image/color.h"
@@ -91,6 +92,22 @@ TEST(SmoothSpecks, GoAndLinesStand) {
     EXPECT_NEAR(made.At(20, 15)[0], 40000, 300);
     EXPECT_NEAR(made.At(0, 0)[0], 40000, 300);
     EXPECT_LT(made.At(30, 15)[0], 3000);
+  }
+}
+
+// Of two pixels side by side neither is alone, or not until the first pass has evened out one of them.
+TEST(SmoothSpecks, OfTwoPixelsLeaveNone) {
+  for (const auto& [first, second] : {std::pair(39500, 49500), {49500, 49500}, {49500, 48000}, {12000, 12500}}) {
+    Picture picture = PlainPicture(40, 30, 30000, 30000, 30000);
+    std::fill_n(picture.At(20, 15), 3, static_cast<std::uint16_t>(first));
+    std::fill_n(picture.At(21, 16), 3, static_cast<std::uint16_t>(second));
+    for (const Filter filter : {Filter::kBilateral, Filter::kWavelets}) {
+      SmoothPass pass;
+      pass.filter = filter, pass.borders = false;
+      const Picture made = Finished(StepOf(pass), nullptr, picture);
+      for (std::size_t i = 0; i < made.rgba.size(); i += 4)
+        ASSERT_NEAR(made.rgba[i], 30000, 1500) << i / 4 << ' ' << int(filter) << ' ' << first << ' ' << second;
+    }
   }
 }
 

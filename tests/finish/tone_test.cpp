@@ -269,7 +269,7 @@ TEST(Depth, SharesAreTheFormula) {
   std::fill_n(block.a.begin(), 200, 1.0f);
   FinishFrame frame;
   frame.guides = &guides;
-  internal::MakeDepth(pass, frame)(0, 200, block);
+  internal::MakeDepth(pass, FinishPass::Stage::kPaint, frame)(0, 200, block);
   for (int x = 0; x < 200; ++x)
     EXPECT_NEAR(block.a[std::size_t(x)], 1.0 - std::clamp(std::fabs(x - 10.0) / 120.0, 0.0, 1.0), 1e-5) << x;
 }
@@ -294,7 +294,42 @@ TEST(Depth, AirFollowsBeerAndLambert) {
   for (int x = 0; x < 40; ++x) {
     EXPECT_NEAR(LabOf(made.At(x, 0)).x, 1.0 - std::pow(0.25, x / 20.0), 2e-3) << x;  // lightness goes to white's
   }
-  EXPECT_EQ(made.At(40, 0)[0], 65535) << "nothing is beyond infinite air";
+  EXPECT_EQ(made.At(40, 0)[0], made.At(20, 0)[0]) << "the background is as far as far";
+}
+
+// A sky is the painter's own; on a sheet, behind the paint, all is air.
+TEST(Depth, SkyTakesTheAirAtFarAndASheetAllOfIt) {
+  GuideSet guides = Ramp(41);
+  guides.Plane(Layer::kDepth)[40] = std::numeric_limits<float>::infinity();
+  guides.Plane(Layer::kCoverage)[40] = 0.0f;
+  for (const DepthPass::Metric metric : {DepthPass::Metric::kLinear, DepthPass::Metric::kInverse}) {
+    for (const int layers : {0, 3}) {
+      DepthPass pass;
+      pass.near = 5.0, pass.far = 25.0, pass.desaturate = 0.0, pass.air = 0.3, pass.color = {65535, 65535, 65535};
+      pass.metric = metric, pass.layers = layers;
+      FinishStep step = StepOf(pass);
+      const Picture sky = PlainPicture(41, 1, 10000, 20000, 40000), made = Finished(step, &guides, sky);
+      for (int c = 0; c < 3; ++c) EXPECT_EQ(made.At(40, 0)[c], made.At(20, 0)[c]) << int(metric) << ' ' << layers;
+      if (metric == DepthPass::Metric::kInverse) continue;
+      step.pass.at = FinishPass::Stage::kSheet;
+      Picture sheet = sky;
+      FinishFrame frame;
+      frame.guides = &guides;
+      ASSERT_TRUE(ApplyFinish(std::span(&step, 1), FinishPass::Stage::kSheet, frame, 0, {}, sheet));
+      for (int c = 0; c < 3; ++c) EXPECT_EQ(sheet.At(40, 0)[c], 65535);
+    }
+  }
+}
+
+// Where no surface has been measured, near is far.
+TEST(Depth, SkyAloneIsAsFarAsBehindSurfaces) {
+  GuideSet guides(2, 1);
+  for (const Layer layer : {Layer::kCoverage, Layer::kDepth}) guides.Add(layer);
+  DepthPass pass;
+  pass.desaturate = 0.0, pass.air = 0.3, pass.color = {65535, 65535, 65535};
+  const Picture sky = PlainPicture(2, 1, 10000, 20000, 40000);
+  EXPECT_EQ(Finished(StepOf(pass), &guides, sky).rgba, Finished(StepOf(pass), &guides, sky, {5, 9, 25, 1, 1}).rgba);
+  EXPECT_NE(Finished(StepOf(pass), &guides, sky).rgba, sky.rgba);
 }
 
 TEST(Depth, InverseMetricIsEvenInReciprocals) {

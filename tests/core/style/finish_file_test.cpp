@@ -251,6 +251,15 @@ TEST_F(FinishFile, DialsTurnTheWholeChain) {
   EXPECT_FALSE(OverrideFinish(passes, "dial.lines=1.5"));
 }
 
+// Few tones in the paint itself make its strokes stand out; few tones of the light do not.
+TEST_F(FinishFile, LessDetailIsNoRougherPaint) {
+  std::vector<FinishPass> passes{*MakeFinishPass("tones"), *MakeFinishPass("tones")};
+  std::get<TonesPass>(passes[1].effect).tone = TonesPass::Tone::kLight;
+  ASSERT_TRUE(OverrideFinish(passes, "dial.detail=0"));
+  EXPECT_EQ(std::get<TonesPass>(passes[0].effect).bins, TonesPass().bins);
+  EXPECT_EQ(std::get<TonesPass>(passes[1].effect).bins, TonesPass().bins / 2);
+}
+
 TEST_F(FinishFile, StyleHasItsOwn) {
   ASSERT_TRUE(WritePicture(folder_ / "lit.png", White(32)));
   std::ofstream(folder_ / "style.toml")
