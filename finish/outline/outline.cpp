@@ -83,6 +83,44 @@ class BlockMiddle {
   std::size_t width_, factor_;
 };
 
+// The pixel whose paint a line has. Beside another object the owner's paint is a mix of both: there it is the next
+// pixel within the owner's object, if there is one.
+class PaintOfOwner {
+ public:
+  explicit PaintOfOwner(const GuideSet& guides)
+      : coverage_(guides.Plane(Layer::kCoverage)),
+        object_(guides.Plane(Layer::kObject)),
+        width_(std::ptrdiff_t(guides.width())) {}
+
+  std::size_t operator()(std::size_t owner) const {
+    if (IsWithin(owner, object_[owner])) return owner;
+    for (const std::ptrdiff_t step : {width_, -width_, std::ptrdiff_t(1), std::ptrdiff_t(-1)}) {
+      const std::size_t next = Next(owner, step);
+      if (coverage_[next] > 0.0f && object_[next] == object_[owner] && IsWithin(next, object_[owner])) return next;
+    }
+    return owner;
+  }
+
+ private:
+  // The pixel itself where the picture ends.
+  std::size_t Next(std::size_t pixel, std::ptrdiff_t step) const {
+    const auto at = std::ptrdiff_t(pixel), next = at + step;
+    const bool is_in_row = (step != 1 && step != -1) || next / width_ == at / width_;
+    return next >= 0 && next < std::ptrdiff_t(object_.size()) && is_in_row ? std::size_t(next) : pixel;
+  }
+  // Whether no other object is beside it.
+  bool IsWithin(std::size_t pixel, float object) const {
+    for (const std::ptrdiff_t step : {width_, -width_, std::ptrdiff_t(1), std::ptrdiff_t(-1)}) {
+      const std::size_t next = Next(pixel, step);
+      if (coverage_[next] > 0.0f && object_[next] != object) return false;
+    }
+    return true;
+  }
+
+  std::span<const float> coverage_, object_;
+  std::ptrdiff_t width_;
+};
+
 }  // namespace
 
 void DrawOutline(const OutlinePass& pass, double strength, std::span<const std::uint8_t> only,
@@ -126,6 +164,7 @@ void DrawOutline(const OutlinePass& pass, double strength, std::span<const std::
   const StrokeCover cover = is_field
                                 ? CoverByDistance(pass, traced, noise.gaps, borders, with_owner)
                                 : CoverByStrokes(pass, traced, factor, noise, shade, borders, with_owner, is_masked);
+  const PaintOfOwner painted(guides);
   std::vector<std::uint16_t> paint;  // as it was before the lines
   if (of_paint) paint = picture.rgba;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cover.share.size(), 1 << 14), [&](const auto& part) {
@@ -138,7 +177,7 @@ void DrawOutline(const OutlinePass& pass, double strength, std::span<const std::
       if (of_paint) {
         const std::uint32_t owner = cover.owner[i];
         if (!has_last || owner != last_owner) {
-          std::copy_n(paint.data() + 4 * middle(owner), 4, last_ink);
+          std::copy_n(paint.data() + 4 * middle(painted(owner)), 4, last_ink);
           InkFromPaint(pass.color == OutlinePass::Color::kComplement, last_ink);
           last_owner = owner, has_last = true;
         }
