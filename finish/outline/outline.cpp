@@ -35,6 +35,23 @@ void InkFromPaint(bool is_complement, std::uint16_t* texel) {
   for (int c = 0; c < 3; ++c) texel[c] = Srgb16FromLinear(linear[c]);
 }
 
+// Shadows and base colours leave crumbs: lines by themselves that reach less far than this many of their widths.
+constexpr float kCrumb = 3.0f;
+
+// `scale`: pixels of the guides for one of the reference height.
+bool IsCrumb(const OutlinePass& pass, float scale, const LineChain& chain) {
+  if (!chain.closed && (chain.begin == LineEnd::kJunction || chain.end == LineEnd::kJunction)) return false;
+  glm::vec2 least = chain.points.front().at, most = least;
+  double share = 0.0;
+  for (const LinePoint& point : chain.points) {
+    if (point.line != LineClass::kShadow && point.line != LineClass::kTexture) return false;
+    least = glm::min(least, point.at), most = glm::max(most, point.at);
+    share = std::max(share, pass.of_class[std::size_t(point.line)]);
+  }
+  const glm::vec2 reach = most - least;
+  return std::max(reach.x, reach.y) < kCrumb * static_cast<float>(pass.width * share) * scale;
+}
+
 // `frame`: with the guides of the borders, which are `factor` times smaller than the picture. Pieces of lines whose
 // owner `is_masked` are left out: where they cross others, these show.
 template <class IsMasked>
@@ -44,6 +61,8 @@ StrokeCover CoverByStrokes(const OutlinePass& pass, const FinishFrame& frame, in
   // Of small guides a step of a border is several pixels of the picture: it is evened out.
   const double shortest = std::max(kShortest, kShortest * frame.scale / factor);
   std::vector<LineChain> chains = TraceLines(borders, *frame.guides, shadow, shortest, factor > 1 ? 1.0f : 0.5f);
+  std::erase_if(chains,
+                [&](const LineChain& chain) { return IsCrumb(pass, static_cast<float>(frame.scale / factor), chain); });
   for (LineChain& chain : chains) {
     const auto times = static_cast<float>(factor);
     for (LinePoint& point : chain.points) point.at *= times;

@@ -396,6 +396,29 @@ TEST(Outline, ShadowsHaveAContour) {
   EXPECT_NEAR(weight, 3.0, 0.02);
 }
 
+// A shadow smaller than three widths of its line has none, but where that joins another line.
+TEST(Outline, CrumbsOfShadowHaveNoLine) {
+  OutlinePass pass;
+  pass.width = 3.0;
+  for (double& width : pass.of_class) width = 0.0;
+  pass.of_class[std::size_t(LineClass::kShadow)] = 1.0;
+  const auto ink_of = [&](double radius, bool joins) {
+    GuideSet guides = FlatGuides(120, 80);
+    for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
+      const glm::dvec2 at(double(i % 120) + 0.5, double(i / 120) + 0.5);
+      const double away = radius - glm::length(at - glm::dvec2(60.2, 40.3));
+      guides.Plane(Layer::kShadow)[i] = static_cast<float>(std::clamp(away + 0.5, 0.0, 1.0));
+      if (joins) guides.Plane(Layer::kObject)[i] = at.x < 60.0 ? 1.0f : 2.0f;
+    }
+    return Sum(InkOf(pass, guides));
+  };
+  for (const double radius : {2.0, 3.0, 4.0}) EXPECT_EQ(ink_of(radius, false), 0.0) << radius;
+  for (const double radius : {6.0, 12.0, 30.0})
+    EXPECT_NEAR(ink_of(radius, false) / (2.0 * std::numbers::pi * radius * 3.0), 1.0, 0.1) << radius;
+  pass.of_class[std::size_t(LineClass::kObject)] = 1.0;
+  EXPECT_GT(ink_of(4.0, true), ink_of(0.0, true) + 30.0);
+}
+
 TEST(Outline, MaterialsAndBaseColoursHaveBorders) {
   GuideSet guides = FlatGuides(120, 80);
   guides.Add(Layer::kMaterial), guides.Add(Layer::kAlbedo);
