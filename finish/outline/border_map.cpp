@@ -12,6 +12,7 @@
 #include "core/filter/edge_test.h"
 #include "core/filter/wide_loops.h"
 #include "core/image/oklab.h"
+#include "finish/outline/tangent_planes.h"
 #include "finish/outline/valleys.h"
 
 namespace scumble::internal {
@@ -23,6 +24,9 @@ constexpr double kDepthTolerance = 0.002;
 // By how much of a surface's slope the step to its last pixel may differ from it. A ball's depth falls like the root of
 // the distance to its rim: the last step is up to 1 + √2 times the one before.
 constexpr float kSlopeGive = 1.0f, kSlopeGiveAtEnd = 1.5f;
+// Up to how much of the slope that its normal gives the farther pixel's surface may have: flat faces with the normals
+// of a round form are steeper than these say.
+constexpr float kTangentShare = 1.4f;
 
 // A crease goes on where the angle is no smaller than this share of `crease_angle`: a fold whose angle is about that
 // would be dashed otherwise. Two thresholds, as Canny's edges have them (1986, section VIII).
@@ -85,6 +89,7 @@ class Classifier {
         crease_(pass.crease_angle < 180.0 ? glm::radians(pass.crease_angle) : std::numeric_limits<double>::infinity()),
         weak_crease_(crease_ * (IsOn(LineClass::kCrease) ? kCreaseGoesOn : 1.0)),
         owner_(guides),
+        planes_(guides),
         coverage_(guides.Plane(Layer::kCoverage)),
         depth_(guides.Plane(Layer::kDepth)),
         object_(guides.Plane(Layer::kObject)),
@@ -127,7 +132,8 @@ class Classifier {
   }
 
   // Whether the depth goes on from p to q: as it does on one of the sides, by up to twice the slope there, give or take
-  // the tolerance, and by a little more where the surface ends. A step's two sides are flatter than the step.
+  // the tolerance, and by a little more where the surface ends. A step's two sides are flatter than the step. Or as the
+  // farther pixel's surface does, which a bevel of a pixel or two shows at its rim: behind a step it is not that steep.
   bool DepthGoesOn(std::optional<std::size_t> before, std::size_t p, std::size_t q,
                    std::optional<std::size_t> after) const {
     const float step = depth_[q] - depth_[p], give = give_.At(std::min(depth_[p], depth_[q]));
@@ -140,7 +146,16 @@ class Classifier {
       return std::fabs(step - slope) <= (is_end ? kSlopeGiveAtEnd : kSlopeGive) * std::fabs(slope) + give;
     };
     return (has_before && fits(depth_[p] - depth_[*before], !has_after)) ||
-           (has_after && fits(depth_[*after] - depth_[q], !has_before));
+           (has_after && fits(depth_[*after] - depth_[q], !has_before)) || IsSteepBehind(p, q, give);
+  }
+
+  // Whether the farther pixel's surface rises to the depth of the nearer one, or beyond, within a pixel.
+  bool IsSteepBehind(std::size_t p, std::size_t q, float give) const {
+    const std::size_t nearer = depth_[p] < depth_[q] ? p : q, farther = nearer == p ? q : p;
+    const std::size_t width = static_cast<std::size_t>(guides_.width());
+    const bool is_below = std::max(p, q) - std::min(p, q) == width;
+    const float slope = planes_.StepAt(farther, is_below) * (farther > nearer ? 1.0f : -1.0f);
+    return depth_[farther] - depth_[nearer] - kTangentShare * slope <= give;
   }
 
   double AngleBetween(std::size_t p, std::size_t q) const {
@@ -219,6 +234,7 @@ class Classifier {
   DepthTolerance give_;
   double crease_, weak_crease_;  // radians
   BorderOwner owner_;
+  TangentPlanes planes_;
   std::span<const float> coverage_, depth_, object_, material_, shadow_;
   std::vector<glm::vec3> colors_;
   float texture_step_;

@@ -9,6 +9,8 @@
 #include <cstring>
 #include <optional>
 
+#include "finish/outline/line_owners.h"
+
 namespace scumble::internal {
 namespace {
 
@@ -337,7 +339,10 @@ void Smooth(float give, LineChain& chain) {
 std::vector<LineChain> TraceLines(BorderMap& borders, const GuideSet& guides, std::span<const float> shadow,
                                   double shortest, float give) {
   std::vector<LineChain> chains = Tracer(borders, guides, shadow).Trace(shortest);
-  tbb::parallel_for(std::size_t(0), chains.size(), [&](std::size_t i) { Smooth(give, chains[i]); });
+  tbb::parallel_for(std::size_t(0), chains.size(), [&](std::size_t i) {
+    SettleOwners(guides, chains[i]);
+    Smooth(give, chains[i]);
+  });
   return chains;
 }
 

@@ -16,7 +16,7 @@ namespace scumble::internal {
 struct LinePoint {
   glm::vec2 at;         // on the line, near the middle of the border
   glm::vec2 to_owner;   // unit vector along x or y, to the pixel that the line belongs to
-  std::uint32_t owner;  // that pixel: the nearer one
+  std::uint32_t owner;  // that pixel: the nearer one, by and large; see line_owners.h
   LineClass line;
   bool has_side = true;  // the line lies at the end of a surface, and is no crease, shadow or other line on one
   bool meets = false;    // two objects meet there, and neither is nearer

@@ -35,6 +35,23 @@ void InkFromPaint(bool is_complement, std::uint16_t* texel) {
   for (int c = 0; c < 3; ++c) texel[c] = Srgb16FromLinear(linear[c]);
 }
 
+// Shadows and base colours leave crumbs: lines by themselves that reach less far than this many of their widths.
+constexpr float kCrumb = 3.0f;
+
+// `scale`: pixels of the guides for one of the reference height.
+bool IsCrumb(const OutlinePass& pass, float scale, const LineChain& chain) {
+  if (!chain.closed && (chain.begin == LineEnd::kJunction || chain.end == LineEnd::kJunction)) return false;
+  glm::vec2 least = chain.points.front().at, most = least;
+  double share = 0.0;
+  for (const LinePoint& point : chain.points) {
+    if (point.line != LineClass::kShadow && point.line != LineClass::kTexture) return false;
+    least = glm::min(least, point.at), most = glm::max(most, point.at);
+    share = std::max(share, pass.of_class[std::size_t(point.line)]);
+  }
+  const glm::vec2 reach = most - least;
+  return std::max(reach.x, reach.y) < kCrumb * static_cast<float>(pass.width * share) * scale;
+}
+
 // `frame`: with the guides of the borders, which are `factor` times smaller than the picture. Pieces of lines whose
 // owner `is_masked` are left out: where they cross others, these show.
 template <class IsMasked>
@@ -44,6 +61,8 @@ StrokeCover CoverByStrokes(const OutlinePass& pass, const FinishFrame& frame, in
   // Of small guides a step of a border is several pixels of the picture: it is evened out.
   const double shortest = std::max(kShortest, kShortest * frame.scale / factor);
   std::vector<LineChain> chains = TraceLines(borders, *frame.guides, shadow, shortest, factor > 1 ? 1.0f : 0.5f);
+  std::erase_if(chains,
+                [&](const LineChain& chain) { return IsCrumb(pass, static_cast<float>(frame.scale / factor), chain); });
   for (LineChain& chain : chains) {
     const auto times = static_cast<float>(factor);
     for (LinePoint& point : chain.points) point.at *= times;
@@ -81,6 +100,44 @@ class BlockMiddle {
 
  private:
   std::size_t width_, factor_;
+};
+
+// The pixel whose paint a line has. Beside another object the owner's paint is a mix of both: there it is the next
+// pixel within the owner's object, if there is one.
+class PaintOfOwner {
+ public:
+  explicit PaintOfOwner(const GuideSet& guides)
+      : coverage_(guides.Plane(Layer::kCoverage)),
+        object_(guides.Plane(Layer::kObject)),
+        width_(std::ptrdiff_t(guides.width())) {}
+
+  std::size_t operator()(std::size_t owner) const {
+    if (IsWithin(owner, object_[owner])) return owner;
+    for (const std::ptrdiff_t step : {width_, -width_, std::ptrdiff_t(1), std::ptrdiff_t(-1)}) {
+      const std::size_t next = Next(owner, step);
+      if (coverage_[next] > 0.0f && object_[next] == object_[owner] && IsWithin(next, object_[owner])) return next;
+    }
+    return owner;
+  }
+
+ private:
+  // The pixel itself where the picture ends.
+  std::size_t Next(std::size_t pixel, std::ptrdiff_t step) const {
+    const auto at = std::ptrdiff_t(pixel), next = at + step;
+    const bool is_in_row = (step != 1 && step != -1) || next / width_ == at / width_;
+    return next >= 0 && next < std::ptrdiff_t(object_.size()) && is_in_row ? std::size_t(next) : pixel;
+  }
+  // Whether no other object is beside it.
+  bool IsWithin(std::size_t pixel, float object) const {
+    for (const std::ptrdiff_t step : {width_, -width_, std::ptrdiff_t(1), std::ptrdiff_t(-1)}) {
+      const std::size_t next = Next(pixel, step);
+      if (coverage_[next] > 0.0f && object_[next] != object) return false;
+    }
+    return true;
+  }
+
+  std::span<const float> coverage_, object_;
+  std::ptrdiff_t width_;
 };
 
 }  // namespace
@@ -126,6 +183,7 @@ void DrawOutline(const OutlinePass& pass, double strength, std::span<const std::
   const StrokeCover cover = is_field
                                 ? CoverByDistance(pass, traced, noise.gaps, borders, with_owner)
                                 : CoverByStrokes(pass, traced, factor, noise, shade, borders, with_owner, is_masked);
+  const PaintOfOwner painted(guides);
   std::vector<std::uint16_t> paint;  // as it was before the lines
   if (of_paint) paint = picture.rgba;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cover.share.size(), 1 << 14), [&](const auto& part) {
@@ -138,7 +196,7 @@ void DrawOutline(const OutlinePass& pass, double strength, std::span<const std::
       if (of_paint) {
         const std::uint32_t owner = cover.owner[i];
         if (!has_last || owner != last_owner) {
-          std::copy_n(paint.data() + 4 * middle(owner), 4, last_ink);
+          std::copy_n(paint.data() + 4 * middle(painted(owner)), 4, last_ink);
           InkFromPaint(pass.color == OutlinePass::Color::kComplement, last_ink);
           last_owner = owner, has_last = true;
         }

@@ -396,6 +396,29 @@ TEST(Outline, ShadowsHaveAContour) {
   EXPECT_NEAR(weight, 3.0, 0.02);
 }
 
+// A shadow smaller than three widths of its line has none, but where that joins another line.
+TEST(Outline, CrumbsOfShadowHaveNoLine) {
+  OutlinePass pass;
+  pass.width = 3.0;
+  for (double& width : pass.of_class) width = 0.0;
+  pass.of_class[std::size_t(LineClass::kShadow)] = 1.0;
+  const auto ink_of = [&](double radius, bool joins) {
+    GuideSet guides = FlatGuides(120, 80);
+    for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
+      const glm::dvec2 at(double(i % 120) + 0.5, double(i / 120) + 0.5);
+      const double away = radius - glm::length(at - glm::dvec2(60.2, 40.3));
+      guides.Plane(Layer::kShadow)[i] = static_cast<float>(std::clamp(away + 0.5, 0.0, 1.0));
+      if (joins) guides.Plane(Layer::kObject)[i] = at.x < 60.0 ? 1.0f : 2.0f;
+    }
+    return Sum(InkOf(pass, guides));
+  };
+  for (const double radius : {2.0, 3.0, 4.0}) EXPECT_EQ(ink_of(radius, false), 0.0) << radius;
+  for (const double radius : {6.0, 12.0, 30.0})
+    EXPECT_NEAR(ink_of(radius, false) / (2.0 * std::numbers::pi * radius * 3.0), 1.0, 0.1) << radius;
+  pass.of_class[std::size_t(LineClass::kObject)] = 1.0;
+  EXPECT_GT(ink_of(4.0, true), ink_of(0.0, true) + 30.0);
+}
+
 TEST(Outline, MaterialsAndBaseColoursHaveBorders) {
   GuideSet guides = FlatGuides(120, 80);
   guides.Add(Layer::kMaterial), guides.Add(Layer::kAlbedo);
@@ -485,6 +508,46 @@ TEST(Outline, InkOfThePaintIsItsColourDarkerOrOpposite) {
   pass.color = OutlinePass::Color::kComplement;
   const Picture complement = Finished(StepOf(pass), &guides, picture);
   EXPECT_GT(complement.At(50, 20)[2], complement.At(50, 20)[0]);
+}
+
+// A wavy red wall on a green floor, which faces the viewer now less than the floor and now more. The line where it
+// stands on the floor has paint of one of them, and where the wall hangs before the floor at the right, that decides.
+TEST(Outline, PaintOfALineBetweenTwoObjectsIsThatOfOne) {
+  constexpr int kSide = 120;
+  const auto is_wall = [](glm::vec2 at) { return at.y < 30.0f + 0.37f * at.x; };
+  for (const float away : {0.0f, 0.1f, -0.1f}) {
+    const GuideSet guides = GuidesOf(kSide, kSide, [&](glm::vec2 at) {
+      const float below = at.y - 30.0f - 0.37f * at.x, facing = is_wall(at) ? 0.8f + 0.05f * std::sin(at.x) : 0.8f;
+      const float hangs = is_wall(at) && at.x > 90.0f ? away : 0.0f;
+      return SeenPoint{true,
+                       {0.0f, std::sqrt(1.0f - facing * facing), facing},
+                       5.0f - hangs - 0.02f * std::fabs(below),
+                       is_wall(at) ? 1.0f : 2.0f};
+    });
+    Picture picture = PlainPicture(kSide, kSide, 60000, 5000, 5000);
+    for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
+      if (guides.Plane(Layer::kObject)[i] == 2.0f) std::swap(picture.rgba[4 * i], picture.rgba[4 * i + 1]);
+      const auto x = static_cast<float>(i % kSide), y = static_cast<float>(i / kSide);
+      const bool is_mixed =
+          is_wall({x, y}) != is_wall({x + 1.0f, y + 1.0f}) || is_wall({x + 1.0f, y}) != is_wall({x, y + 1.0f});
+      if (is_mixed) picture.rgba[4 * i] = picture.rgba[4 * i + 1] = i % 2 == 0 ? 20000 : 50000;
+    }
+    OutlinePass pass;
+    pass.width = 4.0, pass.color = OutlinePass::Color::kPaint;
+    for (const LineClass line : {LineClass::kOcclusion, LineClass::kCrease}) pass.of_class[std::size_t(line)] = 0.0;
+    const Picture drawn = Finished(StepOf(pass), &guides, picture);
+    int red = 0, green = 0;
+    for (int i = 0; i < kSide * kSide; ++i) {
+      const std::uint16_t* const texel = drawn.At(i % kSide, i / kSide);
+      const double below = double(i / kSide) - 29.5 - 0.37 * (double(i % kSide) + 0.5);
+      if (std::fabs(below) < 1.0) ++(texel[0] > texel[1] ? red : green);  // all ink
+    }
+    EXPECT_GT(red + green, 200);
+    EXPECT_EQ(std::min(red, green), 0) << away << ' ' << red << ' ' << green;
+    if (away != 0.0f) {
+      EXPECT_EQ(red > green, away > 0.0f) << away;
+    }
+  }
 }
 
 TEST(Outline, ThreadsAndSeedsMatterNotAndDo) {

@@ -1,0 +1,14 @@
+// Which of two objects the line between them belongs to.
+#pragma once
+
+#include "core/image/guides.h"
+#include "finish/outline/line_chains.h"
+
+namespace scumble::internal {
+
+// Gives each stretch of a line between two objects to one of them. Border by border the owner may change from pixel to
+// pixel where they touch: paint of one, then of the other. The nearer one counts, over a stretch of the line; where the
+// objects meet, the rest of the line decides, and if they meet all along, the one that most borders say.
+void SettleOwners(const GuideSet& guides, LineChain& chain);
+
+}  // namespace scumble::internal
