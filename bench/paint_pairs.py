@@ -79,11 +79,12 @@ def lot(*parts):
 def choose(pairs, of):
     samples, count = SETS[of]
     others = [pair for pair in pairs if pair["set"] != of]
+    before = sum(len(SETS[name][0]) * SETS[name][1] for name in list(SETS)[:list(SETS).index(of)])
     pairs = []
     for style, scene in samples:
         chosen = set()
         while len(chosen) < count:
-            pairs.append(chosen_pair(style, scene, of, chosen, len(others) + len(pairs)))
+            pairs.append(chosen_pair(style, scene, of, chosen, before + len(pairs)))
     save(sorted(others + pairs, key=lambda pair: list(SETS).index(pair["set"])))
 
 
@@ -359,8 +360,12 @@ def main():
     parser.add_argument("--draw", choices=SETS, help="draw pictures and sheets of these pairs")
     parser.add_argument("--measure", choices=SETS, help="measure their pictures")
     parser.add_argument("--read", nargs=2, metavar=("SET", "FILE"), help="add one reading of a set")
+    parser.add_argument("--force", action="store_true", help="choose, draw or measure a set that has votes")
     options = parser.parse_args()
     pairs = json.loads(PAIRS.read_text(encoding="utf-8"))
+    anew = options.choose or options.draw or options.measure
+    if anew and not options.force and any(pair["votes"] for pair in pairs if pair["set"] == anew):
+        sys.exit("the pairs of this set have been read, and styles may have changed since: --force does it anyway")
     if options.choose:
         choose(pairs, options.choose)
     elif options.draw:

@@ -104,13 +104,14 @@ def image_fault(node, spaces):
         return f"node '{node.name}' with a projection or limits in its Texture Mapping panel"
     if node.image.source not in {"FILE", "GENERATED"}:
         return f"node '{node.name}' with an image of source {node.image.source}"
-    space, keeps = node.image.colorspace_settings.name, keeps_its_depth(node.image)
+    space, is_float = node.image.colorspace_settings.name, node.image.is_float
     is_colour = space == "sRGB"
-    known = {"colour": is_colour and keeps, "data": not is_colour and keeps,
+    known = {"colour": is_colour and not is_float, "data": not is_colour and keeps_its_depth(node.image),
              "alpha": True,  # is not managed
-             "any": (is_colour or space in {"Non-Color", "Raw", "Linear", "Linear Rec.709"}) and keeps}
+             "any": (is_colour and not is_float) or
+                    (space in {"Non-Color", "Raw", "Linear", "Linear Rec.709"} and keeps_its_depth(node.image))}
     if not known[spaces]:
-        return f"node '{node.name}' with an image in {space}{'' if keeps else ', of more than 8 bits'}"
+        return f"node '{node.name}' with an image in {space}{', of more than 8 bits' if is_float else ''}"
     return coordinates_of(node.inputs["Vector"])[1]
 
 

@@ -48,8 +48,10 @@ LIGHT_PASSES = {"combined", "emit"} | {f"{lobe}_{part}" for lobe in ("diffuse", 
                                        for part in ("direct", "indirect", "color")}
 TERMINATOR_OFFSETS = [f"shadow_terminator_{kind}offset" for kind in ("", "normal_", "geometry_", "shading_")]
 # Paths of animated properties that set_up_output, set_up_cycles, set_up_layer and render_to set.
-SET_HERE = re.compile(r"^(render\.(?!use_simplify$|simplify_)|cycles\.|view_layers\[|dof\.use_dof$"
-                      r"|shadow_terminator_\w*offset$)")
+SET_HERE = {"scenes": re.compile(r"^(render\.(?!use_simplify$|simplify_)|cycles\.|view_layers\[)"),
+            "cameras": re.compile(r"^dof\.use_dof$"),
+            "lights": re.compile(r"^cycles\.use_multiple_importance_sampling$"),
+            "objects": re.compile(r"^(cycles\.)?shadow_terminator_\w*offset$")}
 BOUNCES = ("max_bounces", "diffuse_bounces", "glossy_bounces", "transmission_bounces", "volume_bounces")
 
 
@@ -96,11 +98,12 @@ def open_scene(options, unsupported):
         bpy.context.window.scene = scene
         set_size(scene.render, options.size)
         scene.frame_set(scene.frame_current if options.frame is None else options.frame)
-        for thing in (scene, *bpy.data.cameras, *bpy.data.lights, *bpy.data.objects):
-            blend_common.release(thing, SET_HERE)
         layer = blend_common.choose_layer(scene, options.view_layer)
         blend_check.check_file(layer, unsupported)
         guide_instances.name_apart(scene, layer, unsupported)
+        for kind, paths in SET_HERE.items():  # last: what is hidden takes the frame's values when it is shown
+            for thing in getattr(bpy.data, kind):
+                blend_common.release(thing, paths)
     else:
         blend_common.note_version(unsupported)
         guide_import.load(options.scene, options.size, unsupported)

@@ -1,4 +1,4 @@
-"""Makes the scenes of crosscheck_test.cpp: room, scatter, crooked, keyed, simplified and deep.blend.
+"""Makes the scenes of crosscheck_test.cpp: room, scatter, crooked, keyed and simplified.blend.
 
     blender -b -noaudio --factory-startup -P tests/blender/make_crosscheck.py -- FOLDER
 """
@@ -208,35 +208,12 @@ def simplified():
     bpy.context.scene.camera = camera("Camera")
 
 
-def deep():
-    """A PNG of 16 bits a channel is the colour of a plane, and its alpha the plane's."""
-    scene = bpy.context.scene
-    scene.view_settings.view_transform = "Standard"
-    settings = scene.render.image_settings
-    settings.file_format, settings.color_mode, settings.color_depth = "PNG", "RGBA", "16"
-    drawn = bpy.data.images.new("Drawn", 32, 16, float_buffer=True, alpha=True)
-    drawn.pixels.foreach_set([value for y in range(16) for x in range(32)
-                              for value in (x / 32, y / 16, 0.3, 0.0 if x < 4 else 1.0)])
-    drawn.save_render(output("deep.png"))
-    painted = bpy.data.materials.new("Painted")
-    painted.use_nodes = True
-    tree = painted.node_tree
-    texture = tree.nodes.new("ShaderNodeTexImage")
-    texture.image = bpy.data.images.load(output("deep.png"))
-    for name in ("Color", "Alpha"):
-        tree.links.new(texture.outputs[name],
-                       tree.nodes["Principled BSDF"].inputs["Base Color" if name == "Color" else name])
-    bpy.ops.mesh.primitive_plane_add(size=4.0)
-    bpy.context.object.data.materials.append(painted)
-    scene.camera = camera("Camera")
-
-
 def output(name):
     return str(Path(sys.argv[sys.argv.index("--") + 1]) / name)
 
 
 def main():
-    for build in (room, scatter, crooked, keyed, simplified, deep):
+    for build in (room, scatter, crooked, keyed, simplified):
         bpy.ops.wm.read_factory_settings(use_empty=True)
         build()
         bpy.ops.wm.save_as_mainfile(filepath=output(build.__name__ + ".blend"))
