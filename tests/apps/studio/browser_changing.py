@@ -142,6 +142,12 @@ class Changing(Page):
         self.assertEqual(typed("#size-width", "0"), "320")
         self.assertEqual(typed("#seed", "-5"), "0")
         self.assertEqual(self.state()["size"], [320, 180])
+        for field, text in (("#seed", "1.5"), ("#seed", "-1"), ("#seed", Keys.DELETE), ("#size-width", "0"),
+                            ("#size-height", "20000")):
+            before = self.find(field).get_attribute("value")
+            self.find(field).send_keys(Keys.CONTROL + "a")
+            self.find(field).send_keys(text, Keys.ENTER)  # the field stays the active one
+            self.assertEqual(self.find(field).get_attribute("value"), before, f"{field} after {text}")
         width = self.find("#size-width")
         width.send_keys(Keys.CONTROL + "a")
         width.send_keys("400", Keys.ENTER)
