@@ -367,7 +367,7 @@ class Lasting(Page):
         choose = ("const s = document.getElementById('exemplar-select'); s.value = arguments[0];"
                   "s.dispatchEvent(new Event('change', {bubbles: true}))")
         self.js(choose, "0/1")
-        self.until(lambda: "lit.png" in self.find("#paint-why").text, "where the strokes lie")
+        self.until(lambda: "lit.png of my " in self.find("#paint-why").text, "where the strokes lie")
         self.assertFalse(self.find("#exemplar-layer").is_displayed())
         self.js(choose, "0/0")
         self.begin_to_paint()
