@@ -98,6 +98,15 @@ class Pictures(Page):
         self.settled()
         self.assertEqual(self.pixels(), before)
 
+    def test_a_page_as_narrow_as_a_telephone(self):
+        self.browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
+                                     {"width": 360, "height": 740, "deviceScaleFactor": 1, "mobile": False})
+        self.until(lambda: self.js("return innerWidth") == 360, "a narrow page")
+        right = self.js("return document.getElementById('download').getBoundingClientRect().right")
+        wide = self.js("return document.documentElement.scrollWidth")
+        self.browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+        self.assertLessEqual(max(right, wide), 360)
+
     def test_a_finish_and_its_dials(self):
         before = self.pixels()
         Select(self.find("#finish-name")).select_by_value("comic")
