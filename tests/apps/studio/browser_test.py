@@ -12,6 +12,7 @@ import sys
 import time
 import unittest
 
+from PIL import Image, ImageCms
 from selenium.webdriver import ActionChains
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import Select
@@ -324,6 +325,19 @@ class Lasting(Page):
         if self.find("#paint").get_attribute("aria-pressed") != "true":
             self.find("#paint").click()
         self.until(lambda: self.js("return document.body.hasAttribute('data-paint')"), "the brush")
+
+    def test_a_png_with_another_profile_is_not_painted_on(self):
+        file = self.folder / "my" / "lit.png"
+        plain = ImageCms.ImageCmsProfile(ImageCms.createProfile("sRGB")).tobytes()
+        other = plain.replace(b"rXYZ", b"old ").replace(b"gXYZ", b"rXYZ").replace(b"old ", b"gXYZ")
+        for profile, is_painted in ((plain, True), (other, False)):
+            with Image.open(SOURCE / "exemplars" / "oil" / "lit.png") as picture:
+                picture.save(self.folder / "new.png", icc_profile=profile)
+            os.replace(self.folder / "new.png", file)
+            self.until(lambda: self.call("GET", "/api/paintable?exemplar=0")[1]["ok"] == is_painted,
+                       f"painting allowed: {is_painted}")
+        why = self.call("GET", "/api/paintable?exemplar=0")[1]["why"]
+        self.assertTrue("lit.png" in why and "sRGB" in why, why)
 
     def test_painting_begins_with_a_copy_of_a_bundled_style(self):
         self.choose("style", "ink")
