@@ -179,7 +179,8 @@ struct SphereOptions {
 };
 
 // The exemplar's guides: the unit sphere that exactly fills an N × N orthographic picture, as an Embree sphere
-// primitive, lit by a sun of strength π. The object's name is "sphere".
+// primitive, lit by a sun of strength π. It is white and matt; lpe.LSE is what it would have with gloss. The object's
+// name is "sphere".
 Expected<GuidegenResult> RenderSphereGuides(const SphereOptions& options);
 
 }  // namespace scumble

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <glm/gtc/constants.hpp>
 #include <string>
 #include <vector>
@@ -5,6 +6,7 @@
 #include "core/image/direction.h"
 #include "guidegen/cast/cast_guides.h"
 #include "guidegen/guidegen.h"
+#include "guidegen/surface/bsdf.h"
 
 namespace scumble {
 namespace {
@@ -31,9 +33,7 @@ Light SphereSun(const SphereOptions& options) {
   return sun;
 }
 
-}  // namespace
-
-Expected<GuidegenResult> RenderSphereGuides(const SphereOptions& options) {
+Expected<GuidegenResult> Render(const SphereOptions& options, const Material& material) {
   GuidegenOptions cast;
   cast.width = cast.height = options.size;
   cast.layers = options.layers;
@@ -47,9 +47,8 @@ Expected<GuidegenResult> RenderSphereGuides(const SphereOptions& options) {
   SCUMBLE_ASSIGN(view.camera, CameraRays::Make(SphereCamera(), options.size, options.size));
   SCUMBLE_ASSIGN(view.lights, PlaceLights({SphereSun(options)}, view.camera));
   view.key_lamp = KeyLamp{true, -view.lights[0].axis};
-  Material material;
-  material.bsdf = Bsdf::kDiffuse;
-  view.supply.light = view.supply.diffuse = true;
+  view.supply.light = true;
+  view.supply.diffuse = MayBeDiffuse(material), view.supply.specular = MayBeSpecular(material);
   PlacedObject sphere = Place(nullptr, &material, {}, view.camera.ViewFromObject(glm::dmat4(1.0)));
   const std::vector<std::string> names = {"sphere"};
   const std::uint32_t id = IdsForNames(names)[0];
@@ -59,6 +58,24 @@ Expected<GuidegenResult> RenderSphereGuides(const SphereOptions& options) {
   SCUMBLE_ASSIGN(GuidegenResult result, CastGuides(objects, view, cast));
   result.guides.object_names = {{id, names[0]}};
   result.guides.material_names = {{id, names[0]}};
+  return result;
+}
+
+}  // namespace
+
+Expected<GuidegenResult> RenderSphereGuides(const SphereOptions& options) {
+  Material matt;
+  matt.bsdf = Bsdf::kDiffuse;
+  SCUMBLE_ASSIGN(GuidegenResult result, Render(options, matt));
+  if (!options.layers.Has(Layer::kLpeLSE)) return result;
+  Material glossy;  // as Blender's Principled BSDF is at first
+  glossy.bsdf = Bsdf::kMetallicRoughness;
+  glossy.roughness = 0.5f;
+  SphereOptions highlight = options;
+  highlight.layers = {Layer::kLpeLSE};
+  SCUMBLE_ASSIGN(const GuidegenResult more, Render(highlight, glossy));
+  for (int c = 0; c < ChannelCount(Layer::kLpeLSE); ++c)
+    std::ranges::copy(more.guides.Plane(Layer::kLpeLSE, c), result.guides.Plane(Layer::kLpeLSE, c).begin());
   return result;
 }
 

@@ -13,7 +13,7 @@ std::optional<double> MeasureExposure(std::span<const PreparedStyle> styles, con
   };
   for (const PreparedStyle& style : styles) {
     if (style.space && style.space->has_radiance()) {
-      brightest.push_back(style.space->white());
+      if (style.space->is_lit()) brightest.push_back(style.space->white());
       measure(style.space->radiance());
     } else if (style.illumination.active()) {
       const auto luminances = style.illumination.luminances();

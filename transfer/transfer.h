@@ -74,8 +74,8 @@ double LuminanceOf(const Exemplar& exemplar, double rim);
 
 // The exposure that suits all of these styles, by MeasureExposure of illumination.h. For styles that weigh light, the
 // 90th percentile of their exemplars' guides counts; for other styles of several exemplars, their luminances. Empty if
-// no style uses light. The guides must hold the layers that the styles require. `threads` 0: all; the result does not
-// depend on them.
+// no style uses light; 0 if no exemplar is lit. The guides must hold the layers that the styles require. `threads` 0:
+// all; the result does not depend on them.
 std::optional<double> MeasureExposure(std::span<const PreparedStyle> styles, const GuideSet& guides, int threads = 0);
 
 // The brute force takes time quadratic in the pixels; larger pictures are refused.

@@ -81,6 +81,24 @@ std::vector<PaintFault> OppositeLights(const Style& style, std::span<const float
   return faults;
 }
 
+// Layers that choose no paint: they have a weight, and one value in all guides.
+std::vector<PaintFault> UniformLayers(const GuideSpace& space, int exemplars) {
+  std::vector<PaintFault> faults;
+  for (const Layer layer : space.layers()) {
+    GuideSpace::Range range = space.RangeOf(0, layer);
+    for (int k = 1; k < exemplars; ++k) {
+      const GuideSpace::Range more = space.RangeOf(k, layer);
+      range = {std::min(range.least, more.least), std::max(range.largest, more.largest)};
+    }
+    if (range.least < range.largest) continue;
+    const std::string name = Info(layer).name;
+    faults.push_back({"uniform-layer", Weight::kMistake,
+                      fmt::format("{} has a weight, and is {:.2f} all over its guides", name, range.least),
+                      "set transfer.guide_weights." + name + " to 0, or make guides in which it varies", std::nullopt});
+  }
+  return faults;
+}
+
 void FindFaults(CheckedStyle& checked) {
   const Style& style = checked.style;
   const auto luminances = checked.prepared.illumination.luminances();
@@ -113,8 +131,12 @@ void FindFaults(CheckedStyle& checked) {
     checked.faults.push_back(
         {equal.image, {"equal-light", Weight::kMistake, "it " + equal.what, equal.fix, std::nullopt}});
   }
-  for (PaintFault& fault : AmbiguityFaults(checked.directions))
-    checked.faults.push_back({style.exemplars.front().name, std::move(fault)});
+  std::vector<PaintFault> of_guides = AmbiguityFaults(checked.directions);
+  if (checked.prepared.space) {
+    for (PaintFault& fault : UniformLayers(*checked.prepared.space, static_cast<int>(style.exemplars.size())))
+      of_guides.push_back(std::move(fault));
+  }
+  for (PaintFault& fault : of_guides) checked.faults.push_back({style.exemplars.front().name, std::move(fault)});
 }
 
 }  // namespace

@@ -435,6 +435,7 @@ void AddKit(int size, std::size_t lights, const LayerSet& layers, bool has_layer
   // Template files are kept until all are made: one picture, ten in a file of layers, a page.
   const Bytes files = 4 * (has_layers_file ? 3 : 1);
   need.Take("guides", lights * PlanesOf(square, Made(layers)));
+  if (layers.Has(Layer::kLpeLSE)) need.TakeTransient("highlight", PlanesOf(square, Made({Layer::kLpeLSE})));
   need.Take("templates", lights * files * pixels);
   need.TakeTransient("drawing", (3 * kPaint + 8) * pixels);
   need.TakeTransient("guide file", PlanesOf(square, Made(layers)));

@@ -75,10 +75,11 @@ Expected<GuideSpace> GuideSpace::Build(const GuideWeights& weights, std::span<co
   SCUMBLE_CHECK(space.dimensions() > 0 && space.extra_dimensions_ <= kMaxExtra);
   for (const Layer layer : kExposedBy) {
     if (!(weights[layer] > 0.0f)) continue;
-    space.has_radiance_ = true, space.radiance_ = layer;
+    if (!space.has_radiance_) space.has_radiance_ = true, space.radiance_ = layer;
     double white = 0.0;
     for (const Exemplar& exemplar : exemplars) white = std::max(white, BrightPercentile(*exemplar.guides, layer));
-    if (static_cast<float>(white) > 0.0f) space.white_ = static_cast<float>(white);
+    if (!(static_cast<float>(white) > 0.0f)) continue;
+    space.is_lit_ = true, space.radiance_ = layer, space.white_ = static_cast<float>(white);
     break;
   }
   for (int k = 0; k < space.exemplar_->count(); ++k) {

@@ -53,10 +53,12 @@ class GuideSpace {
   int dimensions() const { return extra_dimensions_ + (normal_weight_ > 0.0f ? 3 : 0); }
   std::span<const Layer> layers() const { return layers_; }  // those of the extra dimensions, in the enum's order
 
-  // Radiance: whether it has a weight; the layer that measures its exposure (the first of luminance, lpe.LDE,
-  // lpe.LD12E, lpe.full, lpe.LDDE and lpe.LSE with a weight); and that layer's 90th percentile in the brightest of the
-  // exemplars, above 0: 1 where nothing is lit.
+  // Radiance: whether it has a weight; whether a tenth of an exemplar is lit in such a layer; the layer that measures
+  // its exposure (the first of luminance, lpe.LDE, lpe.LD12E, lpe.full, lpe.LDDE and lpe.LSE with a weight that is so
+  // lit, else the first with a weight); and that layer's 90th percentile in the brightest of the exemplars, above 0: 1
+  // if none is lit.
   bool has_radiance() const { return has_radiance_; }
+  bool is_lit() const { return is_lit_; }
   Layer radiance() const { return radiance_; }
   float white() const { return white_; }
 
@@ -141,7 +143,7 @@ class GuideSpace {
   std::vector<float> weights_;
   std::vector<Part> parts_;
   int extra_dimensions_ = 0;
-  bool has_radiance_ = false;
+  bool has_radiance_ = false, is_lit_ = false;
   Layer radiance_ = Layer::kLuminance;
   float white_ = 1.0f;
   std::vector<std::vector<float>> values_;  // by exemplar: extra dimensions of each pixel

@@ -16,8 +16,8 @@ export class BrushPanel {
     this.page = page;
     this.isOn = false;
     this.saving = false;
-    // The exemplar that strokes lie on, its file, and what that was when the first of them was drawn.
-    this.belongsTo = this.file = '';
+    // The exemplar that strokes lie on, its file, its style's name, and what that was when the first of them was drawn.
+    this.belongsTo = this.file = this.style = '';
     /** @type {Paintable | null} */
     this.own = null;
     /** @type {Paintable | null} of the exemplar that is shown */
@@ -98,7 +98,7 @@ export class BrushPanel {
       if (!this.hasUnsaved) this.paintable = await this.ask();
       else if (this.belongsTo === here) this.paintable = this.own;
       else {
-        const why = `Strokes on ${this.file} are not saved: go back to it to save or undo them.`;
+        const why = `Strokes on ${this.file} of ${this.style} are not saved: go back to it to save or undo them.`;
         this.paintable = {ok: false, why};
       }
     } catch (error) {
@@ -149,6 +149,8 @@ export class BrushPanel {
       if (isOther) this.strokes.clear(width, height);  // otherwise what was undone can be done again
       this.belongsTo = this.exemplar.shown;
       this.file = paintable?.file ?? '';
+      const {state} = this.exemplar.store;
+      this.style = state.styles.find(({id}) => id === state.style)?.name ?? state.style;
       this.own = paintable;
       this.strokes.canvas.hidden = false;
     }

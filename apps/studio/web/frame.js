@@ -80,7 +80,7 @@ export class Frames {
     this.movedAt = -Infinity;
     this.timer = 0;
     this.running = false;
-    /** @type {{quality: string, abort: AbortController} | null} */
+    /** @type {{quality: string, revision: number, abort: AbortController} | null} */
     this.current = null;
     /**
      * On the screen, or a draft that will be in a moment.
@@ -104,8 +104,9 @@ export class Frames {
     if (this.isMoving) {
       clearTimeout(this.timer);
       this.timer = setTimeout(() => this.wake(), this.movedAt + kRestMs - performance.now() + 1);
-      if (this.current?.quality === 'final') this.current.abort.abort();
     }
+    const isOld = this.isMoving || this.current?.revision !== this.store.state.revision;
+    if (isOld && this.current?.quality === 'final') this.current.abort.abort();
     void this.run();
   }
 
@@ -165,7 +166,7 @@ export class Frames {
   async fetchOne(quality) {
     const abort = new AbortController();
     const show = this.show, begun = performance.now(), revision = this.store.state.revision;
-    this.current = {quality, abort};
+    this.current = {quality, revision, abort};
     this.onBegin(quality);
     try {
       const format = quality === 'draft' ? 'jpeg' : 'rgba';

@@ -19,9 +19,6 @@ export class OutputPanel {
     this.budget = byId('budget', HTMLInputElement);
     this.seed = byId('seed', HTMLInputElement);
     for (const input of [this.width, this.height]) input.addEventListener('change', () => this.resize());
-    // What was refused gives way to what is.
-    for (const input of [this.width, this.height, this.budget, this.seed])
-      input.addEventListener('blur', () => this.update(store.state));
     this.preset.addEventListener('change', () => {
       const [width, height] = this.preset.value.split('×').map(Number);
       if (height) void store.patch({size: [width, height]});
@@ -39,6 +36,10 @@ export class OutputPanel {
     byId('seed-next', HTMLElement).addEventListener('click', () => void store.patch({seed: store.state.seed + 1}));
     fillSelect(this.quality, [{value: 'final', text: 'Final: the style as it is'}, {value: 'preview', text: 'Preview'},
                               {value: 'draft', text: 'Draft'}, {value: 'budget', text: 'Within a budget'}], 'final');
+    // Last: what the listeners above refused gives way to what is.
+    for (const input of [this.width, this.height, this.budget, this.seed]) {
+      for (const event of ['change', 'blur']) input.addEventListener(event, () => this.showRefused(input));
+    }
     store.listen((state) => this.update(state));
   }
 
@@ -46,6 +47,12 @@ export class OutputPanel {
     const size = [this.width, this.height].map((input) => Math.round(Number(input.value)));
     if (size.some((side) => !(side >= 1 && side <= kMostSide))) return;
     void this.store.patch({size: [size[0], size[1]]});
+  }
+
+  /** @param {HTMLInputElement} input a field whose number counts, or was refused */
+  showRefused(input) {
+    input.dataset.value = '';  // showNumber leaves a number that is being typed alone
+    this.update(this.store.state);
   }
 
   /** @param {State} state */

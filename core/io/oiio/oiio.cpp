@@ -81,6 +81,13 @@ Status CheckDeclaredSize(const OIIO::ImageSpec& spec, const std::string& reader,
                     " bytes cannot hold them; it may be cut short or damaged");
 }
 
+// The TIFF library's own way from L*a*b* to RGB gives greys a yellow cast.
+Status CheckColorModel(const OIIO::ImageSpec& spec, const std::string& name) {
+  constexpr int kLab = 8;
+  if (spec.get_int_attribute("tiff:PhotometricInterpretation") != kLab) return Ok();
+  return InputError("cannot read " + name + ": its colours are L*a*b*, which is not read; save it in RGB");
+}
+
 // Opens a file of that many bytes with one reader only.
 Expected<std::shared_ptr<OIIO::ImageInput>> OpenBy(const std::string& reader, const std::string& name,
                                                    std::uint64_t bytes, const OIIO::ImageSpec& config) {
@@ -94,6 +101,7 @@ Expected<std::shared_ptr<OIIO::ImageInput>> OpenBy(const std::string& reader, co
   SCUMBLE_RETURN_IF_ERROR(WithoutExceptions(name, [&] { open = input->open(name, spec, config); }));
   if (!open) return OpenFailure(input->geterror(), name);
   SCUMBLE_RETURN_IF_ERROR(CheckDeclaredSize(spec, reader, bytes, name));
+  SCUMBLE_RETURN_IF_ERROR(CheckColorModel(spec, name));
   return input;
 }
 

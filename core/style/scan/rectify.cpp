@@ -98,8 +98,9 @@ Error SeveralTemplates(const std::string& name, std::size_t marks) {
                     std::to_string(kFiducialCount) + " of one; cut the picture to one of them");
 }
 
-// Whether the marks of a whole second sheet are in the scan.
-bool HasSecondTemplate(const std::vector<FoundMark>& marks, const TemplateFit& fit, int width, int height) {
+// The marks beside those of the fit, if a sheet of their own fits them; else none.
+std::vector<FoundMark> MarksOfAnotherFit(const std::vector<FoundMark>& marks, const TemplateFit& fit, int width,
+                                         int height) {
   std::vector<FoundMark> rest;
   for (const FoundMark& mark : marks) {
     const bool used = std::any_of(fit.marks.begin(), fit.marks.end(), [&](const FoundMark& other) {
@@ -107,7 +108,14 @@ bool HasSecondTemplate(const std::vector<FoundMark>& marks, const TemplateFit& f
     });
     if (!used) rest.push_back(mark);
   }
-  return FitTemplate(rest, width, height).has_value();
+  return FitTemplate(rest, width, height) ? rest : std::vector<FoundMark>();
+}
+
+// A sheet has each mark once.
+bool HaveACommonId(const std::vector<FoundMark>& some, const std::vector<FoundMark>& others) {
+  return std::any_of(some.begin(), some.end(), [&](const FoundMark& mark) {
+    return std::any_of(others.begin(), others.end(), [&](const FoundMark& other) { return other.id == mark.id; });
+  });
 }
 
 // The sheet's pose: from the map's slopes in the template's middle, and from how they change across it.
@@ -227,6 +235,10 @@ Picture Finish(const LinearPicture& pixels, const PaperLight& light,
   return picture;
 }
 
+constexpr const char* kCurled =
+    "the paper is curled or folded, or the lens bends straight lines: lay the sheet flat under glass, scan it, or take "
+    "it from farther away";
+
 // The first reason in the marks to refuse.
 Status CheckFit(const TemplateFit& fit, const std::string& name, const RectifyOptions& options) {
   const double sphere = fit.map.SpherePixels();
@@ -238,10 +250,7 @@ Status CheckFit(const TemplateFit& fit, const std::string& name, const RectifyOp
   if (!(fit.held_out <= kMaxRegistrationError)) {
     double blur = 0;
     for (const FoundMark& mark : fit.marks) blur = std::max(blur, mark.blur_pixels / mark.module_pixels);
-    const std::string why = blur > 0.35
-                                ? "the picture is too blurred: keep the camera still and in focus"
-                                : "the paper is curled or folded, or the lens bends straight lines: lay the sheet flat "
-                                  "under glass, scan it, or take it from farther away";
+    const std::string why = blur > 0.35 ? "the picture is too blurred: keep the camera still and in focus" : kCurled;
     return InputError("the marks in " + name + " do not lie as on a flat sheet: " + Percent(fit.held_out) +
                       " of the sphere's diameter apart, at most " + Percent(kMaxRegistrationError) +
                       " is let through; worst at the " + FiducialPlace(fit.worst_id) + " (" + Percent(fit.worst) +
@@ -307,11 +316,17 @@ Expected<Rectified> RectifyScan(Picture scan, const std::string& name, const Rec
   if (marks.size() > kMostMarks) return SeveralTemplates(name, marks.size());
   const auto fit = FitTemplate(marks, scan.width, scan.height);
   if (!fit) return NoTemplate(scan, name, marks, options);
-  if (HasSecondTemplate(marks, *fit, scan.width, scan.height)) {
+  const std::vector<FoundMark> rest = MarksOfAnotherFit(marks, *fit, scan.width, scan.height);
+  if (HaveACommonId(rest, fit->marks)) {
     return InputError(name + " shows two templates: cut the picture to one of them");
   }
   SCUMBLE_RETURN_IF_ERROR(CheckSphereIsWhole(fit->map, scan, name));
   SCUMBLE_RETURN_IF_ERROR(CheckFit(*fit, name, options));
+  if (!rest.empty()) {
+    return InputError("the marks in " + name + " do not lie as on a flat sheet: " + std::to_string(fit->marks.size()) +
+                      " of them lie on one plane and " + std::to_string(rest.size()) + " on another. Most likely " +
+                      kCurled);
+  }
 
   Rectified result;
   result.map = fit->map;

@@ -96,6 +96,15 @@ TEST_F(CliExemplar, GuidesOfLightFromTheSphereToThePicture) {
   const auto checked = RunOk({"styles", "check", "ball"});
   EXPECT_NE(checked.out.find("guides: 7 dimensions"), std::string::npos) << checked.out;
   EXPECT_NE(checked.out.find("lpe.LDE shows 0.00 to"), std::string::npos) << checked.out;
+  WriteText("ball/weights.toml",
+            "[transfer.guide_weights]\nalbedo = 1.0\n\"lpe.LSE\" = 0.5\n"
+            "[[exemplar]]\nimage = \"lit.png\"\nguides = \"guides.exr\"\n");
+  const std::string faults = RunOk({"styles", "check", "ball/weights.toml"}).err;
+  EXPECT_TRUE(Contains(faults,
+                       "lit.png: albedo has a weight, and is 1.00 all over its guides; set "
+                       "transfer.guide_weights.albedo to 0"))
+      << faults;
+  EXPECT_FALSE(Contains(faults, "lpe.LSE")) << "a highlight varies: " << faults;
   // Guides that lack a required layer.
   RunOk(With({"guidegen", scene, "-q", "-o", "dark.exr"}, size));
   const auto refused = Run({"transfer", "dark.exr", "--style", "ball", "-o", "no.png"});

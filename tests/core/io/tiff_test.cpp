@@ -2,6 +2,9 @@
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -153,6 +156,37 @@ TEST(TiffWriter, NotesAreThoseOfThePictureLibrary) {
       ASSERT_TRUE(header) << header.error().message;
       EXPECT_EQ(header->dpi, dpi);
     }
+  }
+}
+
+// A TIFF whose entry PhotometricInterpretation, a short number with the lowest byte first, has another value.
+void WriteWithColorsOf(const fs::path& path, char kind) {
+  const auto output = OIIO::ImageOutput::create(path.string());
+  const std::vector<std::uint8_t> pixels(3 * 8 * 8, 128);
+  ASSERT_TRUE(output && output->open(path.string(), OIIO::ImageSpec(8, 8, 3, OIIO::TypeDesc::UINT8)) &&
+              output->write_image(OIIO::TypeDesc::UINT8, pixels.data()) && output->close());
+  auto bytes = ReadWholeFile(path);
+  ASSERT_TRUE(bytes) << bytes.error().message;
+  constexpr std::array<unsigned char, 10> kAsRgb = {0x06, 0x01, 3, 0, 1, 0, 0, 0, 2, 0};
+  const auto at = std::search(bytes->begin(), bytes->end(), kAsRgb.begin(), kAsRgb.end(),
+                              [](std::byte a, unsigned char b) { return std::to_integer<unsigned char>(a) == b; });
+  ASSERT_NE(at, bytes->end());
+  *(at + 8) = std::byte(kind);
+  ASSERT_TRUE(WriteFileAtomically(path, *bytes));
+}
+
+TEST(TiffReader, ColoursInLabAreRefused) {
+  const TemporaryFolder folder;
+  WriteWithColorsOf(folder / "rgb.tif", 2);
+  EXPECT_TRUE(ReadPicture(folder / "rgb.tif"));
+  WriteWithColorsOf(folder / "lab.tif", 8);
+  const auto picture = ReadPicture(folder / "lab.tif");
+  ASSERT_FALSE(picture);
+  for (const char* word : {"lab.tif", "L*a*b*", "save it in RGB"})
+    EXPECT_NE(picture.error().message.find(word), std::string::npos) << picture.error().message;
+  for (const char kind : {9, 10}) {  // unsigned a and b, and ITU's
+    WriteWithColorsOf(folder / "lab.tif", kind);
+    EXPECT_FALSE(ReadPicture(folder / "lab.tif")) << int(kind);
   }
 }
 

@@ -119,6 +119,18 @@ TEST(RectifyRefusal, CurledPaper) {
                 {"do not lie as on a flat sheet", "at most 1.00%", "worst at the", "curled"});
 }
 
+// Its upper and its lower part have marks of their own, which are not those of two sheets.
+TEST(RectifyRefusal, StronglyBentPaper) {
+  const Picture& sheet = CharcoalSheet();
+  constexpr int kMost = 240;
+  Picture bent = Filled(sheet.width + kMost, sheet.height, 65535);
+  for (int y = 0; y < sheet.height; ++y) {
+    const double v = 2.0 * y / sheet.height - 1.0;
+    std::copy_n(sheet.At(0, y), 4 * std::size_t(sheet.width), bent.At(int(kMost * v * v), y));
+  }
+  ExpectRefused(bent, {"do not lie as on a flat sheet", "curled"});
+}
+
 TEST(RectifyRefusal, MarksThatWereMovedOnTheSheet) {
   Picture sheet = Filled(1280, 1280, 65535);
   const Picture& source = CharcoalSheet();

@@ -1,6 +1,7 @@
 // The exemplar's guides against the analytic sphere.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <utility>
@@ -83,6 +84,23 @@ TEST(Sphere, IsLitByTheKeyLight) {
     EXPECT_NEAR(result.guides.Plane(Layer::kLuminance)[i], std::max(0.0, cosine), 1e-5);
     EXPECT_EQ(result.guides.Plane(Layer::kShadow)[i], 0.0f);
   }
+}
+
+TEST(Sphere, HasAHighlightHalfwayToTheKeyLight) {
+  SphereOptions options;
+  options.size = 128;
+  options.layers = {Layer::kLpeLDE, Layer::kLpeLSE};
+  const GuideSet guides = RenderSphere(options).guides;
+  const auto highlight = guides.Plane(Layer::kLpeLSE);
+  const auto brightest = std::size_t(std::max_element(highlight.begin(), highlight.end()) - highlight.begin());
+  const glm::dvec3 sun = DirectionFromAngles(kKeyLightAzimuth, kKeyLightElevation);
+  const glm::dvec3 halfway = glm::normalize(sun + glm::dvec3(0, 0, 1));
+  EXPECT_GT(highlight[brightest], 0.1f);
+  EXPECT_LT(AngleDegrees(guides.Vec3(Layer::kNormal, brightest), halfway), 5.0);
+  options.layers = {Layer::kLpeLDE};
+  const GuideSet matt = RenderSphere(options).guides;
+  const auto lit = matt.Plane(Layer::kLpeLDE), beside = guides.Plane(Layer::kLpeLDE);
+  EXPECT_TRUE(std::ranges::equal(lit, beside)) << "other layers stay matt";
 }
 
 TEST(Direction, TurnsFromTowardsTheViewerToTheRightAndUp) {

@@ -384,6 +384,20 @@ TEST(GuideSpace, SharesOfTheBrightestAreWhatIsCompared) {
   EXPECT_FALSE(MeasureExposure({&*dark, 1}, LitHills()).has_value()) << "shares are not exposed";
 }
 
+TEST(GuideSpace, ALayerThatIsDarkInTheExemplarFitsNoExposure) {
+  Style style = LitStyle(true, Weights({{Layer::kLuminance, 1.0f}, {Layer::kLpeLSE, 1.0f}}));
+  const auto lit = Prepare(style, 64);
+  std::ranges::fill(style.exemplars[0].guides->Plane(Layer::kLuminance), 0.0f);
+  const auto by_highlights = Prepare(style, 64);
+  for (int c = 0; c < 3; ++c) std::ranges::fill(style.exemplars[0].guides->Plane(Layer::kLpeLSE, c), 0.0f);
+  const auto dark = Prepare(style, 64);
+  ASSERT_TRUE(lit && by_highlights && dark);
+  EXPECT_EQ(lit->space->radiance(), Layer::kLuminance);
+  EXPECT_EQ(by_highlights->space->radiance(), Layer::kLpeLSE);
+  EXPECT_NE(MeasureExposure({&*by_highlights, 1}, LitHills(0, 8.0f)), 0.0);
+  EXPECT_EQ(MeasureExposure({&*dark, 1}, LitHills(0, 8.0f)), 0.0);
+}
+
 // ---- every machine, every cut --------------------------------------------------------------------------------------
 
 TEST(GuideSpace, ThreadsAndRegionsMakeNoDifference) {
