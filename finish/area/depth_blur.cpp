@@ -215,8 +215,9 @@ BlurSource SourceOf(const FinishStep& step, double most, const FinishFrame& fram
       const std::size_t p = first + i;
       source.alpha[p] = static_cast<float>(texels[4 * i + 3]) * (1.0f / 65535.0f);
       sigmas[i] *= static_cast<float>(scale.IsBeforeFocus(depth[p]) ? -most : most);
-      const bool is_mixed = texels[4 * i + 3] == 65535 && coverage[p] > 0.0f && sigmas[i] != 0.0f;
-      source.share[p] = is_mixed ? std::min(coverage[p], 1.0f) : 1.0f;
+      const bool is_mixed = texels[4 * i + 3] == 65535 && coverage[p] > 0.0f;
+      const float behind = is_mixed ? 1.0f - std::min(coverage[p], 1.0f) : 0.0f;
+      source.share[p] = 1.0f - behind * std::min(std::fabs(sigmas[i]), 1.0f);  // in focus a pixel stays as it is
     }
   });
   // On a sheet what lies beside strokes is blurred as the background: as their surface they would be cut out of that.

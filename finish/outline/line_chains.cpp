@@ -337,10 +337,10 @@ void Smooth(float give, LineChain& chain) {
 }  // namespace
 
 std::vector<LineChain> TraceLines(BorderMap& borders, const GuideSet& guides, std::span<const float> shadow,
-                                  double shortest, float give) {
+                                  double shortest, float give, bool settles_owners) {
   std::vector<LineChain> chains = Tracer(borders, guides, shadow).Trace(shortest);
   tbb::parallel_for(std::size_t(0), chains.size(), [&](std::size_t i) {
-    SettleOwners(guides, chains[i]);
+    if (settles_owners) SettleOwners(guides, chains[i]);
     Smooth(give, chains[i]);
   });
   return chains;

@@ -46,9 +46,9 @@ struct LineChain {
 // `shortest` borders that have a free end are noise and left out. Each line is smoothed: a position may move by up to
 // `give` pixels across its border; half a pixel is as much as is unknown about it. Silhouettes begin where the coverage
 // says, shadows where half shade lies between pixels of `shadow`, which is that of FindBorders. The order is that of
-// the first border, row by row. O(pixels).
+// the first border, row by row. Owners are settled (SettleOwners), if wanted. O(pixels).
 std::vector<LineChain> TraceLines(BorderMap& borders, const GuideSet& guides, std::span<const float> shadow,
-                                  double shortest, float give = 0.5f);
+                                  double shortest, float give = 0.5f, bool settles_owners = true);
 
 // `values` under a Gaussian of the chain's own smoothing, for quantities that follow a line.
 void SmoothAlong(const LineChain& chain, std::vector<float>& values);

@@ -40,7 +40,8 @@ constexpr float kCrumb = 3.0f;
 
 // `scale`: pixels of the guides for one of the reference height.
 bool IsCrumb(const OutlinePass& pass, float scale, const LineChain& chain) {
-  if (!chain.closed && (chain.begin == LineEnd::kJunction || chain.end == LineEnd::kJunction)) return false;
+  const auto goes_on = [](LineEnd end) { return end == LineEnd::kJunction || end == LineEnd::kPictureEdge; };
+  if (!chain.closed && (goes_on(chain.begin) || goes_on(chain.end))) return false;
   glm::vec2 least = chain.points.front().at, most = least;
   double share = 0.0;
   for (const LinePoint& point : chain.points) {
@@ -53,14 +54,16 @@ bool IsCrumb(const OutlinePass& pass, float scale, const LineChain& chain) {
 }
 
 // `frame`: with the guides of the borders, which are `factor` times smaller than the picture. Pieces of lines whose
-// owner `is_masked` are left out: where they cross others, these show.
+// owner `is_masked` are left out: where they cross others, these show. With a mask each piece of a line between two
+// objects has the owner that it has by itself: if all were of one, the mask of the other would lose the line.
 template <class IsMasked>
 StrokeCover CoverByStrokes(const OutlinePass& pass, const FinishFrame& frame, int factor, const LineNoise& noise,
-                           std::span<const float> shadow, BorderMap& borders, bool with_owner,
+                           std::span<const float> shadow, BorderMap& borders, bool with_owner, bool has_mask,
                            const IsMasked& is_masked) {
   // Of small guides a step of a border is several pixels of the picture: it is evened out.
   const double shortest = std::max(kShortest, kShortest * frame.scale / factor);
-  std::vector<LineChain> chains = TraceLines(borders, *frame.guides, shadow, shortest, factor > 1 ? 1.0f : 0.5f);
+  std::vector<LineChain> chains =
+      TraceLines(borders, *frame.guides, shadow, shortest, factor > 1 ? 1.0f : 0.5f, !has_mask);
   std::erase_if(chains,
                 [&](const LineChain& chain) { return IsCrumb(pass, static_cast<float>(frame.scale / factor), chain); });
   for (LineChain& chain : chains) {
@@ -180,9 +183,9 @@ void DrawOutline(const OutlinePass& pass, double strength, std::span<const std::
   const LineNoise noise{across ? &*across : nullptr, down ? &*down : nullptr, gaps ? &*gaps : nullptr};
   const bool of_paint = pass.color != OutlinePass::Color::kInk, with_owner = of_paint || !shares.empty();
   const auto is_masked = [&](std::uint32_t owner) { return !shares.empty() && shares[middle(owner)] == 0; };
-  const StrokeCover cover = is_field
-                                ? CoverByDistance(pass, traced, noise.gaps, borders, with_owner)
-                                : CoverByStrokes(pass, traced, factor, noise, shade, borders, with_owner, is_masked);
+  const StrokeCover cover =
+      is_field ? CoverByDistance(pass, traced, noise.gaps, borders, with_owner)
+               : CoverByStrokes(pass, traced, factor, noise, shade, borders, with_owner, !shares.empty(), is_masked);
   const PaintOfOwner painted(guides);
   std::vector<std::uint16_t> paint;  // as it was before the lines
   if (of_paint) paint = picture.rgba;

@@ -24,14 +24,15 @@ class TangentPlanes {
   }
 
   // By how much the depth on the plane of the pixel's surface grows to the next pixel of its row, or to the one below.
-  // 0 if that is unknown. A surface of which next to nothing shows counts for one that is a little less steep: there
-  // small errors of a normal are large ones of a slope.
+  // 0 if that is unknown, or if the surface looks away. A surface of which next to nothing shows counts for one that is
+  // a little less steep: there small errors of a normal are large ones of a slope.
   float StepAt(std::size_t pixel, bool is_below) const {
     constexpr float kLeastFacing = 0.05f;
     const auto width = static_cast<std::size_t>(guides_.width());
     const glm::vec3 normal = guides_.Vec3(Layer::kNormal, pixel);
     const glm::vec2 sight = rays_.SightAt(static_cast<int>(pixel % width), static_cast<int>(pixel / width));
     const float facing = normal.z - normal.x * sight.x - normal.y * sight.y;
+    if (!(facing > 0.0f)) return 0.0f;
     const float across = is_below ? normal.y * step_.y : normal.x * step_.x;
     return across * (has_perspective_ ? depth_[pixel] : 1.0f) / std::max(facing, kLeastFacing);
   }

@@ -368,9 +368,9 @@ FinishBytes OfPass(const FinishPass& pass, bool has_map) {
     transient = edges->flow > 0.0 ? kFloat + 3 * kLab : (edges->borders ? 6 : 2) * kFloat;
   const auto* shadows = std::get_if<ShadowsPass>(&pass.effect);
   if (shadows && shadows->soften > 0.0) transient = 6 * kFloat;  // the shade, its sums and weights
-  // Two copies, sigmas, and a level of the picture's size.
+  // Two copies, sigmas, shares, and a level of the picture's size.
   const auto* depth = std::get_if<DepthPass>(&pass.effect);
-  if (depth && depth->blur > 0.0) transient = 2 * kLab + kFloat + 5 * kFloat;
+  if (depth && depth->blur > 0.0) transient = 2 * kLab + 2 * kFloat + 5 * kFloat;
   // Distances and rims, the lattice and the waves of four noises, a copy.
   const auto* pigment = std::get_if<PigmentPass>(&pass.effect);
   if (pigment) transient = 2 + kFloat + 8 + (pigment->stick ? 3 : 1) * kFloat + kPaint;

@@ -156,5 +156,29 @@ TEST(DepthBlur, SilhouettesAreSmooth) {
   }
 }
 
+// Blur begins where focus ends: what is hardly out of it looks as in it, at its border too.
+TEST(DepthBlur, NearTheFocusSilhouettesStay) {
+  const auto left_of = [](glm::vec2 at) { return at.x < 20.0f + 0.1f * at.y; };
+  const GuideSet guides = GuidesOf(60, 60, [&](glm::vec2 at) {
+    return left_of(at) ? SeenPoint{true, {0, 0, 1}, 1.0005f, 1.0f} : SeenPoint{};
+  });
+  Picture picture = PlainPicture(60, 60, 50000, 50000, 50000);
+  for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
+    const float share = guides.Plane(Layer::kCoverage)[i];
+    std::fill_n(&picture.rgba[4 * i], 3, static_cast<std::uint16_t>(10000.0f + 40000.0f * share));
+  }
+  const Picture made = Finished(BlurStep(6.0), &guides, picture);
+  int mixed = 0;
+  for (int y = 10; y < 50; ++y) {
+    for (int x = 18; x < 28; ++x) {
+      const float share = guides.Plane(Layer::kCoverage)[guides.Index(x, y)];
+      if (!(share > 0.0f && share < 1.0f)) continue;
+      EXPECT_NEAR(LightnessOnRow(made, x, y), LightnessOnRow(picture, x, y), 0.01) << x << " " << y;
+      ++mixed;
+    }
+  }
+  EXPECT_GT(mixed, 20);
+}
+
 }  // namespace
 }  // namespace scumble
