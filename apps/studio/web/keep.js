@@ -7,7 +7,9 @@ import {byId, download, make} from './dom.js';
 export class Keeper {
   /**
    * @param {import('./store.js').Store} store
-   * @param {{announce: (text: string) => void, error: (error: unknown) => void}} page
+   * @param {{announce: (text: string) => void, error: (error: unknown) => void,
+   *   rebase: (style: string, saved: Record<string, any>, before: Record<string, any>) => void}} page
+   *   rebase: keys were written into a style's file, as Store.rebase has it
    */
   constructor(store, page) {
     this.store = store;
@@ -65,8 +67,11 @@ export class Keeper {
       this.page.announce('nothing to save');
       return;
     }
+    const {style, keys, file_keys: before} = this.store.state;
     try {
       const {saved} = await (await call('POST', '/api/save')).json();
+      this.store.rebase(style, keys, before);
+      this.page.rebase(style, keys, before);
       this.page.announce(`saved ${saved}`);
       await this.store.refresh();
     } catch (error) {

@@ -111,8 +111,9 @@ const picker =
 const assigner = new Assigner(store, announce);
 const orbit = new OrbitControl(store, view, (pixel, at) => void assigner.offer(pixel, at).catch(showError));
 const timeline = new Timeline(store);
-const keeper = new Keeper(store, {announce, error: showError});
-store.onSaved = seen.rebase.bind(seen);
+const keeper = new Keeper(store, {
+  announce, error: showError, rebase: (style, saved, before) => seen.rebase(style, saved, before),
+});
 const brush = new BrushPanel(exemplar, {
   announce, error: showError, saveAs: () => keeper.askName(), layout: () => view.layout(),
 });

@@ -89,16 +89,6 @@ function rebaseKeys(keys, saved, before) {
   }
 }
 
-/**
- * The changed keys that were written into the style's file between two states, by this page or by another one.
- * @param {State} before @param {State} now @returns {Record<string, any>}
- */
-function savedBetween(before, now) {
-  if (before.run !== now.run || before.style !== now.style) return {};
-  return Object.fromEntries(Object.entries(before.keys).filter(
-      ([name]) => !(name in now.keys) && now.file_keys[name] !== before.file_keys[name]));
-}
-
 export class Store {
   constructor() {
     /** @type {State | null} */
@@ -109,8 +99,6 @@ export class Store {
     this.onError = () => {};
     /** @type {(moving: boolean) => void} */
     this.onSent = () => {};
-    /** @type {(style: string, saved: Record<string, any>, before: Record<string, any>) => void} as rebase has them */
-    this.onSaved = () => {};
     /** @type {{changes: Changes, moving: boolean, step: Step | null}[]} */
     this.queue = [];
     this.sending = false;
@@ -228,15 +216,6 @@ export class Store {
     }
   }
 
-  /** @param {State} answer of the server, before it takes the place of the state that is known */
-  findSaved(answer) {
-    if (!this.known) return;
-    const {style, file_keys: before} = this.known, saved = savedBetween(this.known, answer);
-    if (!Object.keys(saved).length) return;
-    this.rebase(style, saved, before);
-    this.onSaved(style, saved, before);
-  }
-
   /**
    * The style was saved under another name, which is chosen now: the newest steps, back to a choice of a style, are
    * taken back in the copy.
@@ -303,7 +282,6 @@ export class Store {
         /** @type {State} */
         const answer = await (await call('PATCH', '/api/state', {json: next.changes})).json();
         this.sent++;
-        this.findSaved(answer);
         this.set(this.queue.reduce((state, waiting) => applied(state, waiting.changes), answer), next.moving);
         this.onSent(next.moving);
       }
@@ -341,10 +319,7 @@ export class Store {
     const answer = await getJson('/api/state');
     // A change that is on its way is not in this answer, but will be in its own; one that overtook it is not in it.
     const isOld = sent !== this.sent && answer.revision < this.state.revision;
-    if (!this.sending && !isOld) {
-      this.findSaved(answer);
-      this.set(answer);
-    }
+    if (!this.sending && !isOld) this.set(answer);
     return answer;
   }
 }

@@ -64,24 +64,6 @@ class Changing(Page):
         self.find("#redo").click()
         self.until(lambda: self.threshold() is None, "the saved value")
 
-    def test_undo_goes_on_after_a_save_in_another_tab(self):
-        own, before = self.state()["file_keys"]["transfer.threshold"], self.pixels()
-        self.set_threshold(0.5)
-        one = self.browser.current_window_handle
-        self.js("window.open('/')")
-        two = next(handle for handle in self.browser.window_handles if handle != one)
-        self.browser.switch_to.window(two)
-        self.settled()
-        self.find("#save").click()
-        self.until(lambda: self.threshold() is None, "the save")
-        self.browser.switch_to.window(one)
-        self.until(lambda: not self.find("#save").is_enabled(), "news of the save")
-        self.settled()
-        self.find("#undo").click()
-        self.until(lambda: self.threshold() == own, "the value from before the save")
-        self.settled()
-        self.assertEqual(self.pixels(), before)
-
     def test_key_frames_stay_when_their_key_is_changed(self):
         file = self.folder / "my" / "style.toml"
         lines = ["threshold = [[1, 0.02], [24, 0.6]]" if line.startswith("threshold =") else line
