@@ -82,6 +82,8 @@ export class Frames {
     this.running = false;
     /** @type {{quality: string, revision: number, abort: AbortController} | null} */
     this.current = null;
+    /** A final was given up for a change: its draft comes first, so that changes in quick turn are seen. */
+    this.owesDraft = false;
     /**
      * On the screen, or a draft that will be in a moment.
      * @type {{revision: number, quality: string, show: string} | null}
@@ -106,7 +108,10 @@ export class Frames {
       this.timer = setTimeout(() => this.wake(), this.movedAt + kRestMs - performance.now() + 1);
     }
     const isOld = this.isMoving || this.current?.revision !== this.store.state.revision;
-    if (isOld && this.current?.quality === 'final') this.current.abort.abort();
+    if (isOld && this.current?.quality === 'final') {
+      this.owesDraft = true;
+      this.current.abort.abort();
+    }
     void this.run();
   }
 
@@ -131,10 +136,10 @@ export class Frames {
 
   /** @returns {string} the quality to fetch, or '' */
   next() {
-    const quality = this.isMoving ? 'draft' : 'final';
     const revision = this.store.state.revision;
     if (this.failed === `${revision} ${this.show}`) return '';
     const fresh = this.drawn && this.drawn.revision >= revision && this.drawn.show === this.show;
+    const quality = this.isMoving || (this.owesDraft && !fresh) ? 'draft' : 'final';
     return fresh && (quality === 'draft' || this.drawn?.quality === 'final') ? '' : quality;
   }
 
@@ -164,6 +169,7 @@ export class Frames {
 
   /** @param {string} quality */
   async fetchOne(quality) {
+    if (quality === 'draft') this.owesDraft = false;
     const abort = new AbortController();
     const show = this.show, begun = performance.now(), revision = this.store.state.revision;
     this.current = {quality, revision, abort};

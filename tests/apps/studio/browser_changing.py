@@ -160,13 +160,15 @@ class Changing(Page):
         self.until(lambda: self.state()["budget_ms"] == 30, "another budget")
 
     def test_a_final_that_is_no_longer_asked_for_is_given_up(self):
-        self.js("window.asked = []; const own = window.fetch; window.fetch = (path, options) => {"
+        self.js("window.asked = [], window.drafts = 0; const own = window.fetch; window.fetch = (path, options) => {"
                 "if (String(path).includes('quality=final')) window.asked.push(options.signal);"
+                "if (String(path).includes('quality=draft')) ++window.drafts;"
                 "return own(path, options); }")
         self.call("PATCH", "/api/state", {"size": [6000, 6000]})
         self.until(lambda: self.js("return window.asked.length"), "the request for a large final")
         self.type_into("#seed", "5")
         self.until(lambda: self.js("return window.asked[0].aborted"), "the end of a request for an old final")
+        self.until(lambda: self.js("return window.drafts"), "a draft, so that changes in quick turn are seen")
         self.type_into("#size-width", "320")
         self.type_into("#size-height", "180")
         self.settled()
