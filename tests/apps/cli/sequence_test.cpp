@@ -302,8 +302,8 @@ TEST_F(CliSequence, HolesAreNamedAndTheOthersMade) {
   EXPECT_EQ(failed, 4);
 }
 
-// Whoever started it sees which frames there are.
-TEST_F(CliSequence, AFaultThatEndsItTellsOfTheFramesBefore) {
+// Whoever started it sees which frames there are, and at which one it ended.
+TEST_F(CliSequence, AFaultThatEndsItTellsOfTheFramesUntilThen) {
   WriteStyle("style");
   WriteGuideFile("g.exr", Ball(32));
   std::filesystem::create_symlink("/dev/full", At("p2.png"));
@@ -312,8 +312,11 @@ TEST_F(CliSequence, AFaultThatEndsItTellsOfTheFramesBefore) {
   EXPECT_EQ(ended.code, 4) << ended.err;
   const nlohmann::json report = ended.Json();
   EXPECT_EQ(report["made"], 1);
-  ASSERT_EQ(report["frames"].size(), 1u);
+  EXPECT_EQ(report["failed"], 1);
+  ASSERT_EQ(report["frames"].size(), 2u);
   EXPECT_EQ(report["frames"][0]["output"], "p1.png");
+  EXPECT_EQ(report["frames"][1]["state"], "failed");
+  EXPECT_TRUE(Contains(report["frames"][1]["error"], "p2.png")) << report;
 }
 
 TEST_F(CliSequence, AnErrorThatWouldComeAgainEndsIt) {
