@@ -135,18 +135,29 @@ TEST_F(WithStrokes, InFocusTheyKeepTheirBytes) {
   for (const int x : {30, 31}) EXPECT_EQ(made.At(x, 20)[0], 5000);
 }
 
+// A bright object whose border runs at a slant, at a depth, before a dark background: pixels have both by coverage.
+struct SlantedObject {
+  explicit SlantedObject(float depth)
+      : guides(GuidesOf(60, 60,
+                        [depth](glm::vec2 at) {
+                          const bool is_left = at.x < 20.0f + 0.1f * at.y;
+                          return is_left ? SeenPoint{true, {0, 0, 1}, depth, 1.0f} : SeenPoint{};
+                        })),
+        picture(PlainPicture(60, 60, 50000, 50000, 50000)) {
+    for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
+      const float share = guides.Plane(Layer::kCoverage)[i];
+      std::fill_n(&picture.rgba[4 * i], 3, static_cast<std::uint16_t>(10000.0f + 40000.0f * share));
+    }
+  }
+
+  GuideSet guides;
+  Picture picture;
+};
+
 // A blurred object at a slant before what is blurred more: each pixel has both, as far as they cover it.
 TEST(DepthBlur, SilhouettesAreSmooth) {
-  const auto left_of = [](glm::vec2 at) { return at.x < 20.0f + 0.1f * at.y; };
-  const GuideSet guides = GuidesOf(60, 60, [&](glm::vec2 at) {
-    return left_of(at) ? SeenPoint{true, {0, 0, 1}, 1.6f, 1.0f} : SeenPoint{};
-  });
-  Picture picture = PlainPicture(60, 60, 50000, 50000, 50000);
-  for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
-    const float share = guides.Plane(Layer::kCoverage)[i];
-    std::fill_n(&picture.rgba[4 * i], 3, static_cast<std::uint16_t>(10000.0f + 40000.0f * share));
-  }
-  const Picture made = Finished(BlurStep(6.0), &guides, picture);
+  const SlantedObject object(1.6f);
+  const Picture made = Finished(BlurStep(6.0), &object.guides, object.picture);
   // Along a column the border's lightness falls in steps of a tenth, not from the one side to the other at once.
   for (const int x : {22, 23, 24}) {
     double largest = 0.0;
@@ -158,22 +169,14 @@ TEST(DepthBlur, SilhouettesAreSmooth) {
 
 // Blur begins where focus ends: what is hardly out of it looks as in it, at its border too.
 TEST(DepthBlur, NearTheFocusSilhouettesStay) {
-  const auto left_of = [](glm::vec2 at) { return at.x < 20.0f + 0.1f * at.y; };
-  const GuideSet guides = GuidesOf(60, 60, [&](glm::vec2 at) {
-    return left_of(at) ? SeenPoint{true, {0, 0, 1}, 1.0005f, 1.0f} : SeenPoint{};
-  });
-  Picture picture = PlainPicture(60, 60, 50000, 50000, 50000);
-  for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
-    const float share = guides.Plane(Layer::kCoverage)[i];
-    std::fill_n(&picture.rgba[4 * i], 3, static_cast<std::uint16_t>(10000.0f + 40000.0f * share));
-  }
-  const Picture made = Finished(BlurStep(6.0), &guides, picture);
+  const SlantedObject object(1.0005f);
+  const Picture made = Finished(BlurStep(6.0), &object.guides, object.picture);
   int mixed = 0;
   for (int y = 10; y < 50; ++y) {
     for (int x = 18; x < 28; ++x) {
-      const float share = guides.Plane(Layer::kCoverage)[guides.Index(x, y)];
+      const float share = object.guides.Plane(Layer::kCoverage)[object.guides.Index(x, y)];
       if (!(share > 0.0f && share < 1.0f)) continue;
-      EXPECT_NEAR(LightnessOnRow(made, x, y), LightnessOnRow(picture, x, y), 0.01) << x << " " << y;
+      EXPECT_NEAR(LightnessOnRow(made, x, y), LightnessOnRow(object.picture, x, y), 0.01) << x << " " << y;
       ++mixed;
     }
   }
