@@ -370,31 +370,42 @@ TEST(Outline, InkOfThePaintIsItsColourDarkerOrOpposite) {
   EXPECT_GT(complement.At(50, 20)[2], complement.At(50, 20)[0]);
 }
 
-// A wavy red wall on a green floor, which faces the viewer now less than the floor and now more. The line where it
-// stands on the floor has paint of one of them, and where the wall hangs before the floor at the right, that decides.
+// A wavy wall on a floor, which faces the viewer now less than the floor and now more, and hangs `away` before it at the
+// right.
+constexpr int kSide = 120;
+bool IsWall(glm::vec2 at) { return at.y < 30.0f + 0.37f * at.x; }
+GuideSet WallOnFloor(float away) {
+  return GuidesOf(kSide, kSide, [away](glm::vec2 at) {
+    const float below = at.y - 30.0f - 0.37f * at.x, facing = IsWall(at) ? 0.8f + 0.05f * std::sin(at.x) : 0.8f;
+    const float hangs = IsWall(at) && at.x > 90.0f ? away : 0.0f;
+    return SeenPoint{true,
+                     {0.0f, std::sqrt(1.0f - facing * facing), facing},
+                     5.0f - hangs - 0.02f * std::fabs(below),
+                     IsWall(at) ? 1.0f : 2.0f};
+  });
+}
+OutlinePass LinesBetweenObjects() {
+  OutlinePass pass;
+  pass.width = 4.0;
+  for (const LineClass line : {LineClass::kOcclusion, LineClass::kCrease}) pass.of_class[std::size_t(line)] = 0.0;
+  return pass;
+}
+
+// The wall is red, the floor green. Their line has paint of one of them, and where the wall hangs before the floor, that
+// decides.
 TEST(Outline, PaintOfALineBetweenTwoObjectsIsThatOfOne) {
-  constexpr int kSide = 120;
-  const auto is_wall = [](glm::vec2 at) { return at.y < 30.0f + 0.37f * at.x; };
   for (const float away : {0.0f, 0.1f, -0.1f}) {
-    const GuideSet guides = GuidesOf(kSide, kSide, [&](glm::vec2 at) {
-      const float below = at.y - 30.0f - 0.37f * at.x, facing = is_wall(at) ? 0.8f + 0.05f * std::sin(at.x) : 0.8f;
-      const float hangs = is_wall(at) && at.x > 90.0f ? away : 0.0f;
-      return SeenPoint{true,
-                       {0.0f, std::sqrt(1.0f - facing * facing), facing},
-                       5.0f - hangs - 0.02f * std::fabs(below),
-                       is_wall(at) ? 1.0f : 2.0f};
-    });
+    const GuideSet guides = WallOnFloor(away);
     Picture picture = PlainPicture(kSide, kSide, 60000, 5000, 5000);
     for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
       if (guides.Plane(Layer::kObject)[i] == 2.0f) std::swap(picture.rgba[4 * i], picture.rgba[4 * i + 1]);
       const auto x = static_cast<float>(i % kSide), y = static_cast<float>(i / kSide);
       const bool is_mixed =
-          is_wall({x, y}) != is_wall({x + 1.0f, y + 1.0f}) || is_wall({x + 1.0f, y}) != is_wall({x, y + 1.0f});
+          IsWall({x, y}) != IsWall({x + 1.0f, y + 1.0f}) || IsWall({x + 1.0f, y}) != IsWall({x, y + 1.0f});
       if (is_mixed) picture.rgba[4 * i] = picture.rgba[4 * i + 1] = i % 2 == 0 ? 20000 : 50000;
     }
-    OutlinePass pass;
-    pass.width = 4.0, pass.color = OutlinePass::Color::kPaint;
-    for (const LineClass line : {LineClass::kOcclusion, LineClass::kCrease}) pass.of_class[std::size_t(line)] = 0.0;
+    OutlinePass pass = LinesBetweenObjects();
+    pass.color = OutlinePass::Color::kPaint;
     const Picture drawn = Finished(StepOf(pass), &guides, picture);
     int red = 0, green = 0;
     for (int i = 0; i < kSide * kSide; ++i) {
@@ -407,6 +418,19 @@ TEST(Outline, PaintOfALineBetweenTwoObjectsIsThatOfOne) {
     if (away != 0.0f) {
       EXPECT_EQ(red > green, away > 0.0f) << away;
     }
+  }
+}
+
+// The line may not be all the other's.
+TEST(Outline, UnderAMaskOfEitherObjectTheirLineHasParts) {
+  const GuideSet guides = WallOnFloor(0.0f);
+  for (const float object : {1.0f, 2.0f}) {
+    FinishStep step = StepOf(LinesBetweenObjects());
+    for (const float of : guides.Plane(Layer::kObject)) step.share.push_back(of == object ? 65535 : 0);
+    const Picture drawn = Finished(step, &guides, Picture(kSide, kSide));
+    double ink = 0.0;
+    for (std::size_t i = 3; i < drawn.rgba.size(); i += 4) ink += drawn.rgba[i] / 65535.0;
+    EXPECT_GT(ink, 50.0) << object;
   }
 }
 
