@@ -391,8 +391,8 @@ OutlinePass LinesBetweenObjects() {
   return pass;
 }
 
-// The wall is red, the floor green. Their line has paint of one of them, and where the wall hangs before the floor, that
-// decides.
+// The wall is red, the floor green. Their line has paint of one of them, and where the wall hangs before the floor,
+// that decides.
 TEST(Outline, PaintOfALineBetweenTwoObjectsIsThatOfOne) {
   for (const float away : {0.0f, 0.1f, -0.1f}) {
     const GuideSet guides = WallOnFloor(away);
