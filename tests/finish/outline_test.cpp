@@ -370,6 +370,277 @@ TEST(Outline, InkOfThePaintIsItsColourDarkerOrOpposite) {
   EXPECT_GT(complement.At(50, 20)[2], complement.At(50, 20)[0]);
 }
 
+// A wavy wall on a floor, which faces the viewer now less than the floor and now more, and hangs `away` before it at
+// the right.
+constexpr int kSide = 120;
+for (const bool wants_left : {true, false}) {
+  GuideSet guides(kSide, kSide);
+  for (const Layer layer : {Layer::kCoverage, Layer::kNormal, Layer::kDepth, Layer::kObject, Layer::kMaterial}) {
+    guides.Add(layer);
+  }
+  FinishStep step;
+  OutlinePass pass;
+  pass.width = 12.0;
+  step.pass.effect = pass;
+  step.share.assign(guides.pixel_count(), 0);
+  for (int y = 20; y < 100; ++y) {
+    for (int x = 20; x < 100; ++x) {
+      const std::size_t i = guides.Index(x, y);
+      const bool is_left = x < 60;
+      guides.Plane(Layer::kCoverage)[i] = 1.0f, guides.Plane(Layer::kNormal, 2)[i] = 1.0f;
+      guides.Plane(Layer::kDepth)[i] = is_left == wants_left ? 2.0f : 1.0f;
+      guides.Plane(Layer::kObject)[i] = is_left ? 1.0f : 2.0f;
+      step.share[i] = is_left == wants_left ? 65535 : 0;
+    }
+  }
+  FinishFrame frame;
+  frame.guides = &guides;
+  Picture picture(kSide, kSide);
+  ASSERT_TRUE(ApplyFinish(std::span(&step, 1), FinishPass::Stage::kPaint, frame, 0, {}, picture));
+  const int first = wants_left ? 26 : 61;
+  for (const int edge : {20, 100}) {
+    for (int y = edge - 4; y < edge + 4; ++y) {
+      for (int x = first; x < first + 33; ++x) EXPECT_EQ(picture.At(x, y)[3], 65535) << x << ' ' << y;
+    }
+  }
+  EXPECT_EQ(picture.At(wants_left ? 80 : 40, 20)[3], 0) << "the other box";
+}
+}
+
+TEST(Outline, ThinnerThanAPixelIsFainter) {
+  OutlinePass pass;
+  pass.width = 0.4, pass.min_width = 0.0;
+  const Ring ring = RingOf(InkOf(pass, BallGuides(220, 80.0f)), 220, {110, 110});
+  EXPECT_NEAR(ring.area / (2.0 * std::numbers::pi * 80.0 * 0.4), 1.0, 0.05);
+}
+
+// Half a pixel of the stroke lies beyond the border, where pixels are mixed.
+TEST(Outline, SideMovesTheStroke) {
+  OutlinePass pass;
+  pass.width = 6.0;
+  const GuideSet guides = BallGuides(220, 80.0f);
+  pass.side = OutlinePass::Side::kInside;
+  EXPECT_NEAR(RingOf(InkOf(pass, guides), 220, {110, 110}).radius, 77.5, 0.15);
+  pass.side = OutlinePass::Side::kOutside;
+  EXPECT_NEAR(RingOf(InkOf(pass, guides), 220, {110, 110}).radius, 82.5, 0.15);
+}
+
+TEST(Outline, LengthsFollowThePictureHeight) {
+  const GuideSet guides = BallGuides(220, 80.0f);
+  const FinishStep step = StepOf(OutlinePass());
+  const Picture drawn = Finished(step, &guides, Picture(220, 220), {}, 0, 2.0);
+  double area = 0.0;
+  for (std::size_t i = 3; i < drawn.rgba.size(); i += 4) area += drawn.rgba[i] / 65535.0;
+  EXPECT_NEAR(area / (2.0 * std::numbers::pi * 80.0 * 5.0), 1.0, 0.02);
+}
+
+// Depth that a slope explains is no step.
+TEST(Outline, SteepPlaneHasNoInnerLine) {
+  const double slope = std::tan(85.0 * std::numbers::pi / 180.0) * 0.01;
+  const GuideSet guides = GuidesOf(120, 80, [&](glm::vec2 at) {
+    return SeenPoint{true, {0.0f, 0.99619f, 0.08716f}, static_cast<float>(20.0 - slope * at.y), 1.0f};
+  });
+  EXPECT_EQ(Sum(InkOf({}, guides)), 0.0);
+}
+
+// A line between two things ends behind a nearer one, whose own line goes straight on.
+TEST(Outline, ContoursKeepTheirSideWhereLinesEndBehindThem) {
+  const GuideSet guides = GuidesOf(120, 80, [](glm::vec2 at) {
+    if (at.y > 40.0f) return SeenPoint{true, {0, 0, 1}, 3.0f, 1.0f};
+    return at.x < 60.0f ? SeenPoint{true, {0, 0, 1}, 5.0f, 2.0f} : SeenPoint{true, {0, 0, 1}, 7.0f, 3.0f};
+  });
+  OutlinePass pass;
+  pass.width = 8.0, pass.side = OutlinePass::Side::kInside;
+  const std::vector<double> ink = InkOf(pass, guides);
+  const auto at = [&](int x, int y) { return ink[std::size_t(y * 120 + x)]; };
+  for (int x = 0; x < 120; ++x) {
+    EXPECT_NEAR(at(x, 46), 1.0, 0.01) << x;
+    EXPECT_NEAR(at(x, 48), 0.0, 0.01) << x;
+    if (x < 52 || x > 61) {
+      EXPECT_NEAR(at(x, 38), 0.0, 0.01) << x;
+    }
+  }
+  for (int y = 0; y < 39; ++y) {
+    EXPECT_NEAR(at(54, y), 1.0, 0.01) << y;
+    EXPECT_NEAR(at(61, y), 0.0, 0.01) << y;
+  }
+  // Outside, a line that ends there does not stick out into the nearer thing.
+  pass.side = OutlinePass::Side::kOutside;
+  const std::vector<double> outside = InkOf(pass, guides);
+  for (int y = 42; y < 80; ++y) {
+    for (int x = 0; x < 120; ++x) EXPECT_NEAR(outside[std::size_t(y * 120 + x)], 0.0, 0.01) << x << ' ' << y;
+  }
+}
+
+// The nearer of two overlapping things has the line, whatever lies behind.
+TEST(Outline, StepInDepthIsALineOfTheNearerSide) {
+  GuideSet guides = GuidesOf(120, 80, [](glm::vec2 at) {
+    return SeenPoint{true, {0, 0, 1}, at.x < 60.0f ? 5.0f : 9.0f, 1.0f};
+  });
+  OutlinePass pass;
+  pass.width = 4.0, pass.side = OutlinePass::Side::kInside;
+  const std::vector<double> ink = InkOf(pass, guides);
+  EXPECT_NEAR(ink[40 * 120 + 57], 1.0, 1e-3);
+  EXPECT_EQ(ink[40 * 120 + 61], 0.0);
+  EXPECT_NEAR(Sum(ink) / 80.0, 4.0, 0.1);
+}
+
+TEST(Outline, LinesGetThinnerWithDistance) {
+  GuideSet guides = GuidesOf(360, 180, [](glm::vec2 at) {
+    const SeenPoint near = SeenOnBall(at, {90, 90}, 60.0f, 4.1f, 1.0f);
+    return near.hit ? near : SeenOnBall(at, {270, 90}, 60.0f, 8.1f, 2.0f);
+  });
+  OutlinePass pass;
+  pass.width = 4.0, pass.thin = 1.0, pass.thin_at = 4.1;
+  const std::vector<double> ink = InkOf(pass, guides);
+  double left = 0.0, right = 0.0;
+  for (std::size_t i = 0; i < ink.size(); ++i) (i % 360 < 180 ? left : right) += ink[i];
+  EXPECT_NEAR(left / right, 8.1 / 4.1, 0.05 * 8.1 / 4.1);
+}
+
+TEST(Outline, LinesGetThinnerInLight) {
+  GuideSet guides = BallGuides(220, 80.0f);
+  guides.Add(Layer::kLuminance);
+  OutlinePass pass;
+  pass.width = 4.0, pass.light = 1.0;
+  const double dark = Sum(InkOf(pass, guides));
+  for (float& value : guides.Plane(Layer::kLuminance)) value = 1.0f;
+  EXPECT_NEAR(dark / Sum(InkOf(pass, guides)), 3.0, 0.1);  // 1.5 against 0.5
+}
+
+// The contour of half shade lies between pixels where the shadow says.
+TEST(Outline, ShadowsHaveAContour) {
+  GuideSet guides = FlatGuides(120, 80);
+  for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
+    const double x = double(i % 120) + 0.5;
+    guides.Plane(Layer::kShadow)[i] = static_cast<float>(std::clamp((x - 60.2) / 8.0 + 0.5, 0.0, 1.0));
+  }
+  OutlinePass pass;
+  pass.width = 3.0;
+  pass.of_class[std::size_t(LineClass::kShadow)] = 1.0;
+  const std::vector<double> ink = InkOf(pass, guides);
+  double mean = 0.0, weight = 0.0;
+  for (int x = 0; x < 120; ++x) {
+    mean += ink[40 * 120 + std::size_t(x)] * (x + 0.5), weight += ink[40 * 120 + std::size_t(x)];
+  }
+  EXPECT_NEAR(mean / weight, 60.2, 0.02);
+  EXPECT_NEAR(weight, 3.0, 0.02);
+}
+
+// A shadow smaller than three widths of its line has none, but where that joins another line.
+TEST(Outline, CrumbsOfShadowHaveNoLine) {
+  OutlinePass pass;
+  pass.width = 3.0;
+  for (double& width : pass.of_class) width = 0.0;
+  pass.of_class[std::size_t(LineClass::kShadow)] = 1.0;
+  const auto ink_of = [&](double radius, bool joins) {
+    GuideSet guides = FlatGuides(120, 80);
+    for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
+      const glm::dvec2 at(double(i % 120) + 0.5, double(i / 120) + 0.5);
+      const double away = radius - glm::length(at - glm::dvec2(60.2, 40.3));
+      guides.Plane(Layer::kShadow)[i] = static_cast<float>(std::clamp(away + 0.5, 0.0, 1.0));
+      if (joins) guides.Plane(Layer::kObject)[i] = at.x < 60.0 ? 1.0f : 2.0f;
+    }
+    return Sum(InkOf(pass, guides));
+  };
+  for (const double radius : {2.0, 3.0, 4.0}) EXPECT_EQ(ink_of(radius, false), 0.0) << radius;
+  for (const double radius : {6.0, 12.0, 30.0})
+    EXPECT_NEAR(ink_of(radius, false) / (2.0 * std::numbers::pi * radius * 3.0), 1.0, 0.1) << radius;
+  pass.of_class[std::size_t(LineClass::kObject)] = 1.0;
+  EXPECT_GT(ink_of(4.0, true), ink_of(0.0, true) + 30.0);
+}
+
+TEST(Outline, MaterialsAndBaseColoursHaveBorders) {
+  GuideSet guides = FlatGuides(120, 80);
+  guides.Add(Layer::kMaterial), guides.Add(Layer::kAlbedo);
+  for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
+    guides.Plane(Layer::kMaterial)[i] = i % 120 < 40 ? 1.0f : 2.0f;
+    for (int c = 0; c < 3; ++c) guides.Plane(Layer::kAlbedo, c)[i] = i % 120 < 80 ? 0.2f : 0.5f;
+  }
+  OutlinePass pass;
+  pass.width = 3.0;
+  EXPECT_EQ(Sum(InkOf(pass, guides)), 0.0) << "both are off";
+  pass.of_class[std::size_t(LineClass::kMaterial)] = 1.0;
+  const std::vector<double> material = InkOf(pass, guides);
+  EXPECT_NEAR(material[40 * 120 + 40], 1.0, 1e-3);
+  EXPECT_EQ(material[40 * 120 + 80], 0.0);
+  pass.of_class[std::size_t(LineClass::kTexture)] = 1.0;
+  EXPECT_NEAR(InkOf(pass, guides)[40 * 120 + 80], 1.0, 1e-3);
+  pass.texture_step = 0.5;
+  EXPECT_EQ(InkOf(pass, guides)[40 * 120 + 80], 0.0);
+}
+
+TEST(Outline, EndsTaper) {
+  // A step in depth that ends in the middle of a surface.
+  GuideSet guides = GuidesOf(160, 80, [](glm::vec2 at) {
+    const float step = std::clamp((60.0f - at.y) / 20.0f, 0.0f, 1.0f);
+    return SeenPoint{true, {0, 0, 1}, at.x < 80.0f ? 5.0f : 5.0f + 2.0f * step, 1.0f};
+  });
+  OutlinePass pass;
+  pass.width = 6.0, pass.taper = 40.0;
+  const std::vector<double> ink = InkOf(pass, guides);
+  const auto width_at = [&](int y) {
+    double sum = 0.0;
+    for (int x = 60; x < 100; ++x) sum += ink[std::size_t(y) * 160 + std::size_t(x)];
+    return sum;
+  };
+  EXPECT_NEAR(width_at(2), 6.0, 0.1) << "the picture's edge is no end";
+  EXPECT_GT(width_at(30), width_at(50));
+  EXPECT_GT(width_at(50), width_at(58));
+}
+
+TEST(Outline, WobbleStaysWithinItsReach) {
+  OutlinePass pass;
+  pass.width = 2.0, pass.wobble = 5.0;
+  const GuideSet guides = BallGuides(240, 80.0f);
+  const std::vector<double> ink = InkOf(pass, guides);
+  double deviation = 0.0;
+  for (std::size_t i = 0; i < ink.size(); ++i) {
+    if (ink[i] == 0.0) continue;
+    const double radius = glm::length(glm::dvec2(double(i % 240) + 0.5, double(i / 240) + 0.5) - glm::dvec2(120));
+    EXPECT_LT(std::fabs(radius - 80.0), 5.0 * std::numbers::sqrt2 + 2.5);
+    deviation = std::max(deviation, std::fabs(radius - 80.0));
+  }
+  EXPECT_GT(deviation, 3.0);
+}
+
+TEST(Outline, SpeckOfNoiseIsNoLine) {
+  GuideSet guides = FlatGuides(60, 60);
+  guides.Plane(Layer::kObject)[30 * 60 + 30] = 9.0f;
+  EXPECT_EQ(Sum(InkOf({}, guides)), 0.0);
+  for (const int y : {29, 30, 31}) {
+    for (const int x : {29, 30, 31}) guides.Plane(Layer::kObject)[std::size_t(y) * 60 + std::size_t(x)] = 9.0f;
+  }
+  EXPECT_GT(Sum(InkOf({}, guides)), 10.0);
+}
+
+TEST(Outline, InkLiesOverPaintAndRaisesAlphaOutside) {
+  const GuideSet guides = BallGuides(100, 30.0f);
+  Picture picture = PlainPicture(100, 100, 60000, 30000, 10000);
+  for (std::size_t i = 0; i < guides.pixel_count(); ++i)
+    picture.rgba[4 * i + 3] = static_cast<std::uint16_t>(guides.Plane(Layer::kCoverage)[i] * 65535.0f);
+  OutlinePass pass;
+  pass.ink = {0, 0, 0};
+  const Picture drawn = Finished(StepOf(pass), &guides, picture);
+  EXPECT_EQ(drawn.At(50, 50)[0], 60000);
+  EXPECT_LT(drawn.At(50, 20)[0], 3000) << "on the line";
+  EXPECT_GT(drawn.At(50, 19)[3], 40000) << "outside";
+  EXPECT_EQ(drawn.At(50, 10)[3], 0);
+}
+
+TEST(Outline, InkOfThePaintIsItsColourDarkerOrOpposite) {
+  const GuideSet guides = BallGuides(100, 30.0f);
+  const Picture picture = PlainPicture(100, 100, 50000, 20000, 20000);
+  OutlinePass pass;
+  pass.width = 4.0, pass.color = OutlinePass::Color::kPaint;
+  const Picture paint = Finished(StepOf(pass), &guides, picture);
+  EXPECT_GT(paint.At(50, 20)[0], 2 * paint.At(50, 20)[2]);
+  EXPECT_LT(paint.At(50, 20)[0], 25000);
+  pass.color = OutlinePass::Color::kComplement;
+  const Picture complement = Finished(StepOf(pass), &guides, picture);
+  EXPECT_GT(complement.At(50, 20)[2], complement.At(50, 20)[0]);
+}
+
 // A wavy wall on a floor, which faces the viewer now less than the floor and now more, and hangs `away` before it at the
 // right.
 constexpr int kSide = 120;
