@@ -27,8 +27,9 @@ FloatPlane ToonLight(const ToonPass& pass, const FinishFrame& frame);
 
 // The extended difference of Gaussians (Winnemöller, Kyprianidis, Olsen, "XDoG: An eXtended difference-of-Gaussians
 // compendium", 2012, section 2.5): U = (1 + p) G(σ) - p G(1.6 σ) of a tone of 0 … 1; ink is 0 where U reaches the
-// threshold, and -tanh(slope · (U - threshold)) below. σ is width / 2.055: so wide is the dark side of a step, at half
-// its depth. With `fill` f below 1 the first term becomes f G(σ) + 1 - f, which keeps lines and fills less.
+// threshold, and the sigmoid of slope · (threshold - U) below, in the place of their tanh (finish/tone/sigmoid.h). σ is
+// width / 2.055: so wide is the dark side of a step, at half its depth. With `fill` f below 1 the first term becomes
+// f G(σ) + 1 - f, which keeps lines and fills less.
 // With `flow` the difference is taken across edges and evened out along them (finish/area/edges_flow.h).
 // With `borders` each Gaussian is over pixels of the same object alone, so that a border of two objects makes no line.
 // Of guides, only the surface's share of a pixel has ink (SurfaceShares, with `of_guides`).

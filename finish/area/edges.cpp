@@ -7,8 +7,8 @@
 #include "finish/area/edges_flow.h"
 #include "finish/area/gaussian_rows.h"
 #include "finish/area/oklab_blocks.h"
-#include "finish/tone/fast_tanh.h"
 #include "finish/tone/point_effect.h"
+#include "finish/tone/sigmoid.h"
 #include "finish/tone/surface_share.h"
 
 namespace scumble::internal {
@@ -67,7 +67,7 @@ struct Inking {
 SCUMBLE_WIDE_LOOPS void TakeShares(const Inking& inking, const float* responses, std::size_t count, float* shares) {
   const auto [threshold, slope, strength, is_paper] = inking;
   for (std::size_t i = 0; i < count; ++i) {
-    const float below = responses[i] - threshold, ink = below < 0.0f ? FastTanh(-slope * below) : 0.0f;
+    const float below = responses[i] - threshold, ink = below < 0.0f ? Sigmoid(-slope * below) : 0.0f;
     shares[i] = (is_paper ? 1.0f - ink : ink) * strength;
   }
 }

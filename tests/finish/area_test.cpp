@@ -120,7 +120,7 @@ TEST(Edges, FillIsTheCurveOfTheTone) {
   pass.fill = 1.0, pass.threshold = 0.7, pass.slope = 3.0;
   for (const double tone : {0.2, 0.5, 0.65, 0.8}) {
     const Picture made = Finished(StepOf(pass), nullptr, Columns(20, 20, [&](int) { return tone; }));
-    const double ink = tone < 0.7 ? -std::tanh(3.0 * (tone - 0.7)) : 0.0;
+    const double ink = tone < 0.7 ? PlainSigmoid(3.0 * (0.7 - tone)) : 0.0;
     EXPECT_NEAR(LightnessAt(made, 10, 10), tone * (1.0 - ink), 1e-3) << tone;
   }
 }
@@ -132,7 +132,7 @@ TEST(Edges, RampIsTheCurveOfTheTone) {
   const auto tone_at = [](int x) { return 0.2 + 0.003 * x; };
   const Picture made = Finished(StepOf(pass), nullptr, Columns(200, 20, tone_at));
   for (int x = 30; x < 170; ++x) {
-    const double tone = tone_at(x), ink = tone < 0.7 ? -std::tanh(3.0 * (tone - 0.7)) : 0.0;
+    const double tone = tone_at(x), ink = tone < 0.7 ? PlainSigmoid(3.0 * (0.7 - tone)) : 0.0;
     EXPECT_NEAR(LightnessAt(made, x, 10), tone * (1.0 - ink), 2e-3) << x;
   }
 }

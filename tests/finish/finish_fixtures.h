@@ -12,6 +12,12 @@
 
 namespace scumble {
 
+// The sigmoid of tones and edges.
+inline double PlainSigmoid(double x) {
+  const double within = std::clamp(x, -3.0, 3.0), square = within * within;
+  return within * (27.0 + square) / (27.0 + 9.0 * square);
+}
+
 // What one sample of a scene sees.
 struct SeenPoint {
   bool hit = false;

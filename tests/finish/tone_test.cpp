@@ -12,6 +12,7 @@
 #include "core/image/color.h"
 #include "core/image/oklab.h"
 #include "finish/tone/point_effect.h"
+#include "finish/tone/sigmoid.h"
 #include "tests/finish/finish_fixtures.h"
 
 namespace scumble {
@@ -77,6 +78,15 @@ TEST(Tones, LevelsAndMiddlesStayAndTheCurveRises) {
   }
 }
 
+TEST(Sigmoid, IsNearTheHyperbolicTangent) {
+  for (int i = -500; i <= 500; ++i) {
+    const float x = float(i) / 100.0f;
+    EXPECT_NEAR(internal::Sigmoid(x), std::tanh(double(x)), 0.024) << x;
+    EXPECT_GE(internal::Sigmoid(x) + 1e-6f, internal::Sigmoid(x - 0.01f)) << x;
+  }
+  EXPECT_EQ(internal::Sigmoid(3.0f), 1.0f);
+}
+
 TEST(Tones, AreTheFormula) {
   for (const double sharpness : {1e-9, 1e-5, 0.01, 0.011, 0.5, 4.0, 64.0}) {
     for (const int bins : {2, 5, 32}) {
@@ -88,7 +98,7 @@ TEST(Tones, AreTheFormula) {
       for (std::size_t i = 0; i < internal::kOklabBlock; ++i) {
         const double given = double(float(i) / 255.0f), width = 1.0 / (bins - 1);
         const double middle = (std::min(std::floor(given / width), bins - 2.0) + 0.5) * width;
-        const double step = std::tanh(2.0 * sharpness * (given - middle) / width) / std::tanh(sharpness);
+        const double step = PlainSigmoid(2.0 * sharpness * (given - middle) / width) / PlainSigmoid(sharpness);
         // Next to a middle a hard step turns the rounding of its place into `sharpness` times as much.
         EXPECT_NEAR(block.lightness[i], middle + 0.5 * width * step, 8e-6 + 4e-7 * sharpness)
             << sharpness << ' ' << bins << ' ' << i;
