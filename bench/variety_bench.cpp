@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "bench/wall_measures.h"
 #include "core/io/guide_file.h"
 #include "core/io/picture_file.h"
 #include "core/style/style_file.h"

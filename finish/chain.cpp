@@ -16,6 +16,7 @@
 #include "core/filter/parallel.h"
 #include "core/image/check.h"
 #include "core/image/hash.h"
+#include "core/image/jitter.h"
 #include "finish/area/area_effects.h"
 #include "finish/area/ink.h"
 #include "finish/area/oklab_blocks.h"

@@ -377,8 +377,8 @@ Status Workspace::State::Cast(SceneRequest request, std::optional<int> frame, co
     SCUMBLE_RETURN_IF_ERROR(context.CheckNotCancelled());
   }
   const auto next = following ? std::optional(NextFrame{following->scene, following->view.camera}) : std::nullopt;
-  SCUMBLE_ASSIGN(SceneGuides made, CastScene(posed->scene, posed->view.camera, next ? &*next : nullptr, request,
-                                             posed->layers, context, progress, &rays));
+  SCUMBLE_ASSIGN(SceneGuides made, CastScene({posed->scene, posed->view.camera, next ? &*next : nullptr, &rays},
+                                             request, posed->layers, context, progress));
   ++counters.guides_cast;
   counters.structures_built += std::size_t(made.builds);
   const std::vector<std::string>& told = made.cost.texture_warnings;

@@ -8,7 +8,7 @@
 
 #include "core/image/check.h"
 #include "core/image/exact_math.h"
-#include "core/image/hash.h"
+#include "core/image/jitter.h"
 #include "core/image/stopwatch.h"
 #include "transfer/frame/band_pipeline.h"
 #include "transfer/frame/compose.h"

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "core/image/check.h"
-#include "core/style/finish_file.h"
 #include "core/style/finish_keys.h"
 #include "core/style/style_keyframes.h"
 #include "core/style/toml_values.h"
@@ -131,6 +130,24 @@ LayerSet LayersOverTime(const FinishChain& chain) {
   return layers;
 }
 
+bool IsOfFinish(const std::string& set) { return set.rfind(kFinishKeys, 0) == 0 || set.rfind(kDialKeys, 0) == 0; }
+
+Expected<std::size_t> OverrideFinish(std::span<FinishPass> passes, const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos) return UsageError("--set " + text + ": expected KEY=VALUE");
+  const std::string value_text = text.substr(equals + 1);
+  const auto parsed = internal::ParseSetValue(value_text);
+  const auto value = parsed && parsed->size() == 1 ? internal::ValueOf(*parsed->get("value")) : std::nullopt;
+  const std::string key = text.substr(0, equals);
+  if (key.rfind(kDialKeys, 0) == 0) {
+    const Status turned = TurnFinishDial(passes, key, value ? *value : KeyValue(value_text));
+    return turned ? Expected<std::size_t>(passes.size()) : UsageError("--set " + text + ": " + turned.error().message);
+  }
+  Expected<std::size_t> count = SetFinishKeys(passes, key, value ? *value : KeyValue(value_text));
+  if (!count) return UsageError("--set " + text + ": " + count.error().message);
+  return count;
+}
+
 Expected<std::size_t> OverrideFinish(FinishChain& chain, const std::string& text) {
   NoteGiven(text, chain.passes);
   SCUMBLE_ASSIGN(const std::optional<StyleTrack> frames, FramesIn(text));
@@ -168,6 +185,16 @@ Expected<std::size_t> OverrideFinish(Style& style, const std::string& text) {
   if (count == 0) return count;
   const auto added = AddTrack(style, *KeyOfTrack(style, frames->name), *frames);
   return added ? Expected<std::size_t>(count) : AtSet(text, added.error());
+}
+
+Error NoSuchFinish(const std::string& text, std::span<const FinishPass> passes, const std::string& style) {
+  std::string names;
+  for (const FinishPass& pass : passes) names += (names.empty() ? "" : ", ") + pass.name;
+  return UsageError("--set " + (style.empty() ? "" : style + ":") + text + ": no finish " +
+                    (style.empty() ? "" : "of that style ") + "has that name; " +
+                    (!names.empty()  ? "there are " + names
+                     : style.empty() ? "there is none, give --finish or [[finish]] of style.toml"
+                                     : "there is none in its style.toml; those of --finish go without a style's name"));
 }
 
 std::string ToText(const StyleTrack& track) {

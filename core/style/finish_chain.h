@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -43,11 +44,20 @@ std::vector<FinishPass> MomentsOf(const FinishChain& chain, std::size_t pass);
 // The layers that the passes read at one frame or another.
 LayerSet LayersOverTime(const FinishChain& chain);
 
-// "finish.NAME.KEY=VALUE" or "=[[FRAME, VALUE], …]": sets the key, or its key frames, in every pass of that name;
-// returns how many there are. "dial.NAME=VALUE" turns a dial of all passes, and returns how many they are; it is
-// refused where a key changes over time. Values are TOML's; quotes may be left off. Mistakes are kUsage.
+// Whether a --set is one of OverrideFinish.
+bool IsOfFinish(const std::string& set);
+
+// "finish.NAME.KEY=VALUE": sets the key in every pass of that name; returns how many there are. "dial.NAME=VALUE" turns
+// a dial of all passes, and returns how many they are. Values are TOML's; quotes may be left off. Mistakes are kUsage.
+Expected<std::size_t> OverrideFinish(std::span<FinishPass> passes, const std::string& text);
+// Likewise, and "finish.NAME.KEY=[[FRAME, VALUE], …]" sets the key frames. A dial is refused where a key changes over
+// time.
 Expected<std::size_t> OverrideFinish(FinishChain& chain, const std::string& text);
 Expected<std::size_t> OverrideFinish(Style& style, const std::string& text);
+
+// The error where OverrideFinish sets nothing: which names there are.
+// `style`: that the text named before a colon.
+Error NoSuchFinish(const std::string& text, std::span<const FinishPass> passes, const std::string& style = {});
 
 // "[[1, 0], [12, 4]]"
 std::string ToText(const StyleTrack& track);

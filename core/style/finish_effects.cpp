@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/image/hash.h"
+#include "core/image/jitter.h"
 #include "core/style/color_ramp.h"
 #include "core/style/finish_keys.h"
 #include "core/style/finish_mask_keys.h"

@@ -11,7 +11,6 @@
 #include "core/io/guide_file.h"
 #include "core/io/picture_file.h"
 #include "core/style/finish_chain.h"
-#include "core/style/finish_file.h"
 #include "core/style/finish_keys.h"
 #include "core/style/finish_tables.h"
 #include "core/style/kit/sphere_template.h"

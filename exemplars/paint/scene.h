@@ -26,8 +26,6 @@ class Scene {
   // that no object's name has "ball" in it.
   static Expected<Scene> Load(const std::filesystem::path& guides);
 
-  int guide_size() const { return light_.size; }  // pixels
-
   // Distance from the sphere's middle in radii: 1 on its outline.
   float SphereDistance(glm::vec2 at) const;
   // Where floor and wall meet, downward from the top.

@@ -207,26 +207,8 @@ class TileWork {
 
     LaneTriangles triangles;
     auto irregular = hn::FirstN(d, 0);
-    std::size_t lane = std::size_t(hn::FindFirstTrue(k, met));
-    const std::uint32_t first_object = hits_.object[pixel + lane];
-    {
-      const TriangleRecord& record = triangles_.Find(first_object, hits_.primitive[pixel + lane]);
-      triangles.SetAllTo<kPoints>(record);
-      if (!record.regular) irregular = hn::RebindMask(d, hn::Eq(keys, hn::Set(k, keys_[pixel + lane])));
-    }
-    auto left = hn::AndNot(hn::Eq(keys, hn::Set(k, keys_[pixel + lane])), met);
     bool one_object = true;
-    while (!hn::AllFalse(k, left)) {
-      lane = std::size_t(hn::FindFirstTrue(k, left));
-      const std::uint32_t object = hits_.object[pixel + lane];
-      const std::uint32_t primitive = hits_.primitive[pixel + lane];
-      one_object = one_object && object == first_object;
-      const auto same = hn::Eq(keys, hn::Set(k, keys_[pixel + lane]));
-      left = hn::AndNot(same, left);
-      const TriangleRecord& record = triangles_.Find(object, primitive);
-      triangles.SetSome<kPoints>(hn::RebindMask(d, same), SameTriangle(pixel, object, primitive), record);
-      if (!record.regular) irregular = hn::Or(irregular, hn::RebindMask(d, same));
-    }
+    const std::uint32_t first_object = FindTriangles<kPoints>(pixel, keys, met, triangles, irregular, one_object);
     LaneObjects objects;
     objects.SetAllTo(triangles_.objects()[first_object]);
     if (!one_object) BlendObjects(pixel, keys, met, objects);
@@ -307,18 +289,9 @@ class TileWork {
     hn::Store(hn::IfThenZeroElse(empty, objects.material_id), f, guides_.material.data() + pixel);
 
     if constexpr (kPoints) {
-      hn::Store(v, d, points_->barycentric[0].data() + pixel);
-      hn::Store(w, d, points_->barycentric[1].data() + pixel);
       const D3 position = {mix(triangles.corner.x, triangles.first_edge.x, triangles.second_edge.x),
                            mix(triangles.corner.y, triangles.first_edge.y, triangles.second_edge.y), z};
-      StorePoint(position, points_->position, pixel);
-      const D sign = hn::Xor(objects.winding, side);
-      StorePoint(
-          {hn::Mul(triangles.facing.x, sign), hn::Mul(triangles.facing.y, sign), hn::Mul(triangles.facing.z, sign)},
-          points_->facing, pixel);
-      const D own = Magnitude(position);
-      const D largest = hn::IfThenElse(hn::Lt(own, triangles.largest), triangles.largest, own);
-      hn::Store(largest, d, points_->largest_coordinate.data() + pixel);
+      StorePoints(pixel, v, w, position, hn::Xor(objects.winding, side), triangles);
     }
   }
 
@@ -345,6 +318,35 @@ class TileWork {
     }
   }
 
+  // The triangles of the lanes that met one. Returns the first one's object. `irregular`: lanes that are left to the
+  // plain code.
+  template <bool kPoints, class V, class M>
+  HWY_INLINE std::uint32_t FindTriangles(std::size_t pixel, V keys, M met, LaneTriangles& triangles, Mask& irregular,
+                                         bool& one_object) {
+    const Doubles d;
+    const Keys k;
+    std::size_t lane = std::size_t(hn::FindFirstTrue(k, met));
+    const std::uint32_t first_object = hits_.object[pixel + lane];
+    {
+      const TriangleRecord& record = triangles_.Find(first_object, hits_.primitive[pixel + lane]);
+      triangles.SetAllTo<kPoints>(record);
+      if (!record.regular) irregular = hn::RebindMask(d, hn::Eq(keys, hn::Set(k, keys_[pixel + lane])));
+    }
+    auto left = hn::AndNot(hn::Eq(keys, hn::Set(k, keys_[pixel + lane])), met);
+    while (!hn::AllFalse(k, left)) {
+      lane = std::size_t(hn::FindFirstTrue(k, left));
+      const std::uint32_t object = hits_.object[pixel + lane];
+      const std::uint32_t primitive = hits_.primitive[pixel + lane];
+      one_object = one_object && object == first_object;
+      const auto same = hn::Eq(keys, hn::Set(k, keys_[pixel + lane]));
+      left = hn::AndNot(same, left);
+      const TriangleRecord& record = triangles_.Find(object, primitive);
+      triangles.SetSome<kPoints>(hn::RebindMask(d, same), SameTriangle(pixel, object, primitive), record);
+      if (!record.regular) irregular = hn::Or(irregular, hn::RebindMask(d, same));
+    }
+    return first_object;
+  }
+
   template <class V, class M>
   HWY_INLINE void BlendObjects(std::size_t pixel, V keys, M met, LaneObjects& objects) {
     const Keys k;
@@ -355,6 +357,20 @@ class TileWork {
       left = hn::AndNot(same, left);
       objects.SetSome(hn::RebindMask(Doubles(), same), SameObject(pixel, object), triangles_.objects()[object]);
     }
+  }
+
+  // What light is found at: the places that the rays met. `sign` turns a triangle's normal to the eye.
+  HWY_INLINE void StorePoints(std::size_t pixel, D v, D w, const D3& position, D sign, const LaneTriangles& triangles) {
+    const Doubles d;
+    hn::Store(v, d, points_->barycentric[0].data() + pixel);
+    hn::Store(w, d, points_->barycentric[1].data() + pixel);
+    StorePoint(position, points_->position, pixel);
+    StorePoint(
+        {hn::Mul(triangles.facing.x, sign), hn::Mul(triangles.facing.y, sign), hn::Mul(triangles.facing.z, sign)},
+        points_->facing, pixel);
+    const D own = Magnitude(position);
+    const D largest = hn::IfThenElse(hn::Lt(own, triangles.largest), triangles.largest, own);
+    hn::Store(largest, d, points_->largest_coordinate.data() + pixel);
   }
 
   HWY_INLINE void StorePoint(const D3& v, std::array<std::array<double, kTilePixels>, 3>& to, std::size_t pixel) {

@@ -137,21 +137,4 @@ double PointLighting::Emitted(const RTCRayHit& hit, const glm::dvec3& direction,
   return Weighed(light, radiance, lights_->EmitterDensity(light, *point_, hit.hit.primID, met), reflected);
 }
 
-AreaLighting SampleAreaLights(const EmbreeScene& scene, const LightSet& lights, const SurfacePoint& point,
-                              const Sampler& sampler, int samples, RayCounts& rays) {
-  const PointLighting lighting(scene, lights, point);
-  const std::vector<int> terms = PointLighting::LightTerms(lights);
-  AreaLighting sum;
-  for (int i = 0; i < samples; ++i) {
-    for (const int light : terms) {
-      const PointLighting::Take take = lighting.TakeLight(light, sampler, std::uint32_t(i));
-      if (!(take.light > 0.0)) continue;
-      ++rays.shadow;
-      sum += lighting.Resolve(take, lighting.IsBlocked(take), rays);
-    }
-    if (lighting.HasDirections()) sum += lighting.TakeDirection(sampler, std::uint32_t(i), rays);
-  }
-  return {sum.reached / samples, sum.unoccluded / samples};
-}
-
 }  // namespace scumble

@@ -79,9 +79,4 @@ class PointLighting {
   glm::dvec3 origin_{0.0};
 };
 
-// The mean of `samples` samples of each term: one ray after the other, what area_light_tile.h is measured against. The
-// same sampler gives the same bits.
-AreaLighting SampleAreaLights(const EmbreeScene& scene, const LightSet& lights, const SurfacePoint& point,
-                              const Sampler& sampler, int samples, RayCounts& rays);
-
 }  // namespace scumble

@@ -147,7 +147,7 @@ void AreaLightTile::AddBlock(AreaLightPixel& pixel, std::size_t number, std::siz
     return block_[(place * term_count_ + term) * kBlockSamples + std::size_t(k)];
   };
   const auto count = [](const Term& term) { return std::min(kBlockSamples, term.wanted - term.samples); };
-  // A fixed number: in the order of SampleAreaLights, so that sums have its bits.
+  // A fixed number: term by term within each sample, so that sums have the bits of plain ones.
   for (int k = 0; fixed_ && k < kBlockSamples; ++k) {
     for (std::size_t i = 0; i < terms.size(); ++i) {
       if (k < count(terms[i])) pixel.light += sample(i, k);

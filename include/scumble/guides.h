@@ -16,7 +16,8 @@ class GuideLayers {
  public:
   // Reads guides of `scumble guidegen`, or a renderer's multilayer EXR. A kInput error says what is missing.
   static Expected<GuideLayers> Load(const std::string& file);
-  // Writes an .exr with lossless compression. The file appears whole under its name, or not at all.
+  // Writes an .exr with lossless compression. The file appears whole under its name, or not at all: a kOutput error
+  // leaves an older file as it was. kUsage for any other ending.
   Status Save(const std::string& file) const;
 
   int width() const;   // pixels
@@ -24,7 +25,8 @@ class GuideLayers {
   LayerSet layers() const;
 
   // One channel of a layer, width × height values, row 0 at the top; `component` is 0 … ChannelCount(layer) - 1. Units
-  // are the layer's: Info(layer).meaning. Empty where the layer is missing. Valid as long as this object or a copy.
+  // are the layer's: Info(layer).meaning. Empty where there is no such layer or component. Valid as long as this object
+  // or a copy.
   std::span<const float> Plane(Layer layer, int component = 0) const;
 
   struct State;

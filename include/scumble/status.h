@@ -32,7 +32,7 @@ inline Error UnavailableError(std::string message) { return {ErrorKind::kUnavail
 inline Error MemoryError(std::string message) { return {ErrorKind::kMemory, std::move(message)}; }
 inline Error CancelledError() { return {ErrorKind::kCancelled, "cancelled"}; }
 
-// Either a value or an Error. Test it with `if (!result)` before taking the value.
+// Either a value or an Error: test it with `if (!result)` first. Taking the wrong one throws std::bad_variant_access.
 template <class T>
 class [[nodiscard]] Expected {
  public:

@@ -64,8 +64,8 @@ class Stylizer {
   // that make no sense, kInput for files, kUnavailable where Blender is missing, kMemory, kCancelled.
   Expected<Picture> Paint(const SceneSettings& scene, const StyleSettings& style, const PaintSettings& paint = {});
 
-  // The guides of a scene: A, normal, depth, object, material, and the layers asked for. The layer
-  // motion needs SceneSettings::frame, from which it is measured to the next frame.
+  // The guides of a scene: A, normal, depth, object, material, and the layers asked for. The layer motion needs
+  // SceneSettings::frame, from which it is measured to the next frame. Errors as of Paint.
   Expected<GuideLayers> Guides(const SceneSettings& scene, const LayerSet& layers = {});
 
   // Cancels the call that runs at this moment, which then returns kCancelled. It has no effect on a call that starts

@@ -370,8 +370,6 @@ Expected<EnergyReport> MeasureEnergy(const EnergyTarget& target, std::span<const
         return sources.OfExemplar(planes[std::size_t(spot.image)], spot.image, spot.x, spot.y);
       });
   report.missing = MeanOf(asked_sample, missing, energy);
-  report.missing_color = MeanOf(asked_sample, missing, ColorOf);
-  report.missing_guide = MeanOf(asked_sample, missing, GuideOf);
   report.both = {report.energy.mean + report.missing.mean,
                  std::hypot(report.energy.standard_error, report.missing.standard_error)};
   return report;

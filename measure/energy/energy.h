@@ -93,9 +93,7 @@ struct EnergyReport {
   Estimate color;   // of the target's patches
   Estimate guide;
   Estimate degrees;
-  Estimate missing;  // of color + λ · guide of the exemplars' patches; 0 where the scene needs none
-  Estimate missing_color;
-  Estimate missing_guide;
+  Estimate missing;                   // of color + λ · guide of the exemplars' patches; 0 where the scene needs none
   std::size_t measured = 0;           // pixels of the target in the mask
   std::size_t asked_for = 0;          // positions of exemplars that the scene needs
   int patch_side = 5;                 // of the target's patches

@@ -5,9 +5,15 @@
 
 #include <vector>
 
-#include "measure/mosaic/repetition.h"
-
 namespace scumble {
+
+// A rectangle of a picture, pixels [x, x + width) × [y, y + height).
+struct PictureRegion {
+  int x = 0;
+  int y = 0;
+  int width = 0;
+  int height = 0;
+};
 
 struct RegularityReport {
   int windows = 0;  // measured windows: those with texture

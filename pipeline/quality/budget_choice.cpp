@@ -253,7 +253,7 @@ class SceneTrials {
     TakeSamples(variant, small);
     Stopwatch watch;
     SCUMBLE_ASSIGN(SceneGuides made,
-                   CastScene(opened_->scene, opened_->view.camera, nullptr, small, opened_->layers, silent_, {}));
+                   CastScene({opened_->scene, opened_->view.camera}, small, opened_->layers, silent_, {}));
     casting_ms = watch.Lap();
     return std::move(made.guides);
   }

@@ -118,11 +118,15 @@ Expected<FrameWrite> PictureSequence::Make(int frame, const std::string& output,
   return PaintPicture(styles_, *found.guides, found.source, one, context_, Within(progress, guides_share, 1.0), state_);
 }
 
-std::vector<std::string> PictureSequence::Warnings() {
-  std::vector<std::string> warnings = AssignmentReport(styles_);
+Expected<RunReport> PictureSequence::Run(const Sequence& sequence, const SequenceWork& work,
+                                         const SequenceListener& listener, const Progress& progress) {
+  RunReport report;
+  SCUMBLE_ASSIGN(report.sequence, RunSequence(sequence, work, listener, context_, progress));
+  report.paints = true;
+  report.warnings = AssignmentReport(styles_);
   const std::vector<std::string> of_finish = state_.finish_remarks.WarnOfFrames(context_);
-  warnings.insert(warnings.end(), of_finish.begin(), of_finish.end());
-  return warnings;
+  report.warnings.insert(report.warnings.end(), of_finish.begin(), of_finish.end());
+  return report;
 }
 
 Expected<RunReport> RunOnePicture(StyleSet& styles, const GuideSet& guides, const GuideSource& source,

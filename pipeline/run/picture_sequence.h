@@ -47,8 +47,9 @@ class PictureSequence {
   Expected<FrameWrite> Make(int frame, const std::string& output, const GuidesAt& guides_at, double guides_share,
                             const Progress& progress);
 
-  // What is warned of when all frames are made, for the report.
-  std::vector<std::string> Warnings();
+  // RunSequence of this work, whose functions call those above; and what is warned of when all frames are made.
+  Expected<RunReport> Run(const Sequence& sequence, const SequenceWork& work, const SequenceListener& listener,
+                          const Progress& progress);
 
  private:
   // Instead of what must be measured.

@@ -196,6 +196,103 @@ Status CheckLayers(const FinishRequest& request, const FinishState& state) {
   return CheckFinish(steps, nullptr);
 }
 
+// The names of a sequence's files.
+struct FrameNames {
+  FrameName picture, guides, camera, layers;
+
+  FrameFiles At(int frame, const std::string& output) const {
+    return {frame, picture.At(frame), guides.At(frame), camera.At(frame), output, layers.At(frame)};
+  }
+};
+
+Expected<FrameNames> NamesOfFrames(const FinishRequest& request) {
+  FrameNames names;
+  SCUMBLE_ASSIGN(names.picture, FrameName::Parse(request.picture));
+  SCUMBLE_ASSIGN(names.guides, FrameName::Parse(request.guides));
+  SCUMBLE_ASSIGN(names.camera, FrameName::Parse(request.camera));
+  SCUMBLE_ASSIGN(names.layers, FrameName::Parse(request.layers_out));
+  return names;
+}
+
+// Gives the files of a single picture their names, and refuses outputs that would overwrite what is read.
+Status NameFiles(const std::optional<Sequence>& sequence, const FinishChain& chain, FinishRequest& request) {
+  RunInputs inputs;
+  for (const auto& [what, name] : {std::pair("the picture", &request.picture),
+                                   {"the guides", &request.guides},
+                                   {"the .camera file", &request.camera}}) {
+    if (!sequence) {
+      SCUMBLE_ASSIGN(*name, NameOfOne(*name, request.frame));
+    }
+    SCUMBLE_ASSIGN(const auto names, NamesOf(*name, sequence));
+    for (const std::string& file : names) {
+      if (!file.empty()) inputs.Reads(what, file);
+    }
+  }
+  for (const std::string& file : FilesOf(chain.passes)) inputs.Reads("a file of a finish", file);
+  for (const std::string& file : MaskFilesOf(chain.passes)) inputs.Reads("the mask of a finishing effect", file);
+  if (!sequence) {
+    SCUMBLE_ASSIGN(request.output, NameOfOne(request.output, request.frame));
+    SCUMBLE_ASSIGN(request.layers_out, NameOfOne(request.layers_out, request.frame));
+  }
+  const bool resumes = sequence && sequence->resume;
+  SCUMBLE_ASSIGN(const auto outputs, NamesOf(request.output, sequence));
+  SCUMBLE_RETURN_IF_ERROR(inputs.CheckOutputs(outputs, "-o", resumes));
+  SCUMBLE_ASSIGN(const auto layer_outputs, LayerNamesOf(request.layers_out, sequence));
+  return inputs.CheckOutputs(layer_outputs, "--layers-out", resumes);
+}
+
+// Ok where the frame's output is whole, and made of the same files with the same settings.
+Status CheckMade(const FinishRequest& request, const FrameFiles& files, FinishState& state) {
+  const auto header = InspectPicture(files.picture);
+  if (!header) return header.error();
+  SCUMBLE_RETURN_IF_ERROR(SetFinishFrame(state.chain, *files.frame));
+  const PictureWriteOptions write{request.bits, request.png_level};
+  SCUMBLE_ASSIGN(const std::string picture_hash, HashOfFile(files.picture));
+  const std::string settings =
+      SettingsText(request, state.chain, picture_hash, request.measures,
+                   request.measures ? std::optional<bool>() : true, RateFor(request, files.guides));
+  SCUMBLE_RETURN_IF_ERROR(CheckWholePicture(files.output, {header->width, header->height, PictureChannels(files.output),
+                                                           PictureBits(files.output, write), settings}));
+  if (request.layers_out.empty()) return Ok();
+  return CheckWholeLayers(files.layers, header->width, header->height, settings);
+}
+
+// Measures what a sequence measures on one of its frames. Where it is resumed, that may be a frame that is kept.
+Status MeasureSequence(const FinishRequest& request, const std::vector<int>& frames, const FrameNames& names,
+                       const RunContext& context, const Progress& progress, FinishState& state) {
+  const bool looks = !state.measures && EverLooksAtMeasures(state.chain);
+  const bool measures_colors = MeasuresColors(state.chain.passes);  // of what is painted, which is not written yet
+  if (!looks && !measures_colors) return Ok();
+  const std::string colors_option = "--set finish.NAME.from of a palette";
+  const auto measure_colors = [&](int frame) -> Status {
+    const Expected<FrameWrite> finished = Finish(request, names.At(frame, ""), context, progress, state);
+    return finished ? Ok() : Status(CannotMeasure(finished.error(), frame, colors_option));
+  };
+  if (state.required.empty() || request.guides.empty()) return measure_colors(frames.front());
+  const std::string options = looks ? "--finish-measures" : colors_option;
+  const auto guides_at = [&](int frame) {
+    const std::string file = names.guides.At(frame);
+    return ReadGuides(file, ReadOptions(request, state.required, file, names.camera.At(frame)));
+  };
+  const auto measure = [&](int frame, const GuideSet& set) -> Status {
+    if (looks) state.measures = MeasureAndTell(set, set.layers(), frame, context);
+    return measures_colors ? measure_colors(frame) : Ok();
+  };
+  FrameToMeasure choice;
+  for (const int frame : frames) {
+    const Expected<GuideSet> set = guides_at(frame);
+    if (!set) return CannotMeasure(set.error(), frame, options);
+    if (choice.IsEnough(frame, *set)) return measure(frame, *set);
+  }
+  if (choice.best) {
+    SCUMBLE_ASSIGN(const GuideSet set, guides_at(*choice.best));
+    return measure(*choice.best, set);
+  }
+  if (looks) state.measures.emplace();
+  context.Warn(NothingToMeasure(frames, options));
+  return Ok();
+}
+
 }  // namespace
 
 Expected<RunReport> RunFinish(FinishRequest request, const SequenceListener& listener, const RunContext& context) {
@@ -209,29 +306,7 @@ Expected<RunReport> RunFinish(FinishRequest request, const SequenceListener& lis
   for (const std::string& doubt : OrderDoubts(state.chain.passes)) context.Warn(doubt);
   SCUMBLE_RETURN_IF_ERROR(CheckPictureTarget(request.output, {request.bits}));
   SCUMBLE_ASSIGN(const auto sequence, PlanSequence(request.sequence, request.frame, request.output));
-  RunInputs inputs;
-  for (const auto& [what, name] : {std::pair("the picture", &request.picture),
-                                   {"the guides", &request.guides},
-                                   {"the .camera file", &request.camera}}) {
-    if (!sequence) {
-      SCUMBLE_ASSIGN(*name, NameOfOne(*name, request.frame));
-    }
-    SCUMBLE_ASSIGN(const auto names, NamesOf(*name, sequence));
-    for (const std::string& file : names) {
-      if (!file.empty()) inputs.Reads(what, file);
-    }
-  }
-  for (const std::string& file : FilesOf(state.chain.passes)) inputs.Reads("a file of a finish", file);
-  for (const std::string& file : MaskFilesOf(state.chain.passes)) inputs.Reads("the mask of a finishing effect", file);
-  if (!sequence) {
-    SCUMBLE_ASSIGN(request.output, NameOfOne(request.output, request.frame));
-    SCUMBLE_ASSIGN(request.layers_out, NameOfOne(request.layers_out, request.frame));
-  }
-  const bool resumes = sequence && sequence->resume;
-  SCUMBLE_ASSIGN(const auto outputs, NamesOf(request.output, sequence));
-  SCUMBLE_RETURN_IF_ERROR(inputs.CheckOutputs(outputs, "-o", resumes));
-  SCUMBLE_ASSIGN(const auto layer_outputs, LayerNamesOf(request.layers_out, sequence));
-  SCUMBLE_RETURN_IF_ERROR(inputs.CheckOutputs(layer_outputs, "--layers-out", resumes));
+  SCUMBLE_RETURN_IF_ERROR(NameFiles(sequence, state.chain, request));
   RunReport report;
   report.paints = true;
   if (!sequence) {
@@ -243,64 +318,15 @@ Expected<RunReport> RunFinish(FinishRequest request, const SequenceListener& lis
     context.EndStage("write");
     return report;
   }
-  SCUMBLE_ASSIGN(const FrameName picture, FrameName::Parse(request.picture));
-  SCUMBLE_ASSIGN(const FrameName guides, FrameName::Parse(request.guides));
-  SCUMBLE_ASSIGN(const FrameName camera, FrameName::Parse(request.camera));
-  SCUMBLE_ASSIGN(const FrameName layers, FrameName::Parse(request.layers_out));
+  SCUMBLE_ASSIGN(const FrameNames names, NamesOfFrames(request));
   SequenceWork work;
-  work.check = [&](int frame, const std::string& output) -> Status {
-    const auto header = InspectPicture(picture.At(frame));
-    if (!header) return header.error();
-    SCUMBLE_RETURN_IF_ERROR(SetFinishFrame(state.chain, frame));
-    PictureWriteOptions write{request.bits, request.png_level};
-    SCUMBLE_ASSIGN(const std::string picture_hash, HashOfFile(picture.At(frame)));
-    const std::string settings =
-        SettingsText(request, state.chain, picture_hash, request.measures,
-                     request.measures ? std::optional<bool>() : true, RateFor(request, guides.At(frame)));
-    SCUMBLE_RETURN_IF_ERROR(CheckWholePicture(
-        output, {header->width, header->height, PictureChannels(output), PictureBits(output, write), settings}));
-    if (request.layers_out.empty()) return Ok();
-    return CheckWholeLayers(layers.At(frame), header->width, header->height, settings);
+  work.check = [&](int frame, const std::string& output) { return CheckMade(request, names.At(frame, output), state); };
+  work.begin = [&](std::span<const int>, const Progress& progress) {
+    return MeasureSequence(request, sequence->frames, names, context, progress, state);
   };
-  const auto finish = [&](int frame, const std::string& output, const Progress& progress) {
-    return Finish(request, {frame, picture.At(frame), guides.At(frame), camera.At(frame), output, layers.At(frame)},
-                  context, progress, state);
+  work.make = [&](int frame, const std::string& output, const Progress& progress) {
+    return Finish(request, names.At(frame, output), context, progress, state);
   };
-  // Where a sequence is resumed, a frame that is kept may be the one to measure.
-  work.begin = [&](std::span<const int>, const Progress& progress) -> Status {
-    const bool looks = !state.measures && EverLooksAtMeasures(state.chain);
-    const bool measures_colors = MeasuresColors(state.chain.passes);  // of what is painted, which is not written yet
-    if (!looks && !measures_colors) return Ok();
-    const std::string colors_option = "--set finish.NAME.from of a palette";
-    const auto measure_colors = [&](int frame) -> Status {
-      const Expected<FrameWrite> finished = finish(frame, "", progress);
-      return finished ? Ok() : Status(CannotMeasure(finished.error(), frame, colors_option));
-    };
-    if (state.required.empty() || request.guides.empty()) return measure_colors(sequence->frames.front());
-    const std::string options = looks ? "--finish-measures" : colors_option;
-    const auto guides_at = [&](int frame) {
-      const std::string file = guides.At(frame);
-      return ReadGuides(file, ReadOptions(request, state.required, file, camera.At(frame)));
-    };
-    const auto measure = [&](int frame, const GuideSet& set) -> Status {
-      if (looks) state.measures = MeasureAndTell(set, set.layers(), frame, context);
-      return measures_colors ? measure_colors(frame) : Ok();
-    };
-    FrameToMeasure choice;
-    for (const int frame : sequence->frames) {
-      const Expected<GuideSet> set = guides_at(frame);
-      if (!set) return CannotMeasure(set.error(), frame, options);
-      if (choice.IsEnough(frame, *set)) return measure(frame, *set);
-    }
-    if (choice.best) {
-      SCUMBLE_ASSIGN(const GuideSet set, guides_at(*choice.best));
-      return measure(*choice.best, set);
-    }
-    if (looks) state.measures.emplace();
-    context.Warn(NothingToMeasure(sequence->frames, options));
-    return Ok();
-  };
-  work.make = finish;
   SCUMBLE_ASSIGN(report.sequence, RunSequence(*sequence, work, listener, context, context.StartProgress("finish")));
   report.warnings = state.remarks.WarnOfFrames(context);
   return report;

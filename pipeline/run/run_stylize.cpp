@@ -97,13 +97,7 @@ Expected<RunReport> StylizeSequence(const StylizeRequest& request, const Sequenc
   work.make = [&](int frame, const std::string& output, const Progress& progress) {
     return pictures.Make(frame, output, guides_at, 0.5, progress);
   };
-  SCUMBLE_ASSIGN(SequenceTotals totals,
-                 RunSequence(sequence, work, listener, context, context.StartProgress("stylize")));
-  RunReport report;
-  report.sequence = std::move(totals);
-  report.paints = true;
-  report.warnings = pictures.Warnings();
-  return report;
+  return pictures.Run(sequence, work, listener, context.StartProgress("stylize"));
 }
 
 // Without a picture: the plan of a run, why it needs each layer, and its memory.

@@ -123,13 +123,7 @@ Expected<RunReport> TransferSequence(const TransferRequest& request, const Seque
   work.make = [&](int frame, const std::string& output, const Progress& progress) {
     return pictures.Make(frame, output, guides_at, 0.1, progress);
   };
-  SCUMBLE_ASSIGN(SequenceTotals totals,
-                 RunSequence(sequence, work, listener, context, context.StartProgress("transfer")));
-  RunReport report;
-  report.sequence = std::move(totals);
-  report.paints = true;
-  report.warnings = pictures.Warnings();
-  return report;
+  return pictures.Run(sequence, work, listener, context.StartProgress("transfer"));
 }
 
 // --quality and --budget-ms of a sequence: by its first frame.

@@ -129,7 +129,7 @@ Expected<SceneGuides> MakeGuidesOf(Scene& scene, const SceneRequest& options, co
                                    const RunContext& context, const Progress& progress) {
   SCUMBLE_ASSIGN(const PreparedView prepared, ViewScene(scene, options, layers));
   for (const std::string& note : prepared.notes) context.Note(note);
-  return CastScene(scene, prepared.camera, nullptr, options, layers, context, progress);
+  return CastScene({scene, prepared.camera}, options, layers, context, progress);
 }
 
 bool DependOnLight(const LayerSet& layers) {
@@ -231,9 +231,9 @@ SceneGuides PlanScene(const Scene& scene, const SceneRequest& options, const Lay
   return result;
 }
 
-Expected<SceneGuides> CastScene(Scene& scene, const Camera& camera, const NextFrame* next, const SceneRequest& options,
-                                const LayerSet& layers, const RunContext& context, const Progress& progress,
-                                std::optional<RayScene>* rays) {
+Expected<SceneGuides> CastScene(const SceneToCast& cast, const SceneRequest& options, const LayerSet& layers,
+                                const RunContext& context, const Progress& progress) {
+  const auto& [scene, camera, next, rays] = cast;
   SceneGuides result = PlanScene(scene, options, layers, context);
   SCUMBLE_RETURN_IF_ERROR(CheckMemory(result.memory, context, "take a smaller --size, or fewer layers"));
   Stopwatch watch;

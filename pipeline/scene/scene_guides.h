@@ -100,13 +100,19 @@ void StoreSettings(const SceneRequest& options, GuideSet& guides);
 SceneGuides PlanScene(const Scene& scene, const SceneRequest& options, const LayerSet& layers,
                       const RunContext& context);
 
-// Casts the guides of a scene that is ready; textures that they need are decoded and stay in it. The layer motion
-// needs `next`, which may be null otherwise. `rays` is for casting this scene and camera again without building: it is
-// made where it is empty, and made again where a texture has been left out, which changes materials. Null: the
-// acceleration structure is built for this cast alone.
-Expected<SceneGuides> CastScene(Scene& scene, const Camera& camera, const NextFrame* next, const SceneRequest& options,
-                                const LayerSet& layers, const RunContext& context, const Progress& progress,
-                                std::optional<RayScene>* rays = nullptr);
+// What rays are cast into, and where from.
+struct SceneToCast {
+  Scene& scene;  // ready; textures that the guides need are decoded and stay in it
+  const Camera& camera;
+  const NextFrame* next = nullptr;  // for the layer motion; null: that layer is not among those asked for
+  // For casting this scene and camera again without building: it is made where it is empty, and made again where a
+  // texture has been left out, which changes materials. Null: the acceleration structure is built for this cast alone.
+  std::optional<RayScene>* rays = nullptr;
+};
+
+// Casts the guides of a scene.
+Expected<SceneGuides> CastScene(const SceneToCast& cast, const SceneRequest& options, const LayerSet& layers,
+                                const RunContext& context, const Progress& progress);
 
 // Casts the guides of an open scene; the key light, where one is needed, stays in it. Notes which camera and light were
 // chosen, and warns of a picture that shows nothing.

@@ -103,7 +103,8 @@ Status SceneFrames::StartFile(const Progress& progress) {
     return Ok();
   }
   const NextFrame next{now_, camera_};
-  SCUMBLE_ASSIGN(*guides_, CastScene(now_, camera_, motion_ ? &next : nullptr, options_, layers_, context_, progress));
+  SCUMBLE_ASSIGN(*guides_,
+                 CastScene({now_, camera_, motion_ ? &next : nullptr}, options_, layers_, context_, progress));
   StoreFrameRate(options_, {}, guides_->guides);
   guides_->times.insert(guides_->times.begin(), {"load", load_ms});
   animation_.reset();
@@ -148,7 +149,7 @@ Expected<SceneGuides> SceneFrames::CastFile(int frame, const RunContext& context
   // Without motion the next scene is empty: it has no camera either.
   const auto next = motion_ ? std::optional(NextFrame{next_, camera_of(next_)}) : std::nullopt;
   SCUMBLE_ASSIGN(SceneGuides guides,
-                 CastScene(now_, camera_of(now_), next ? &*next : nullptr, options_, layers_, context, progress));
+                 CastScene({now_, camera_of(now_), next ? &*next : nullptr}, options_, layers_, context, progress));
   StoreFrameRate(options_, {}, guides.guides);
   guides.times.insert(guides.times.begin(), {"move", move_ms});
   if (load_ms_) guides.times.insert(guides.times.begin(), {"load", *load_ms_});
@@ -181,7 +182,7 @@ Expected<SceneGuides> SceneFrames::CastBlender(int frame, const RunContext& cont
   std::optional<NextFrame> next;
   if (following) next.emplace(NextFrame{*following, following_view.camera});
   SCUMBLE_ASSIGN(SceneGuides guides,
-                 CastScene(scene, view.camera, next ? &*next : nullptr, options_, layers, context, progress));
+                 CastScene({scene, view.camera, next ? &*next : nullptr}, options_, layers, context, progress));
   StoreFrameRate(options_, blender_->animation(), guides.guides);
   guides.times.insert(guides.times.begin(), {"load", load_ms});
   return guides;
@@ -288,7 +289,7 @@ Expected<SceneGuides> MakeStaticGuides(const SceneRequest& options, const Layers
                                        const RunContext& context, const Progress& progress) {
   SCUMBLE_ASSIGN(StaticScene rest, OpenStaticScene(options, layers_for, motion, context, false));
   SCUMBLE_ASSIGN(SceneGuides result,
-                 CastScene(rest.scene, rest.view.camera, nullptr, options, rest.layers, context, progress));
+                 CastScene({rest.scene, rest.view.camera}, options, rest.layers, context, progress));
   StoreFrameRate(options, rest.animation, result.guides);
   result.times.insert(result.times.begin(), {"load", rest.load_ms});
   return result;

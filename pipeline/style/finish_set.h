@@ -12,7 +12,7 @@
 #include "core/image/finish_pass.h"
 #include "core/image/guides.h"
 #include "core/image/status.h"
-#include "core/style/finish_file.h"
+#include "core/style/finish_preset.h"
 #include "finish/finish.h"
 #include "pipeline/run_context.h"
 #include "pipeline/style/style_set.h"

@@ -6,7 +6,7 @@
 #include <system_error>
 #include <utility>
 
-#include "core/style/finish_file.h"
+#include "core/style/finish_chain.h"
 #include "core/style/finish_keys.h"
 #include "core/style/style_file.h"
 #include "core/style/style_keyframes.h"

@@ -35,7 +35,7 @@ Expected<VariantGuides> MakeVariantGuides(StaticScene& scene, const SceneRequest
   one.robust = variant.robust;
   one.seed += static_cast<std::uint64_t>(variant.more_seed);
   if (variant.samples > 0) one.samples = variant.samples, one.samples_given = true;
-  SCUMBLE_ASSIGN(SceneGuides made, CastScene(scene.scene, scene.view.camera, nullptr, one, layers, context, {}));
+  SCUMBLE_ASSIGN(SceneGuides made, CastScene({scene.scene, scene.view.camera}, one, layers, context, {}));
   VariantGuides result;
   for (const auto& [step, ms] : made.times) {
     if (step != "textures") result.ms += ms;  // decoded once, whatever is cast first

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <vector>
 
+#include "bench/wall_measures.h"
 #include "core/image/hash.h"
 
 namespace scumble {
@@ -110,7 +111,7 @@ TEST(Regularity, WithoutTextureThereIsNothingToMeasure) {
   }
 }
 
-// The integer sums against the plain measure of repetition.h.
+// The integer sums against plain ones.
 TEST(Regularity, AgreesWithThePlainCorrelation) {
   Picture picture(64, 64);
   std::vector<float> plane;

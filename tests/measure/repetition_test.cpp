@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "bench/wall_measures.h"
 #include "core/image/hash.h"
 
 namespace scumble {

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/style/finish_file.h"
 #include "core/style/finish_keys.h"
+#include "core/style/finish_preset.h"
 #include "core/style/style_file.h"
 #include "finish/finish.h"
 #include "guidegen/guidegen.h"

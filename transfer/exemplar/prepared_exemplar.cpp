@@ -1,6 +1,7 @@
 #include "transfer/exemplar/prepared_exemplar.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <mutex>

@@ -8,10 +8,10 @@
 #include <optional>
 #include <utility>
 
-#include "core/image/bare_paper.h"
 #include "core/image/color.h"
 #include "core/image/exact_math.h"
 #include "core/image/hash.h"
+#include "core/image/painting/bare_paper.h"
 
 namespace scumble {
 namespace {

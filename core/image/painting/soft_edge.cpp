@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/image/bare_paper.h"
+#include "core/image/painting/bare_paper.h"
 
 namespace scumble {
 namespace {

@@ -15,12 +15,8 @@ namespace {
 
 constexpr const char* kCompressions[] = {"none", "rle", "zips", "zip", "piz"};
 
-}  // namespace
-
-bool IsLossless(const std::string& compression) {
-  return std::find(std::begin(kCompressions), std::end(kCompressions), compression) != std::end(kCompressions);
-}
-
+// Whether normals look squeezed into [0, 1] for an 8-bit picture: no component is negative anywhere, and lengths are
+// rarely 1. A few pixels prove nothing.
 bool LookPacked(const GuideSet& guides) {
   const auto coverage = guides.Plane(Layer::kCoverage);
   std::size_t covered = 0, not_unit = 0;
@@ -33,6 +29,46 @@ bool LookPacked(const GuideSet& guides) {
   }
   constexpr std::size_t kEnoughPixels = 16;
   return covered >= kEnoughPixels && 2 * not_unit > covered;
+}
+
+// Brings coverage into 0 to 1 where it is outside by an eighth or less, as by the rounding of a sum or the negative
+// lobes of a pixel filter. Validate refuses what is farther outside.
+void ClampCoverage(GuideSet& guides) {
+  constexpr float kOvershoot = 0.125f;
+  if (!guides.Has(Layer::kCoverage)) return;
+  for (float& a : guides.Plane(Layer::kCoverage)) {
+    if (a >= -kOvershoot && a <= 1.0f + kOvershoot) a = std::clamp(a, 0.0f, 1.0f);
+  }
+}
+
+// Gives the pixels that nothing covers the values of background in the layers of surfaces, whatever a renderer left
+// there: zeros, -1, NaN. Light and colours stay, which may be a sky's. Nothing without coverage.
+void ClearBackground(GuideSet& guides) {
+  if (!guides.Has(Layer::kCoverage)) return;
+  const auto coverage = guides.Plane(Layer::kCoverage);
+  for (const Layer layer :
+       {Layer::kNormal, Layer::kPosition, Layer::kDepth, Layer::kObject, Layer::kMaterial, Layer::kUv}) {
+    for (int c = 0; guides.Has(layer) && c < ChannelCount(layer); ++c) {
+      const auto plane = guides.Plane(layer, c);
+      const float background = BackgroundValue(layer);
+      for (std::size_t i = 0; i < plane.size(); ++i) plane[i] = coverage[i] > 0.0f ? plane[i] : background;
+    }
+  }
+}
+
+// Depths of covered pixels that are infinite, because half floats cannot hold them, become 10^30 m: all equally far.
+void LimitDepths(GuideSet& guides) {
+  if (!guides.Has(Layer::kDepth) || !guides.Has(Layer::kCoverage)) return;
+  const auto coverage = guides.Plane(Layer::kCoverage), depth = guides.Plane(Layer::kDepth);
+  for (std::size_t i = 0; i < depth.size(); ++i) {
+    if (coverage[i] > 0.0f && depth[i] == std::numeric_limits<float>::infinity()) depth[i] = 1e30f;
+  }
+}
+
+}  // namespace
+
+bool IsLossless(const std::string& compression) {
+  return std::find(std::begin(kCompressions), std::end(kCompressions), compression) != std::end(kCompressions);
 }
 
 void NormalizeNormals(GuideSet& guides) {
@@ -52,33 +88,17 @@ void NormalizeNormals(GuideSet& guides) {
   }
 }
 
-void ClampCoverage(GuideSet& guides) {
-  constexpr float kOvershoot = 0.125f;
-  if (!guides.Has(Layer::kCoverage)) return;
-  for (float& a : guides.Plane(Layer::kCoverage)) {
-    if (a >= -kOvershoot && a <= 1.0f + kOvershoot) a = std::clamp(a, 0.0f, 1.0f);
-  }
-}
-
-void ClearBackground(GuideSet& guides) {
-  if (!guides.Has(Layer::kCoverage)) return;
-  const auto coverage = guides.Plane(Layer::kCoverage);
-  for (const Layer layer :
-       {Layer::kNormal, Layer::kPosition, Layer::kDepth, Layer::kObject, Layer::kMaterial, Layer::kUv}) {
-    for (int c = 0; guides.Has(layer) && c < ChannelCount(layer); ++c) {
-      const auto plane = guides.Plane(layer, c);
-      const float background = BackgroundValue(layer);
-      for (std::size_t i = 0; i < plane.size(); ++i) plane[i] = coverage[i] > 0.0f ? plane[i] : background;
+Status MakeValid(const std::string& name, GuideSet& guides) {
+  ClampCoverage(guides);
+  ClearBackground(guides);
+  if (guides.Has(Layer::kNormal)) {
+    if (guides.Has(Layer::kCoverage) && LookPacked(guides)) {
+      return InputError(name + ": its normals look packed into 0 to 1; write them as they are, in -1 to 1");
     }
+    NormalizeNormals(guides);
   }
-}
-
-void LimitDepths(GuideSet& guides) {
-  if (!guides.Has(Layer::kDepth) || !guides.Has(Layer::kCoverage)) return;
-  const auto coverage = guides.Plane(Layer::kCoverage), depth = guides.Plane(Layer::kDepth);
-  for (std::size_t i = 0; i < depth.size(); ++i) {
-    if (coverage[i] > 0.0f && depth[i] == std::numeric_limits<float>::infinity()) depth[i] = 1e30f;
-  }
+  LimitDepths(guides);
+  return guides.Validate(name);
 }
 
 }  // namespace internal

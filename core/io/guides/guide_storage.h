@@ -4,19 +4,12 @@
 #include <string>
 
 #include "core/image/guides.h"
+#include "scumble/status.h"
 
 namespace scumble::internal {
 
 // Whether `compression` names one of OpenEXR's lossless compressions.
 bool IsLossless(const std::string& compression);
-
-// Whether normals look squeezed into [0, 1] for an 8-bit picture: no component is negative anywhere, and lengths are
-// rarely 1. A few pixels prove nothing.
-bool LookPacked(const GuideSet& guides);
-
-// Brings coverage into 0 to 1 where it is outside by an eighth or less, as by the rounding of a sum or the negative
-// lobes of a pixel filter. Validate refuses what is farther outside.
-void ClampCoverage(GuideSet& guides);
 
 // Makes normals unit vectors where eight bits, half floats or filtered passes changed their length. Near a silhouette a
 // length that is off finds no normal on the sphere: x and y alone would find paint of a normal √(2 · deficit) radians
@@ -25,11 +18,8 @@ void ClampCoverage(GuideSet& guides);
 // filters mix them with the background's.
 void NormalizeNormals(GuideSet& guides);
 
-// Gives the pixels that nothing covers the values of background in the layers of surfaces, whatever a renderer left
-// there: zeros, -1, NaN. Light and colours stay, which may be a sky's. Nothing without coverage.
-void ClearBackground(GuideSet& guides);
-
-// Depths of covered pixels that are infinite, because half floats cannot hold them, become 10^30 m: all equally far.
-void LimitDepths(GuideSet& guides);
+// Puts guides of any program into their ranges: coverage a little outside 0 to 1, backgrounds, lengths of normals, and
+// infinite depths. Then the error of Validate, or of normals that are packed into 0 to 1; `name` is the file's.
+Status MakeValid(const std::string& name, GuideSet& guides);
 
 }  // namespace scumble::internal

@@ -93,14 +93,7 @@ std::optional<Expected<GuideSet>> ReadPlainGuides(const std::filesystem::path& p
   });
   if (!header) return std::nullopt;
   TakeHeader(header->texts, guides);
-  ClampCoverage(guides);
-  ClearBackground(guides);
-  if (guides.Has(Layer::kNormal)) {
-    if (guides.Has(Layer::kCoverage) && LookPacked(guides)) return std::nullopt;
-    NormalizeNormals(guides);
-  }
-  LimitDepths(guides);
-  if (!guides.Validate(path.string())) return std::nullopt;
+  if (!MakeValid(path.string(), guides)) return std::nullopt;
   const auto fragments = header->blobs.find(kFragmentAttribute);
   if (fragments != header->blobs.end() && guides.Has(Layer::kCoverage)) {
     SCUMBLE_ASSIGN(guides.fragments, DecodeFragments(fragments->second.bytes, guides, path.string()));

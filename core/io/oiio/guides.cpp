@@ -267,6 +267,33 @@ std::string RemedyFor(const LayerSet& missing) {
          ", or with the same --style, --assign and --set as here; where a renderer made them, render that pass too";
 }
 
+LayerSet EveryLayer() {
+  LayerSet all;
+  for (const LayerInfo& info : AllLayers()) all.Add(info.layer);
+  return all;
+}
+
+// The error of a file that lacks layers; `there` is what it has.
+Error LacksLayers(const FileContents& contents, const LayerSet& missing, const std::string& remedy,
+                  const LayerSet& there, const std::vector<FoundChannel>& channels, const std::string& name) {
+  return InputError(name + " has no layer " + missing.ToString() + remedy + ". It has " +
+                    (there.empty() ? "none" : there.ToString()) + PartsOf(missing, channels) +
+                    (contents.from_blender || contents.is_ours ? "" : KnownNames(missing, contents)));
+}
+
+// Fills the layers of ids from their Cryptomattes. A layer that is not required goes where its Cryptomatte is of no
+// use.
+Status TakeIdsOf(const BlenderMattes& mattes, const LayerSet& required, const std::string& name, GuideSet& guides) {
+  for (const auto& [layer, matte] : mattes) {
+    auto& names = layer == Layer::kObject ? guides.object_names : guides.material_names;
+    const Status named = NameMattes(matte.ranks, matte.manifest, name, guides.Plane(layer), names);
+    if (named) continue;
+    if (required.Has(layer)) return named.error();
+    guides.Remove(layer);
+  }
+  return Ok();
+}
+
 }  // namespace
 
 Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideReadOptions& options) {
@@ -317,20 +344,15 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
     }
   }
   if (!missing.empty()) {
-    std::string remedy = RemedyFor(missing);
-    if (contents.from_blender) remedy = BlenderPassesFor(missing);
+    std::string remedy = contents.from_blender ? BlenderPassesFor(missing) : RemedyFor(missing);
     if (solves_camera && missing.Has(Layer::kPosition)) {
       remedy += ", or give the camera with --camera FILE, which does without Position";
     }
     const bool is_for_camera = solves_camera && (missing.Has(Layer::kDepth) || missing.Has(Layer::kPosition));
     if (options.remedy && !is_for_camera) remedy += options.remedy(missing);
-    LayerSet every;
-    for (const LayerInfo& info : AllLayers()) every.Add(info.layer);
-    LayerSet there = CompleteLayers(SelectChannels(contents, prefix, every, every));
+    LayerSet there = CompleteLayers(SelectChannels(contents, prefix, EveryLayer(), EveryLayer()));
     for (const auto& [layer, matte] : mattes) there.Add(layer);
-    return InputError(name + " has no layer " + missing.ToString() + remedy + ". It has " +
-                      (there.empty() ? "none" : there.ToString()) + PartsOf(missing, channels) +
-                      (contents.from_blender || contents.is_ours ? "" : KnownNames(missing, contents)));
+    return LacksLayers(contents, missing, remedy, there, channels, name);
   }
   GuideSet guides(contents.spec.full_width, contents.spec.full_height);
   for (const LayerInfo& info : AllLayers()) {
@@ -352,24 +374,9 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
       if (!wanted.Has(layer)) guides.Remove(layer);
     }
   } else {
-    for (const auto& [layer, matte] : mattes) {
-      auto& names = layer == Layer::kObject ? guides.object_names : guides.material_names;
-      const Status named = NameMattes(matte.ranks, matte.manifest, name, guides.Plane(layer), names);
-      if (named) continue;
-      if (options.required.Has(layer)) return named.error();
-      guides.Remove(layer);
-    }
+    SCUMBLE_RETURN_IF_ERROR(TakeIdsOf(mattes, options.required, name, guides));
   }
-  internal::ClampCoverage(guides);
-  internal::ClearBackground(guides);
-  if (guides.Has(Layer::kNormal)) {
-    if (guides.Has(Layer::kCoverage) && internal::LookPacked(guides)) {
-      return InputError(name + ": its normals look packed into 0 to 1; write them as they are, in -1 to 1");
-    }
-    internal::NormalizeNormals(guides);
-  }
-  internal::LimitDepths(guides);
-  SCUMBLE_RETURN_IF_ERROR(guides.Validate(name));
+  SCUMBLE_RETURN_IF_ERROR(internal::MakeValid(name, guides));
   return guides;
 }
 
@@ -377,8 +384,7 @@ Expected<GuideFileInfo> InspectGuides(const std::filesystem::path& path) {
   const std::string name = path.string();
   SCUMBLE_ASSIGN(auto input, internal::OpenInput(path));
   SCUMBLE_ASSIGN(const FileContents contents, Survey(*input, name));
-  LayerSet all;
-  for (const LayerInfo& info : AllLayers()) all.Add(info.layer);
+  const LayerSet all = EveryLayer();
   GuideFileInfo info{contents.spec.full_width,
                      contents.spec.full_height,
                      contents.has_half,

@@ -1,6 +1,4 @@
 // [[finish]] in styles and presets, its keys, and what is said of mistakes.
-#include "core/style/finish_file.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -18,6 +16,7 @@
 #include "core/style/color_ramp.h"
 #include "core/style/finish_keys.h"
 #include "core/style/finish_mask_keys.h"
+#include "core/style/finish_preset.h"
 #include "core/style/style_file.h"
 #include "core/style/style_keyframes.h"
 #include "tests/support/refusal.h"

@@ -8,6 +8,7 @@
 
 #include "core/image/color.h"
 #include "core/image/hash.h"
+#include "core/style/kit/sphere_template.h"
 #include "core/style/scan/homography.h"
 #include "core/style/scan/marker_detection.h"
 #include "core/style/scan/resample_scan.h"

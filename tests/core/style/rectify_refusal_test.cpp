@@ -1,6 +1,7 @@
 // Pictures that no exemplar can be made of: each is refused, with a helpful reason.
 #include <gtest/gtest.h>
 
+#include "core/style/kit/sphere_template.h"
 #include "core/style/scan/rectify.h"
 #include "tests/support/refusal.h"
 #include "tests/support/scan_fixtures.h"

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/style/kit/sphere_template.h"
 #include "tests/support/scan_fixtures.h"
 
 namespace scumble {

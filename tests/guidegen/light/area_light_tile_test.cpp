@@ -90,6 +90,24 @@ struct LitTile {
   std::vector<AreaLightPixel> pixels;
 };
 
+// The mean of `samples` samples of each term, one ray after the other.
+AreaLighting PlainSamples(const EmbreeScene& scene, const LightSet& lights, const SurfacePoint& point,
+                          const Sampler& sampler, int samples, RayCounts& rays) {
+  const PointLighting lighting(scene, lights, point);
+  const std::vector<int> terms = PointLighting::LightTerms(lights);
+  AreaLighting sum;
+  for (int i = 0; i < samples; ++i) {
+    for (const int light : terms) {
+      const PointLighting::Take take = lighting.TakeLight(light, sampler, std::uint32_t(i));
+      if (!(take.light > 0.0)) continue;
+      ++rays.shadow;
+      sum += lighting.Resolve(take, lighting.IsBlocked(take), rays);
+    }
+    if (lighting.HasDirections()) sum += lighting.TakeDirection(sampler, std::uint32_t(i), rays);
+  }
+  return {sum.reached / samples, sum.unoccluded / samples};
+}
+
 // Packets, blocks and terms against one ray after the other, in every bit of the sums.
 TEST(AreaLightTile, AFixedNumberIsTheMeanOfPlainSamples) {
   for (const int many : {0, 12}) {
@@ -105,8 +123,8 @@ TEST(AreaLightTile, AFixedNumberIsTheMeanOfPlainSamples) {
       AreaLightTile soft(*tile.embree, *tile.lights, {samples, 0.0, 7});
       ASSERT_TRUE(soft.Run(pixels, gate, rays));
       for (const AreaLightPixel& pixel : pixels) {
-        const AreaLighting plain = SampleAreaLights(*tile.embree, *tile.lights, *pixel.point,
-                                                    Sampler(pixel.index, kAreaLightStream, 7), samples, plain_rays);
+        const AreaLighting plain = PlainSamples(*tile.embree, *tile.lights, *pixel.point,
+                                                Sampler(pixel.index, kAreaLightStream, 7), samples, plain_rays);
         EXPECT_EQ(pixel.light.reached, plain.reached) << pixel.column << " " << pixel.row;
         EXPECT_EQ(pixel.light.unoccluded, plain.unoccluded) << pixel.column << " " << pixel.row;
       }

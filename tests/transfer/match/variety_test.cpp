@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "bench/wall_measures.h"
 #include "core/image/hash.h"
 #include "measure/energy/flat_surfaces.h"
-#include "measure/mosaic/repetition.h"
 #include "tests/support/transfer_fixtures.h"
 #include "transfer/exemplar/paint_by_normal.h"
 #include "transfer/seeds/seeds.h"

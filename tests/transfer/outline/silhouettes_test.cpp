@@ -4,9 +4,9 @@
 #include <cmath>
 #include <tuple>
 
-#include "core/image/bare_paper.h"
 #include "core/image/color.h"
 #include "core/image/oklab.h"
+#include "core/image/painting/bare_paper.h"
 #include "tests/support/transfer_fixtures.h"
 
 namespace scumble {

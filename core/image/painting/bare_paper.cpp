@@ -1,4 +1,4 @@
-#include "core/image/bare_paper.h"
+#include "core/image/painting/bare_paper.h"
 
 #include <algorithm>
 #include <array>
