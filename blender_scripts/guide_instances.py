@@ -5,10 +5,12 @@ Cryptomatte identifies an instance by its object's name alone, and objects of on
 their instancers stop making them; objects that share their name with another are renamed.
 """
 
+import re
 from dataclasses import dataclass
 
 import bpy
 
+from blend_common import release
 from export_copies import name_instancer_map
 from export_flat import RAYS, every_instance, is_generated, is_made_of_itself, new_mesh, seen_by_camera
 from export_maps import add_instancer_map, instancer_readers, reads_instancer
@@ -16,6 +18,8 @@ from export_viewport import show_as_rendered
 
 LONGEST_NAME = 63  # bytes that Blender keeps of a name
 SCATTERED = {"OBJECT", "COLLECTION"}  # the rendered form of particles
+# Paths of animated properties that disarm and hide set.
+SET_HERE = re.compile(r"^(hide_render|instance_type|modifiers\[.*\]\.show_(render|viewport))$")
 
 
 @dataclass
@@ -68,7 +72,7 @@ def name_apart(scene, view_layer, unsupported):
     for thing in scene.objects:
         # Neither instancers that only show their instances, nor objects that were shown as instances alone.
         if thing.type not in {"CAMERA", "EMPTY"} and thing not in shown:
-            thing.hide_render = True
+            hide(thing)
     anchor = bpy.data.objects.new("scumble.anchor", None)
     scene.collection.objects.link(anchor)
     for copy in copies:
@@ -102,12 +106,18 @@ def made_mesh(instance, made, depsgraph, readers):
 
 def disarm(thing):
     """Leaves the thing itself and takes its instances away."""
+    release(thing, SET_HERE)
     thing.instance_type = "NONE"
     for modifier in thing.modifiers:
         if modifier.type == "PARTICLE_SYSTEM" and modifier.particle_system.settings.render_type in SCATTERED:
             modifier.show_render = modifier.show_viewport = False
     if any(modifier.type == "NODES" and modifier.show_render for modifier in thing.modifiers):
         thing.modifiers.new("scumble.own", "NODES").node_group = own_geometry()
+
+
+def hide(thing):
+    release(thing, SET_HERE)
+    thing.hide_render = True
 
 
 def geometry_nodes(name):

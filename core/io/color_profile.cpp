@@ -6,7 +6,9 @@
 #include <cstdint>
 #include <cstdlib>
 #include <memory>
+#include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/io/format_dispatch.h"
@@ -49,15 +51,44 @@ bool AreAlike(const std::vector<std::uint16_t>& a, const std::vector<std::uint16
   return true;
 }
 
-void Convert(void* transform, bool is_grey, std::uint16_t* texels, std::size_t count) {
+// Returns the largest change of a code.
+int Convert(void* transform, bool is_grey, std::uint16_t* texels, std::size_t count) {
   std::vector<std::uint16_t> given(texels, texels + 4 * count);
   for (std::size_t i = 0; is_grey && i < count; ++i) given[i] = texels[4 * i];
   cmsDoTransform(transform, given.data(), texels, static_cast<cmsUInt32Number>(count));
+  int largest = 0;
+  for (std::size_t i = 0; i < 4 * count; ++i) {
+    if (i % 4 != 3) largest = std::max(largest, std::abs(texels[i] - given[is_grey ? i / 4 : i]));
+  }
+  return largest;
 }
 
 std::vector<std::uint16_t> Converted(void* transform, bool is_grey, std::vector<std::uint16_t> texels) {
   Convert(transform, is_grey, texels.data(), texels.size() / 4);
   return texels;
+}
+
+// What a profile does to codes.
+struct Conversion {
+  Transform transform;
+  bool is_grey = false;
+};
+
+// None of a profile that is not applied, or keeps the codes of every picture.
+std::optional<Conversion> ConversionOf(std::span<const std::byte> bytes) {
+  const Profile profile(cmsOpenProfileFromMem(bytes.data(), static_cast<cmsUInt32Number>(bytes.size())));
+  if (!profile) return std::nullopt;
+  const cmsColorSpaceSignature space = cmsGetColorSpace(profile.get());
+  const bool is_grey = space == cmsSigGrayData;
+  if (!is_grey && space != cmsSigRgbData) return std::nullopt;
+  Transform exact = ToSrgb(profile.get(), is_grey, cmsFLAGS_NOOPTIMIZE);
+  // Twenty times as fast, and off by several codes of 8 bits in the darks of some profiles, such as linear ones.
+  Transform quick = ToSrgb(profile.get(), is_grey, 0);
+  if (!exact || !quick) return std::nullopt;
+  const std::vector<std::uint16_t> given = Samples(), right = Converted(exact.get(), is_grey, given);
+  if (!is_grey && AreAlike(given, right)) return std::nullopt;
+  const bool may_be_quick = AreAlike(Converted(quick.get(), is_grey, given), right);
+  return Conversion{std::move(may_be_quick ? quick : exact), is_grey};
 }
 
 bool HasColors(const Picture& picture) {
@@ -108,23 +139,19 @@ std::span<const std::byte> ProfileOfHeif(std::span<const std::byte> file) {
 
 }  // namespace
 
-void ConvertToSrgb(std::span<const std::byte> bytes, Picture& picture) {
-  const Profile profile(cmsOpenProfileFromMem(bytes.data(), static_cast<cmsUInt32Number>(bytes.size())));
-  if (!profile || picture.empty()) return;
-  const cmsColorSpaceSignature space = cmsGetColorSpace(profile.get());
-  const bool is_grey = space == cmsSigGrayData;
-  if (!is_grey && space != cmsSigRgbData) return;
-  if (is_grey && HasColors(picture)) return;  // a grey scan's profile that stayed when it was coloured
-  const Transform exact = ToSrgb(profile.get(), is_grey, cmsFLAGS_NOOPTIMIZE);
-  // Twenty times as fast, and off by several codes of 8 bits in the darks of some profiles, such as linear ones.
-  const Transform quick = ToSrgb(profile.get(), is_grey, 0);
-  if (!exact || !quick) return;
-  const std::vector<std::uint16_t> given = Samples(), right = Converted(exact.get(), is_grey, given);
-  if (!is_grey && AreAlike(given, right)) return;
-  const bool may_be_quick = AreAlike(Converted(quick.get(), is_grey, given), right);
-  void* const transform = may_be_quick ? quick.get() : exact.get();
-  ForEachIndex(picture.height, IoThreads(),
-               [&](int y) { Convert(transform, is_grey, picture.At(0, y), static_cast<std::size_t>(picture.width)); });
+bool IsAlwaysIgnored(std::span<const std::byte> profile) { return !ConversionOf(profile); }
+
+int ConvertToSrgb(std::span<const std::byte> profile, Picture& picture) {
+  if (picture.empty()) return 0;
+  const std::optional<Conversion> conversion = ConversionOf(profile);
+  if (!conversion) return 0;
+  if (conversion->is_grey && HasColors(picture)) return 0;  // a grey scan's profile that stayed when it was coloured
+  std::vector<int> changes(static_cast<std::size_t>(picture.height));
+  ForEachIndex(picture.height, IoThreads(), [&](int y) {
+    changes[static_cast<std::size_t>(y)] = Convert(conversion->transform.get(), conversion->is_grey, picture.At(0, y),
+                                                   static_cast<std::size_t>(picture.width));
+  });
+  return *std::max_element(changes.begin(), changes.end());
 }
 
 std::span<const std::byte> EmbeddedProfile(std::span<const std::byte> file) {

@@ -2,9 +2,12 @@
 
 #include <array>
 #include <fstream>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "core/image/color.h"
+#include "core/io/color_profile.h"
 #include "core/io/exr/scanline_exr.h"
 #include "core/io/file/atomic_file.h"
 #include "core/io/file/zip_archive.h"
@@ -21,9 +24,10 @@ namespace scumble {
 namespace {
 
 // Reads a complete plain PNG only.
-std::optional<Picture> ReadIfPlainPng(std::span<const std::byte> bytes, const std::string& name, Profiles profiles) {
+std::optional<Picture> ReadIfPlainPng(std::span<const std::byte> bytes, const std::string& name, Profiles profiles,
+                                      PictureLosses* losses) {
   if (!internal::IsPng(bytes) || !internal::CheckPngIntegrity(bytes, name)) return std::nullopt;
-  return internal::ReadPlainPng(bytes, profiles);
+  return internal::ReadPlainPng(bytes, profiles, losses);
 }
 
 std::optional<PictureHeader> HeaderIfPlainPng(const std::filesystem::path& path) {
@@ -81,7 +85,7 @@ Expected<Picture> ReadPicture(const std::filesystem::path& path, const std::stri
   if (IsZip(path)) return ReadMergedLayers(path);
   if (internal::IsPngFile(path)) {
     SCUMBLE_ASSIGN(const auto bytes, ReadWholeFile(path));
-    if (auto picture = ReadIfPlainPng(bytes, path.string(), profiles)) return *std::move(picture);
+    if (auto picture = ReadIfPlainPng(bytes, path.string(), profiles, losses)) return *std::move(picture);
   }
   SCUMBLE_ASSIGN(const Formats* const formats, LoadFormatsToRead(path));
   return formats->read_picture(path, view_layer, profiles, losses);
@@ -99,6 +103,18 @@ Expected<PictureHeader> InspectPicture(const std::filesystem::path& path) {
   return formats->inspect_picture(path);
 }
 
+Expected<bool> HasOtherColors(const std::filesystem::path& png) {
+  constexpr int kCode = 257;  // of 8 bits
+  SCUMBLE_ASSIGN(const std::vector<std::byte> bytes, ReadWholeFile(png));
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  if (text.substr(0, text.find("IDAT")).find("iCCP") == std::string_view::npos) return false;
+  const std::vector<std::byte> profile = internal::PngProfile(bytes);
+  if (!profile.empty() && internal::IsAlwaysIgnored(profile)) return false;
+  PictureLosses losses;
+  SCUMBLE_RETURN_IF_ERROR(ReadPicture(png, {}, Profiles::kApply, &losses));
+  return losses.profile_change >= kCode;
+}
+
 bool NeedsOpenImageIo(const std::filesystem::path& path) {
   std::error_code failed;
   if (!std::filesystem::exists(path, failed)) return internal::Upper(path.extension().string()) != ".PNG";
@@ -107,7 +123,7 @@ bool NeedsOpenImageIo(const std::filesystem::path& path) {
 
 Expected<Picture> DecodePicture(std::span<const std::byte> bytes, const std::string& name, Profiles profiles) {
   if (bytes.empty()) return InputError("cannot read " + name + ": it is empty");
-  if (auto picture = ReadIfPlainPng(bytes, name, profiles)) return *std::move(picture);
+  if (auto picture = ReadIfPlainPng(bytes, name, profiles, nullptr)) return *std::move(picture);
   SCUMBLE_ASSIGN(const Formats* const formats, LoadFormats(name));
   return formats->decode_picture(bytes, name, profiles);
 }

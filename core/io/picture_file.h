@@ -17,11 +17,12 @@ namespace scumble {
 // What becomes of an ICC profile in a file. Textures of scenes ignore it, as glTF 2.0 demands and Blender does.
 enum class Profiles { kApply, kIgnore };
 
-// What a picture of 0 to 1 cannot hold of a file of floats. An excess of up to 0.002 of the light that the pixel shows
-// is the rounding of half floats, and is not counted.
+// What a picture of 0 to 1 cannot hold of a file of floats, and what an ICC profile changes. An excess of up to 0.002
+// of the light that the pixel shows is the rounding of half floats, and is not counted.
 struct PictureLosses {
   std::size_t clamped = 0;  // values of colour below 0 or above 1, infinities included
   std::size_t nan = 0;      // values of colour and alpha that are no numbers
+  int profile_change = 0;   // the largest of a colour's code, of 65535
 };
 
 // Reads any picture as 16-bit sRGB-encoded RGBA with straight alpha. 8-bit values v become v · 257, 16-bit values are
@@ -42,6 +43,10 @@ struct PictureHeader {
   double dpi = 0;  // 0: none, or a camera's or screen's 72 or 96, which are no true resolution
 };
 Expected<PictureHeader> InspectPicture(const std::filesystem::path& path);
+
+// Whether the numbers of a PNG mean other colours than sRGB's, by a code of 8 bits or more. Where the profile is
+// sRGB's, or there is none, no pixel is read; otherwise the picture is read once. Thread-safe.
+Expected<bool> HasOtherColors(const std::filesystem::path& png);
 
 // The number of pixels that ReadPicture would make, from as little of the file as possible. Call it before memory is
 // taken. An error where ReadPicture would fail, as far as the header shows. Thread-safe.

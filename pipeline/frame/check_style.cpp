@@ -1,10 +1,14 @@
 #include "pipeline/frame/check_style.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 #include <span>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "core/io/picture_file.h"
 #include "core/style/kit/sphere_template.h"
@@ -81,19 +85,32 @@ std::vector<PaintFault> OppositeLights(const Style& style, std::span<const float
   return faults;
 }
 
+// A layer's value in all pixels of all guides, channel by channel: "0.20, 0.50, 0.90", or "1.00" where all channels are
+// alike. Empty where a channel varies.
+std::string UniformValue(const GuideSpace& space, Layer layer, int exemplars) {
+  std::vector<std::string> values;
+  for (int c = 0; c < ChannelCount(layer); ++c) {
+    GuideSpace::Range range = space.RangeOf(0, layer, c);
+    for (int k = 1; k < exemplars; ++k) {
+      const GuideSpace::Range more = space.RangeOf(k, layer, c);
+      range = {std::min(range.least, more.least), std::max(range.largest, more.largest)};
+    }
+    if (range.least < range.largest) return {};
+    values.push_back(fmt::format("{:.2f}", range.least));
+  }
+  const bool are_alike = std::count(values.begin(), values.end(), values.front()) == std::ssize(values);
+  return are_alike ? values.front() : fmt::format("{}", fmt::join(values, ", "));
+}
+
 // Layers that choose no paint: they have a weight, and one value in all guides.
 std::vector<PaintFault> UniformLayers(const GuideSpace& space, int exemplars) {
   std::vector<PaintFault> faults;
   for (const Layer layer : space.layers()) {
-    GuideSpace::Range range = space.RangeOf(0, layer);
-    for (int k = 1; k < exemplars; ++k) {
-      const GuideSpace::Range more = space.RangeOf(k, layer);
-      range = {std::min(range.least, more.least), std::max(range.largest, more.largest)};
-    }
-    if (range.least < range.largest) continue;
+    const std::string value = UniformValue(space, layer, exemplars);
+    if (value.empty()) continue;
     const std::string name = Info(layer).name;
     faults.push_back({"uniform-layer", Weight::kMistake,
-                      fmt::format("{} has a weight, and is {:.2f} all over its guides", name, range.least),
+                      fmt::format("{} has a weight, and is {} all over its guides", name, value),
                       "set transfer.guide_weights." + name + " to 0, or make guides in which it varies", std::nullopt});
   }
   return faults;

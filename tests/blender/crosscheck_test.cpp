@@ -57,6 +57,22 @@ class CrosscheckBlender : public CliTest {
                              At("").string() + "' > '" + At("log").string() + "' 2>&1";
     ASSERT_EQ(std::system(make.c_str()), 0) << TextOf(At("log"));
   }
+  GuideSet Guides(const std::string& file) {
+    GuideReadOptions read;
+    read.required = {Layer::kCoverage, Layer::kNormal, Layer::kObject};
+    auto guides = ReadGuides(At(file), read);
+    EXPECT_TRUE(guides.ok()) << guides.error().message;
+    return guides ? *std::move(guides) : GuideSet(1, 1);
+  }
+  // The names of the objects.
+  static std::set<std::string> SeenIn(const GuideSet& guides) {
+    std::set<std::string> seen;
+    for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
+      const auto name = guides.object_names.find(std::uint32_t(guides.Plane(Layer::kObject)[i]));
+      if (name != guides.object_names.end()) seen.insert(name->second);
+    }
+    return seen;
+  }
   std::string said_;
 };
 
@@ -155,23 +171,27 @@ TEST_F(CrosscheckBlender, InstancesOfEveryKindAreToldApart) {
   ASSERT_EQ(reports[0]["unsupported"].size(), 1u) << reports[0]["unsupported"];
   EXPECT_NE(reports[0]["unsupported"][0].get<std::string>().find("'Unseen': is not seen by the camera"),
             std::string::npos);
-  GuideReadOptions read;
-  read.required = {Layer::kCoverage, Layer::kNormal, Layer::kObject};
   for (const std::string side : {"kept/scatter.cycles.exr", "kept/scatter.ours.exr"}) {
-    const auto guides = ReadGuides(At(side), read);
-    ASSERT_TRUE(guides.ok()) << guides.error().message;
-    EXPECT_EQ(guides->camera->name, "Aside") << "the first by name";
-    std::set<std::string> seen;
-    for (std::size_t i = 0; i < guides->pixel_count(); ++i) {
-      const auto name = guides->object_names.find(std::uint32_t(guides->Plane(Layer::kObject)[i]));
-      if (name != guides->object_names.end()) seen.insert(name->second);
-    }
+    const GuideSet guides = Guides(side);
+    EXPECT_EQ(guides.camera->name, "Aside") << "the first by name";
+    const std::set<std::string> seen = SeenIn(guides);
     for (const char* name : {"Same", "Same#2", "MadeUp", "MadeUp/MadeUp#5", "Group0/Pebble#4", "Group1/Placed",
                              "Corners/Leaf#4", "Bristles/Pebble#2"}) {
       EXPECT_TRUE(seen.count(name)) << side << " shows no " << name;
     }
     EXPECT_FALSE(seen.count("Unseen") || seen.count("Corners")) << side;
   }
+}
+
+TEST_F(CrosscheckBlender, KeysOfVisibilityDoNotBringInstancersBack) {
+  MakeScenes();
+  const Json reports = Check({"keyed_scatter.blend", "--size", "160x90", "--samples", "0", "--keep", "kept"}, 0);
+  EXPECT_EQ(Figures(reports[0]).at("object differing")["value"], 0.0);
+  EXPECT_TRUE(reports[0]["unsupported"].empty()) << reports[0]["unsupported"];
+  const std::set<std::string> seen = SeenIn(Guides("kept/keyed_scatter.ours.exr"));
+  EXPECT_TRUE(seen.count("Corners/Leaf#4") && seen.count("Bristles/Pebble#2") && seen.count("Shown/Placed"));
+  EXPECT_FALSE(seen.count("Corners") || seen.count("Leaf") || seen.count("Hidden/Placed"));
+  EXPECT_EQ(SeenIn(Guides("kept/keyed_scatter.cycles.exr")), seen);
 }
 
 TEST_F(CrosscheckBlender, WhatCannotAgreeIsNamedOnce) {

@@ -1,4 +1,4 @@
-"""Makes the scenes of crosscheck_test.cpp: room, scatter, crooked, keyed and simplified.blend.
+"""Makes the scenes of crosscheck_test.cpp: room, scatter, crooked, keyed, keyed_scatter and simplified.blend.
 
     blender -b -noaudio --factory-startup -P tests/blender/make_crosscheck.py -- FOLDER
 """
@@ -195,6 +195,37 @@ def keyed():
     scene.driver_add("cycles.filter_width").driver.expression = "3.0"
 
 
+def keyed_scatter():
+    """Instancers and instances whose visibility has keys, and one that the keys hide. The values in the file are
+    others than those of the keys."""
+    red, grey = (material(name, "ShaderNodeBsdfDiffuse", color)
+                 for name, color in (("Red", (0.8, 0.2, 0.1)), ("Grey", (0.5, 0.5, 0.5))))
+    mesh("Floor", plane(3.0), (0, 0, -0.3), grey)
+    corners = mesh("Corners", plane(0.4), (1.6, -0.6, 0.2), grey)
+    leaf = mesh("Leaf", box(0.15), (0, 0, 0), red)
+    leaf.parent, corners.instance_type = corners, "VERTS"
+    pebble = mesh("Pebble", box(0.12), (2.2, -1.2, 0.0), red)
+    bristles = mesh("Bristles", plane(0.5), (0, -1.2, 0.2), grey)
+    particles = bristles.modifiers.new("Particles", "PARTICLE_SYSTEM")
+    settings = bristles.particle_systems[0].settings
+    settings.type, settings.count, settings.render_type, settings.instance_object = "HAIR", 9, "OBJECT", pebble
+    settings.emit_from, settings.use_emit_random = "VERT", False
+    settings.use_advanced_hair, settings.particle_size = True, 1.0
+    group = collection_of("Group", mesh("Placed", box(0.4), (0, 0, 0.2), red))
+    shown, hidden = (link(bpy.data.objects.new(name, None)) for name in ("Shown", "Hidden"))
+    for number, instancer in enumerate((shown, hidden)):
+        instancer.instance_type, instancer.instance_collection = "COLLECTION", group
+        instancer.location = (1.4 * number - 1.4, 0.6, 0.3)
+    for owner, name, value in ((corners, "hide_render", False), (corners, "show_instancer_for_render", False),
+                               (corners, "instance_type", "VERTS"), (leaf, "hide_render", False),
+                               (particles, "show_render", True), (shown, "hide_render", False),
+                               (shown, "instance_type", "COLLECTION"), (hidden, "hide_render", True)):
+        setattr(owner, name, value)
+        owner.keyframe_insert(name, frame=1)
+    corners.show_instancer_for_render, hidden.hide_render = True, False
+    bpy.context.scene.camera = camera("Camera")
+
+
 def simplified():
     """Simplify leaves one of three levels, by animation."""
     render = bpy.context.scene.render
@@ -213,7 +244,7 @@ def output(name):
 
 
 def main():
-    for build in (room, scatter, crooked, keyed, simplified):
+    for build in (room, scatter, crooked, keyed, keyed_scatter, simplified):
         bpy.ops.wm.read_factory_settings(use_empty=True)
         build()
         bpy.ops.wm.save_as_mainfile(filepath=output(build.__name__ + ".blend"))

@@ -150,16 +150,23 @@ void GuideSpace::Blend(int k, float share, float* extra_values) const {
   }
 }
 
-GuideSpace::Range GuideSpace::RangeOf(int k, Layer layer) const {
+GuideSpace::Range GuideSpace::RangeOf(int k, Layer layer, int channel) const {
   std::size_t from = 0, l = 0;
   for (; l < layers_.size() && layers_[l] != layer; ++l) from += static_cast<std::size_t>(ChannelCount(layers_[l]));
-  SCUMBLE_CHECK(l < layers_.size());
+  SCUMBLE_CHECK(l < layers_.size() && channel < ChannelCount(layer));
   Range range{1.0f, 0.0f};
   for (const Source& source : trees_[std::size_t(k)].sources) {
-    for (int c = 0; c < ChannelCount(layer); ++c) {
-      const float value = ExtraValuesAt(k, source)[from + static_cast<std::size_t>(c)] / weights_[l];
-      range = {std::min(range.least, value), std::max(range.largest, value)};
-    }
+    const float value = ExtraValuesAt(k, source)[from + static_cast<std::size_t>(channel)] / weights_[l];
+    range = {std::min(range.least, value), std::max(range.largest, value)};
+  }
+  return range;
+}
+
+GuideSpace::Range GuideSpace::RangeOf(int k, Layer layer) const {
+  Range range = RangeOf(k, layer, 0);
+  for (int c = 1; c < ChannelCount(layer); ++c) {
+    const Range more = RangeOf(k, layer, c);
+    range = {std::min(range.least, more.least), std::max(range.largest, more.largest)};
   }
   return range;
 }

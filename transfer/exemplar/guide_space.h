@@ -65,10 +65,12 @@ class GuideSpace {
   // Reads the extra dimensions of a scene's pixel. `brightness` is 2^stops.
   void Read(const GuideSet& scene, std::size_t pixel, float brightness, float* extra_values) const;
 
-  // The least and the largest coordinate of exemplar k's usable pixels in one of layers(), unweighted.
+  // The least and the largest coordinate of exemplar k's usable pixels in one of layers(), unweighted: in one of its
+  // channels, or in all.
   struct Range {
     float least = 0.0f, largest = 0.0f;
   };
+  Range RangeOf(int k, Layer layer, int channel) const;
   Range RangeOf(int k, Layer layer) const;
 
   // Extra dimensions between each layer's least value (share 0) and its largest (share 1).

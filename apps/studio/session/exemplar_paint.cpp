@@ -3,11 +3,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstdlib>
-#include <string_view>
-
 #include "core/image/hash.h"
 #include "core/io/file/atomic_file.h"
 #include "core/io/picture/open_raster.h"
@@ -18,17 +13,6 @@ namespace scumble {
 namespace {
 
 namespace fs = std::filesystem;
-
-// Whether a PNG's numbers mean other colours than sRGB's, by a code of 8 bits or more.
-Expected<bool> HasOtherColors(const fs::path& png) {
-  SCUMBLE_ASSIGN(const std::vector<std::byte> bytes, ReadWholeFile(png));
-  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  if (text.substr(0, text.find("IDAT")).find("iCCP") == std::string_view::npos) return false;
-  SCUMBLE_ASSIGN(const Picture stored, ReadPicture(png, {}, Profiles::kIgnore));
-  SCUMBLE_ASSIGN(const Picture meant, ReadPicture(png));
-  return !std::equal(stored.rgba.begin(), stored.rgba.end(), meant.rgba.begin(), meant.rgba.end(),
-                     [](int a, int b) { return std::abs(a - b) < 257; });
-}
 
 // Of the file's name, too: copies have the same bytes.
 Expected<std::string> StampOf(const fs::path& file) {

@@ -294,6 +294,7 @@ nlohmann::json Session::State::StateJson() {
   }
   const std::lock_guard lock(mutex);
   json["warnings"] = scene_warnings;
+  json["saves"] = saves;
   if (problem) found = problem;
   json["problem"] = found ? ToJson(*found) : nlohmann::json();
   return json;

@@ -68,6 +68,7 @@ struct Session::State {
   std::vector<std::string> scene_warnings;                         // of the scene that was painted last
   std::map<std::string, std::string> thumbnails;                   // by kind and id
   std::map<std::string, std::string> checks;                       // JSON, by the style's settings and generation
+  nlohmann::json saves = nlohmann::json::array();                  // the newest of this run, as api.md has them
 
   std::mutex saving;  // one file is written at a time
   Lane finals, drafts, others;
@@ -117,6 +118,10 @@ struct Session::State {
   HttpResponse Check(const HttpRequest& request);
   HttpResponse Save(const HttpRequest& request);
   HttpResponse SaveAs(const HttpRequest& request);
+  // Keys are written into the file of `style`. `from` is the style until then, and `of` what its file said. Call it in
+  // Change.
+  void NoteSave(const std::string& style, const Moment& from, const Expected<std::shared_ptr<const StyleFacts>>& of);
+  nlohmann::json Saves();
   HttpResponse Paintable(const HttpRequest& request);
   HttpResponse Paint(const HttpRequest& request);
   Expected<ExemplarFile> ExemplarOf(const HttpRequest& request, bool of_first_style);

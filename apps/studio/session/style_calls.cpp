@@ -98,13 +98,40 @@ HttpResponse Session::State::Check(const HttpRequest& request) {
   return answer;
 }
 
+void Session::State::NoteSave(const std::string& style, const Moment& from,
+                              const Expected<std::shared_ptr<const StyleFacts>>& of) {
+  constexpr std::size_t kMostSaves = 20;
+  StudioState file = from.state;  // with the file's values as its keys
+  file.keys.clear();
+  bool had_frames = false;
+  for (const auto& [key, value] : from.state.keys) {
+    if (!of) break;
+    if (const auto found = (*of)->values.find(key); found != (*of)->values.end()) file.keys.insert(*found);
+    for (const StyleTrack& track : (*of)->tracks) had_frames = had_frames || track.name == key;
+  }
+  const std::uint64_t number = saves.empty() ? 1 : saves.back()["number"].get<std::uint64_t>() + 1;
+  saves.push_back({{"number", number},
+                   {"style", style},
+                   {"from", from.state.style},
+                   {"keys", ToJson(from.state)["keys"]},
+                   {"before", ToJson(file)["keys"]},
+                   {"had_frames", had_frames}});
+  if (saves.size() > kMostSaves) saves.erase(saves.begin());
+}
+
+nlohmann::json Session::State::Saves() {
+  const std::lock_guard lock(mutex);
+  return saves;
+}
+
 HttpResponse Session::State::Save(const HttpRequest&) {
   const std::lock_guard one(saving);
   const Moment moment = Now();
   const Catalogue known = KnownCatalogue();
   const StyleEntry* const style = known.FindStyle(moment.state.style);
   if (!style) return ErrorAnswer(InputError("there is no style yet: choose one"), kUnreadable);
-  if (const auto of = FactsOf(*style)) {
+  const auto of = FactsOf(*style);
+  if (of) {
     for (const StyleTrack& track : (*of)->tracks) {
       if (!moment.state.keys.count(track.name)) continue;
       return ErrorAnswer(
@@ -119,6 +146,7 @@ HttpResponse Session::State::Save(const HttpRequest&) {
   Change(
       [&] {
         ++generation;
+        NoteSave(style->id, moment, of);
         // What was changed while the file was written stays changed.
         for (const auto& [key, value] : moment.state.keys) {
           const auto now = state.keys.find(key);
@@ -126,7 +154,7 @@ HttpResponse Session::State::Save(const HttpRequest&) {
         }
       },
       "saved");
-  return JsonAnswer({{"saved", style->toml().string()}});
+  return JsonAnswer({{"saved", style->toml().string()}, {"saves", Saves()}});
 }
 
 HttpResponse Session::State::SaveAs(const HttpRequest& request) {
@@ -139,6 +167,7 @@ HttpResponse Session::State::SaveAs(const HttpRequest& request) {
   const Catalogue known = KnownCatalogue();
   const StyleEntry* const style = known.FindStyle(moment.state.style);
   if (!style) return ErrorAnswer(InputError("there is no style yet: choose one"), kUnreadable);
+  const auto of = FactsOf(*style);
   std::error_code failed;
   const fs::path folder = options.save_to.empty() ? fs::current_path(failed) : options.save_to;
   const Expected<fs::path> made = SaveStyleAs(*style, moment.state.keys, folder, name.get<std::string>());
@@ -146,10 +175,11 @@ HttpResponse Session::State::SaveAs(const HttpRequest& request) {
   Change(
       [&] {
         state.style = catalogue.AddStyle(made->string(), *made, false);
+        NoteSave(state.style, moment, of);
         state.keys.clear();
       },
       "saved");
-  return JsonAnswer({{"saved", made->string()}});
+  return JsonAnswer({{"saved", made->string()}, {"saves", Saves()}});
 }
 
 HttpResponse Session::State::Paintable(const HttpRequest& request) {

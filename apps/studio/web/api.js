@@ -12,6 +12,8 @@
  *   luminance: number | null}} Exemplar
  * @typedef {{kind: string, message: string}} Problem
  * @typedef {{name: string, lines: number, detail: number, light: number, depth: number}} Finish
+ * @typedef {{number: number, style: string, from: string, keys: Record<string, KeyValue>,
+ *   before: Record<string, KeyValue>, had_frames: boolean}} Save
  * @typedef {{revision: number, scene: string, style: string,
  *   scenes: {id: string, name: string, bundled: boolean}[],
  *   styles: {id: string, name: string, bundled: boolean, writable: boolean, save_as: boolean}[],
@@ -23,7 +25,7 @@
  *   camera: string, view: Orbit | null, light: Light | null, finish: Finish | null,
  *   finishes: {name: string, help: string}[], eye: Orbit, frame: number | null,
  *   size: [number, number], seed: number, quality: string, budget_ms: number, problem: Problem | null,
- *   warnings: string[]}} State
+ *   saves: Save[], warnings: string[]}} State
  * @typedef {{scene?: string, style?: string, keys?: Record<string, KeyValue | null>, assignments?: Assignment[],
  *   camera?: string, view?: Orbit | null, light?: Light | null, finish?: Finish | null,
  *   frame?: number | null, size?: [number, number],

@@ -7,9 +7,7 @@ import {byId, download, make} from './dom.js';
 export class Keeper {
   /**
    * @param {import('./store.js').Store} store
-   * @param {{announce: (text: string) => void, error: (error: unknown) => void,
-   *   rebase: (style: string, saved: Record<string, any>, before: Record<string, any>) => void}} page
-   *   rebase: keys were written into a style's file, as Store.rebase has it
+   * @param {{announce: (text: string) => void, error: (error: unknown) => void}} page
    */
   constructor(store, page) {
     this.store = store;
@@ -67,11 +65,9 @@ export class Keeper {
       this.page.announce('nothing to save');
       return;
     }
-    const {style, keys, file_keys: before} = this.store.state;
     try {
-      const {saved} = await (await call('POST', '/api/save')).json();
-      this.store.rebase(style, keys, before);
-      this.page.rebase(style, keys, before);
+      const {saved, saves} = await (await call('POST', '/api/save')).json();
+      this.store.hearSaves(saves);
       this.page.announce(`saved ${saved}`);
       await this.store.refresh();
     } catch (error) {
@@ -91,15 +87,12 @@ export class Keeper {
   async saveAs() {
     const error = byId('save-as-error', HTMLElement);
     error.textContent = '';
-    const {style, keys, file_keys: before, key_frames: frames} = this.store.state;
     try {
-      const {saved} = await (await call('POST', '/api/save-as', {json: {name: this.name.value}})).json();
+      const {saved, saves} = await (await call('POST', '/api/save-as', {json: {name: this.name.value}})).json();
       this.dialog.close();
       this.page.announce(`saved ${saved ?? 'the style'}`);
-      const copy = (await this.store.refresh()).style;
-      // One value cannot bring a key's frames back: undo goes back to the style that has them.
-      if (Object.keys(keys).some((name) => name in frames)) this.store.wentTo(copy, style, keys);
-      else this.store.moveTo(copy, keys, before);
+      this.store.hearSaves(saves);
+      await this.store.refresh();
     } catch (failed) {
       error.textContent = failed instanceof Error ? failed.message : String(failed);
     }

@@ -24,7 +24,7 @@ import {draw, Frames} from './frame.js';
 import {keepInHash, lostSettings, readHash, touchHash} from './hash.js';
 import {History} from './history.js';
 import {Keeper} from './keep.js';
-import {KeysPanel} from './keys.js';
+import {KeysPanel, labelOf} from './keys.js';
 import {Library} from './library.js';
 import {FinishPanel} from './finish.js';
 import {LightPanel} from './light.js';
@@ -44,6 +44,9 @@ import {View} from './view.js';
 /** @typedef {import('./api.js').State} State */
 
 const kShows = ['picture', 'sources', 'chunks', 'borders', 'levels', 'error', 'exemplar', 'styles'];
+
+const kReadSeconds = 8;  // for what is more than a word
+const kMostNamed = 2;    // keys, in a line
 
 const root = document.documentElement;
 const store = new Store();
@@ -111,9 +114,8 @@ const picker =
 const assigner = new Assigner(store, announce);
 const orbit = new OrbitControl(store, view, (pixel, at) => void assigner.offer(pixel, at).catch(showError));
 const timeline = new Timeline(store);
-const keeper = new Keeper(store, {
-  announce, error: showError, rebase: (style, saved, before) => seen.rebase(style, saved, before),
-});
+const keeper = new Keeper(store, {announce, error: showError});
+store.onSaved = seen.rebase.bind(seen);
 const brush = new BrushPanel(exemplar, {
   announce, error: showError, saveAs: () => keeper.askName(), layout: () => view.layout(),
 });
@@ -135,7 +137,23 @@ function setShow(what) {
 function step(isUndo) {
   // While one paints, strokes alone are undone.
   const done = brush.canPaint ? (isUndo ? brush.undo() : brush.redo()) : isUndo ? store.undo() : store.redo();
-  announce(done ? (isUndo ? 'undone' : 'done again') : (isUndo ? 'nothing to undo' : 'nothing to do again'));
+  const more = typeof done === 'object' && done ? aboutStep(done, isUndo) : '';
+  if (!done) announce(isUndo ? 'nothing to undo' : 'nothing to do again');
+  else announce((isUndo ? 'undone' : 'done again') + more, more ? kReadSeconds : 0);
+}
+
+/**
+ * What a step meant for saved keys, and for those of other pages.
+ * @param {import('./store.js').Taken} step @param {boolean} isUndo
+ */
+function aboutStep({keys, lost}, isUndo) {
+  const {state} = store;
+  const label = (/** @type {string} */ name) => labelOf(name).toLowerCase();
+  const few = keys.map((name) => `${label(name)} ${state.keys[name]}, saved is ${state.file_keys[name]}`).join('; ');
+  const values = keys.length > kMostNamed ? `${keys.length} keys as before the save` : few;
+  const others = lost.length > kMostNamed ? `${lost.length} keys` : lost.map(label).join(', ');
+  const back = isUndo ? 'redo' : 'undo';
+  return (values && `: ${values}`) + (others && `; another page had changed ${others}: ${back} brings that back`);
 }
 
 /**
@@ -229,10 +247,13 @@ async function start() {
   const run = JSON.stringify(store.state.first), steps = keptSteps(run);
   store.undoSteps = steps.undo;
   store.redoSteps = steps.redo;
-  addEventListener('pagehide', () => keepSteps(run, store.undoSteps, store.redoSteps));
+  if (steps.server === store.state.run) store.heard = steps.heard;
+  addEventListener('pagehide',
+                   () => keepSteps(run, store.undoSteps, store.redoSteps, store.state.run, store.heard));
   // Earlier than that: what is on its way is given up in between.
   addEventListener('beforeunload', () => keepUnsent(store.state.run, store.unsent));
   seen.remember();
+  store.hearSaves(store.state.saves);  // those while the page was not there
   restorePage();
   store.listen(update);
 }

@@ -33,16 +33,19 @@ export const keepSeen = (seen) => write(kSeen, seen);
 /** @returns {SeenPicture[]} the oldest first */
 export const keptSeen = () => read(kSeen) ?? [];
 
-/** @param {string} run which studio it is @param {Step[]} undo @param {Step[]} redo */
-export const keepSteps = (run, undo, redo) => write(kUndo, {run, undo, redo});
+/**
+ * @param {string} run which studio it is @param {Step[]} undo @param {Step[]} redo
+ * @param {string} server its own run @param {number} heard the newest save there that the steps have followed
+ */
+export const keepSteps = (run, undo, redo, server, heard) => write(kUndo, {run, undo, redo, server, heard});
 
-/** @param {string} run @returns {{undo: Step[], redo: Step[]}} */
+/** @param {string} run @returns {{undo: Step[], redo: Step[], server?: string, heard: number}} */
 export function keptSteps(run) {
   const kept = read(kUndo);
-  if (kept?.run !== run) return {undo: [], redo: []};
+  if (kept?.run !== run) return {undo: [], redo: [], heard: 0};
   // Times are those of the page before: no gesture goes on.
   const steps = (/** @type {Step[]} */ of) => of.map((step) => ({...step, gesture: ''}));
-  return {undo: steps(kept.undo), redo: steps(kept.redo)};
+  return {undo: steps(kept.undo), redo: steps(kept.redo), server: kept.server, heard: kept.heard ?? 0};
 }
 
 /** @param {string} run of the server @param {Changes | undefined} changes */

@@ -8,10 +8,12 @@ const kStranger = 'The studio was started anew. Open the address that it printed
 const kGone = 'The studio does not answer. The last picture stays; the page goes on by itself once the studio runs.';
 
 let timer = 0;
+let stays = 0;  // the time until which announceSoon does not take the place of what was said
 
-/** @param {string} text */
-export function announce(text) {
+/** @param {string} text @param {number} [seconds] how long it stays at least */
+export function announce(text, seconds = 0) {
   clearTimeout(timer);
+  stays = performance.now() + 1000 * seconds;
   byId('status', HTMLElement).textContent = text;
 }
 
@@ -20,6 +22,7 @@ export function announce(text) {
  * @param {string} text
  */
 export function announceSoon(text) {
+  if (performance.now() < stays) return;
   clearTimeout(timer);
   timer = setTimeout(() => announce(text), 60);
 }

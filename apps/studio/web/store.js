@@ -3,8 +3,12 @@ import {call, getJson} from './api.js';
 
 /** @typedef {import('./api.js').State} State */
 /** @typedef {import('./api.js').Changes} Changes */
-/** @typedef {{before: Changes, after: Changes, style: string, gesture: string, time: number}} Step
- *   style: that was chosen before it */
+/** @typedef {import('./api.js').Save} Save */
+/** @typedef {{before: Changes, after: Changes, style: string, gesture: string, time: number, saved?: boolean}} Step
+ *   style: that was chosen before it; saved: keys of it were written into the style's file since */
+/** @typedef {{keys: string[], lost: string[]}} Taken
+ *   of a step that was undone or done again. keys: those that differ from the file now, if keys of the step were saved;
+ *   lost: those whose values came from another page */
 
 // Changes of one gesture, such as a slider's drag, are undone together.
 const kGestureMs = 900;
@@ -79,11 +83,13 @@ export function settingsOf(state) {
 
 /**
  * Changed keys, null as the file has it, for a file into which keys were saved.
- * @param {Changes['keys']} keys @param {Record<string, any>} saved @param {Record<string, any>} before
+ * @param {Step} step @param {Changes['keys']} keys one side of the step
+ * @param {Record<string, any>} saved @param {Record<string, any>} before
  */
-function rebaseKeys(keys, saved, before) {
+function rebaseKeys(step, keys, saved, before) {
   for (const name of Object.keys(saved)) {
     if (!keys || !(name in keys)) continue;
+    step.saved = true;
     if (keys[name] === null) keys[name] = before[name];
     else if (keys[name] === saved[name]) keys[name] = null;
   }
@@ -99,6 +105,9 @@ export class Store {
     this.onError = () => {};
     /** @type {(moving: boolean) => void} */
     this.onSent = () => {};
+    /** @type {(style: string, saved: Record<string, any>, before: Record<string, any>) => void} as rebase has them */
+    this.onSaved = () => {};
+    this.heard = 0;  // the number of the newest save that undo has followed
     /** @type {{changes: Changes, moving: boolean, step: Step | null}[]} */
     this.queue = [];
     this.sending = false;
@@ -148,6 +157,7 @@ export class Store {
    */
   patch(changes, how = {}) {
     const {moving = false, gesture = '', undoable = true} = how;
+    const sent = structuredClone(changes);  // a save changes steps of undo, and nothing that is on its way
     const step = undoable ? this.remember(changes, gesture) : null;
     this.set(applied(this.state, changes), moving);
     const last = this.queue[this.queue.length - 1];
@@ -155,13 +165,13 @@ export class Store {
       // Quality and budget clear each other: the later one alone is sent.
       if ('quality' in changes) delete last.changes.budget_ms;
       if ('budget_ms' in changes) delete last.changes.quality;
-      const keys = {...last.changes.keys, ...changes.keys};
-      Object.assign(last.changes, changes);
+      const keys = {...last.changes.keys, ...sent.keys};
+      Object.assign(last.changes, sent);
       if (Object.keys(keys).length) last.changes.keys = keys;
       last.moving = moving;
       last.step = step ?? last.step;
     } else {
-      this.queue.push({changes: {...changes}, moving, step});
+      this.queue.push({changes: sent, moving, step});
     }
     return this.send();
   }
@@ -178,7 +188,7 @@ export class Store {
       last.before = {...before, ...last.before, ...(before.keys && {keys: keysBefore})};
       last.time = time;
     } else {
-      this.undoSteps.push({before, after: changes, style: this.state.style, gesture, time});
+      this.undoSteps.push({before, after: structuredClone(changes), style: this.state.style, gesture, time});
       if (this.undoSteps.length > kMostSteps) this.undoSteps.shift();
     }
     this.redoSteps = [];
@@ -211,7 +221,7 @@ export class Store {
   rebase(style, saved, before) {
     for (const step of [...this.undoSteps, ...this.redoSteps]) {
       for (const changes of [step.before, step.after]) {
-        if ((changes.style ?? step.style) === style) rebaseKeys(changes.keys, saved, before);
+        if ((changes.style ?? step.style) === style) rebaseKeys(step, changes.keys, saved, before);
       }
     }
   }
@@ -227,7 +237,7 @@ export class Store {
       for (const step of [...steps].reverse()) {
         if (step.before.style !== undefined || step.after.style !== undefined) break;
         step.style = copy;
-        for (const {keys} of [step.before, step.after]) rebaseKeys(keys, saved, before);
+        for (const {keys} of [step.before, step.after]) rebaseKeys(step, keys, saved, before);
       }
     }
   }
@@ -243,6 +253,32 @@ export class Store {
     this.set(this.state);
   }
 
+  /**
+   * Follows what this page or another one has saved since, by the server's own list. The states alone do not say it: a
+   * change may be on its way between two of them.
+   * @param {Save[]} saves
+   */
+  hearSaves(saves) {
+    for (const {number, style, from, keys, before, had_frames: hadFrames} of saves) {
+      if (number <= this.heard) continue;
+      this.heard = number;
+      if (style === from) {
+        this.rebase(style, keys, before);
+        this.onSaved(style, keys, before);
+      } else if (hadFrames) {
+        this.wentTo(style, from, keys);  // one value cannot bring a key's frames back
+      } else {
+        this.moveTo(style, keys, before);
+      }
+    }
+  }
+
+  /** @param {State} answer of the server, before it is shown */
+  take(answer) {
+    if (this.known?.run === answer.run) this.hearSaves(answer.saves);
+    else this.heard = answer.saves[answer.saves.length - 1]?.number ?? 0;
+  }
+
   /** @returns {Changes | undefined} what the server has not answered: if the page goes now, it may be lost */
   get unsent() {
     const waiting = [this.onItsWay ?? {}, ...this.queue.map(({changes}) => changes)];
@@ -256,20 +292,27 @@ export class Store {
     while (this.sending) await new Promise((resolve) => setTimeout(resolve, 20));
   }
 
-  undo() {
-    const step = this.undoSteps.pop();
-    if (!step) return false;
-    this.redoSteps.push({...step, gesture: ''});
-    this.patch(step.before, {undoable: false});
-    return true;
-  }
+  undo() { return this.move(this.undoSteps, this.redoSteps, 'before', 'after'); }
 
-  redo() {
-    const step = this.redoSteps.pop();
-    if (!step) return false;
-    this.undoSteps.push(step);
-    this.patch(step.after, {undoable: false});
-    return true;
+  redo() { return this.move(this.redoSteps, this.undoSteps, 'after', 'before'); }
+
+  /**
+   * Takes the newest step. The way back leads to what the page shows now, whoever has set it.
+   * @param {Step[]} from @param {Step[]} to
+   * @param {'before' | 'after'} side that is brought about @param {'before' | 'after'} other
+   * @returns {Taken | null} null: there is no step
+   */
+  move(from, to, side, other) {
+    const step = from.pop();
+    if (!step) return null;
+    const changes = structuredClone(step[side]), shown = inverse(this.state, changes);
+    const left = step[other].keys ?? {}, now = shown.keys ?? {};
+    const files = this.state.file_keys;
+    const lost = Object.keys({...left, ...now})
+        .filter((name) => (left[name] ?? files[name]) !== (now[name] ?? files[name]));
+    to.push({...step, [other]: shown, gesture: ''});
+    void this.patch(changes, {undoable: false});
+    return {keys: step.saved ? Object.keys(changes.keys ?? {}).filter((name) => name in this.state.keys) : [], lost};
   }
 
   async send() {
@@ -282,6 +325,7 @@ export class Store {
         /** @type {State} */
         const answer = await (await call('PATCH', '/api/state', {json: next.changes})).json();
         this.sent++;
+        this.take(answer);
         this.set(this.queue.reduce((state, waiting) => applied(state, waiting.changes), answer), next.moving);
         this.onSent(next.moving);
       }
@@ -317,6 +361,7 @@ export class Store {
     const {sent} = this;
     /** @type {State} */
     const answer = await getJson('/api/state');
+    this.take(answer);
     // A change that is on its way is not in this answer, but will be in its own; one that overtook it is not in it.
     const isOld = sent !== this.sent && answer.revision < this.state.revision;
     if (!this.sending && !isOld) this.set(answer);

@@ -299,7 +299,10 @@ Expected<Picture> ReadFrom(OIIO::ImageInput& input, std::span<const std::byte> b
       ReadPixels<std::uint16_t>(input, name, OIIO::TypeDesc::UINT16, range,
                                 [&](const std::uint16_t* pixel, std::uint16_t* out) { decoder.Encoded(pixel, out); });
   if (!picture || profiles == Profiles::kIgnore) return picture;
-  if (const auto profile = ProfileOf(spec, bytes); !profile.empty()) internal::ConvertToSrgb(profile, *picture);
+  if (const auto profile = ProfileOf(spec, bytes); !profile.empty()) {
+    const int change = internal::ConvertToSrgb(profile, *picture);
+    if (losses) losses->profile_change = change;
+  }
   return picture;
 }
 

@@ -83,15 +83,13 @@ struct Reading {
   ~Reading() { png_destroy_read_struct(&png, &info, nullptr); }
 };
 
-// Reads the header and sets the form of the rows: 8 or 16 bits, 1 to 4 channels.
+// Reads the header and sets the form of the rows: 8 or 16 bits, 1 to 4 channels. Of a PNG that is not plain, it reads
+// the profile and fails.
 bool ReadHead(Reading& reading, Picture& picture) {
   if (setjmp(png_jmpbuf(reading.png)) != 0) return false;
   png_structp png = reading.png;
   png_infop info = reading.info;
   png_read_info(png, info);
-  const std::int64_t width = png_get_image_width(png, info), height = png_get_image_height(png, info);
-  if (!IsPlain(png, info) || !IsOfASizeThatWeTake(width, height)) return false;
-  picture.width = static_cast<int>(width), picture.height = static_cast<int>(height);
   png_charp name = nullptr;
   int packing = 0;
   png_bytep profile = nullptr;
@@ -100,6 +98,9 @@ bool ReadHead(Reading& reading, Picture& picture) {
     const auto bytes = std::as_bytes(std::span(profile, profile_bytes));
     reading.profile.assign(bytes.begin(), bytes.end());
   }
+  const std::int64_t width = png_get_image_width(png, info), height = png_get_image_height(png, info);
+  if (!IsPlain(png, info) || !IsOfASizeThatWeTake(width, height)) return false;
+  picture.width = static_cast<int>(width), picture.height = static_cast<int>(height);
   png_set_expand(png);  // palettes to colours, one to four bits to eight, a transparent colour to alpha
   png_set_interlace_handling(png);
   png_read_update_info(png, info);
@@ -159,7 +160,7 @@ bool Begin(Source& source, Reading& reading, Picture& picture) {
 
 }  // namespace
 
-std::optional<Picture> ReadPlainPng(std::span<const std::byte> bytes, Profiles profiles) {
+std::optional<Picture> ReadPlainPng(std::span<const std::byte> bytes, Profiles profiles, PictureLosses* losses) {
   Source source{bytes};
   Reading reading;
   Picture picture;
@@ -170,7 +171,10 @@ std::optional<Picture> ReadPlainPng(std::span<const std::byte> bytes, Profiles p
     Spread(samples, reading.channels, From8, picture);
   else
     Spread(samples, reading.channels, From16, picture);
-  if (!reading.profile.empty() && profiles == Profiles::kApply) ConvertToSrgb(reading.profile, picture);
+  if (!reading.profile.empty() && profiles == Profiles::kApply) {
+    const int change = ConvertToSrgb(reading.profile, picture);
+    if (losses) losses->profile_change = change;
+  }
   return picture;
 }
 
@@ -221,6 +225,14 @@ std::optional<StoredPicture> InspectPlainPng(std::span<const std::byte> bytes) {
     if (text.key && text.text && std::strcmp(text.key, kSettingsKey) == 0) stored.settings = text.text;
   }
   return stored;
+}
+
+std::vector<std::byte> PngProfile(std::span<const std::byte> bytes) {
+  Source source{bytes};
+  Reading reading;
+  Picture size;
+  static_cast<void>(Begin(source, reading, size));
+  return std::move(reading.profile);
 }
 
 }  // namespace scumble::internal

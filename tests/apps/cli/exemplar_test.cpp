@@ -112,6 +112,27 @@ TEST_F(CliExemplar, GuidesOfLightFromTheSphereToThePicture) {
   EXPECT_NE(refused.err.find("luminance"), std::string::npos) << refused.err;
 }
 
+TEST_F(CliExemplar, ALayerOfOneColourIsFound) {
+  GuideSet guides = Ball(48);
+  guides.Add(Layer::kAlbedo);
+  const float color[] = {0.2f, 0.5f, 0.9f};
+  for (int c = 0; c < 3; ++c) std::ranges::fill(guides.Plane(Layer::kAlbedo, c), color[c]);
+  fs::create_directory(At("ball"));
+  WritePainted("ball/lit.png", 48, 48);
+  WriteText("ball/style.toml",
+            "[transfer.guide_weights]\nalbedo = 2.0\n[[exemplar]]\nimage = \"lit.png\"\nguides = \"guides.exr\"\n");
+  WriteGuideFile("ball/guides.exr", guides);
+  const std::string faults = RunOk({"styles", "check", "ball"}).err;
+  EXPECT_TRUE(Contains(faults,
+                       "lit.png: albedo has a weight, and is 0.20, 0.50, 0.90 all over its guides; set "
+                       "transfer.guide_weights.albedo to 0"))
+      << faults;
+  for (std::size_t i = 0; i < guides.pixel_count(); i += 2) guides.Plane(Layer::kAlbedo, 1)[i] = 0.6f;
+  WriteGuideFile("ball/guides.exr", guides);
+  const std::string none = RunOk({"styles", "check", "ball"}).err;
+  EXPECT_FALSE(Contains(none, "albedo")) << "one channel varies: " << none;
+}
+
 TEST_F(CliExemplar, ACacheThatCannotBeWrittenIsNoError) {
   fs::create_directory(At("style"));
   WriteSceneStyle();

@@ -64,6 +64,112 @@ class Changing(Page):
         self.find("#redo").click()
         self.until(lambda: self.threshold() is None, "the saved value")
 
+    def other_tab(self):
+        """A second page of the studio, that is looked at: (the first one's handle, its own)."""
+        one = self.browser.current_window_handle
+        self.js("window.open('/')")
+        two = next(handle for handle in self.browser.window_handles if handle != one)
+        self.browser.switch_to.window(two)
+        self.settled()
+        return one, two
+
+    def says(self, *texts):
+        self.until(lambda: all(text in self.find("#status").text for text in texts), f"the words {texts}")
+
+    def test_undo_goes_on_after_a_save_in_another_tab(self):
+        file = self.folder / "my" / "style.toml"
+        own, before = self.state()["file_keys"]["transfer.threshold"], self.pixels()
+        self.set_threshold(0.5)
+        one, two = self.other_tab()
+        self.find("[data-key='transfer.scale'] [data-slider]").send_keys(Keys.ARROW_RIGHT * 10)
+        self.until(lambda: self.state()["keys"].get("transfer.scale") == 1.5, "a change of the other tab")
+        self.settled()
+        self.find("#save").click()
+        self.until(lambda: not self.state()["keys"], "the save")
+        self.browser.switch_to.window(one)
+        self.until(lambda: not self.find("#save").is_enabled(), "news of the save")
+        self.settled()
+        self.find("#undo").click()
+        self.until(lambda: self.state()["keys"] == {"transfer.threshold": own}, "the value from before the save")
+        self.says("undone: threshold", str(own), "saved is 0.5")
+        self.assertTrue("0.5" in file.read_text() and "scale = 1.5" in file.read_text(), file.read_text())
+        self.find("#redo").click()
+        self.until(lambda: not self.state()["keys"], "the saved value again")
+        self.find("#undo").click()
+        self.until(lambda: self.threshold() == own, "the value from before the save again")
+        self.browser.switch_to.window(two)
+        self.settled()
+        self.find("#undo").click()  # the other tab's own step
+        self.until(lambda: self.state()["keys"] == {"transfer.threshold": own, "transfer.scale": 1}, "its scale")
+        self.settled()
+        self.assertEqual(self.pixels(), before)
+
+    def test_undo_goes_on_after_a_save_while_the_page_was_away(self):
+        own = self.state()["file_keys"]["transfer.threshold"]
+        self.set_threshold(0.5)
+        one, two = self.other_tab()
+        self.browser.switch_to.window(one)
+        self.browser.get("about:blank")
+        self.browser.switch_to.window(two)
+        self.find("#save").click()
+        self.until(lambda: self.threshold() is None, "the save")
+        self.browser.switch_to.window(one)
+        self.browser.get(self.studio.address)
+        self.settled()
+        self.find("#undo").click()
+        self.until(lambda: self.threshold() == own, "the value from before the save")
+
+    def test_undo_goes_on_after_another_tab_has_saved_a_copy(self):
+        own, before = self.state()["file_keys"]["transfer.threshold"], self.pixels()
+        self.set_threshold(0.5)
+        one, _ = self.other_tab()
+        self.find("#save-as").click()
+        name = self.find("#save-as-name")
+        name.send_keys(Keys.CONTROL + "a")
+        name.send_keys("copy", Keys.ENTER)
+        self.until(lambda: self.state()["style"] == "copy", "the copy")
+        self.browser.switch_to.window(one)
+        self.until(lambda: "copy" in self.find("#title").text, "news of the copy")
+        self.find("#undo").click()
+        self.until(lambda: (self.state()["style"], self.threshold()) == ("copy", own), "the value in the copy")
+        self.settled()
+        self.assertEqual(self.pixels(), before)
+
+    def test_what_another_tab_has_changed_is_not_lost_without_a_word(self):
+        self.set_threshold(0.5)
+        one, _ = self.other_tab()
+        self.set_threshold(0.7)
+        self.browser.switch_to.window(one)
+        self.settled()
+        self.find("#undo").click()
+        self.until(lambda: self.threshold() is None, "the file's value")
+        self.says("undone", "another page had changed threshold: redo brings that back")
+        self.find("#redo").click()
+        self.until(lambda: self.threshold() == 0.7, "the other tab's value")
+
+    def test_a_save_meets_a_change_that_is_on_its_way(self):
+        own = self.state()["file_keys"]["transfer.threshold"]
+        self.set_threshold(0.5)
+        self.js("const own = window.fetch; window.fetch = async (path, options) => {"
+                "if (options?.method === 'PATCH') await new Promise((go) => { window.go = go; });"
+                "return own(path, options); }")
+        for number in ("0.6", "0.5"):  # the second waits until the first was answered
+            self.js("const field = document.getElementById('key-transfer.threshold'); field.value = arguments[0];"
+                    "field.dispatchEvent(new Event('change', {bubbles: true}))", number)
+        self.until(lambda: self.js("return !!window.go"), "the change on its way")
+        self.assertEqual(self.call("POST", "/api/save")[0], 200)
+        self.assertIsNone(self.threshold())
+        self.js("const go = window.go; window.go = null; go()")
+        self.until(lambda: self.threshold() == 0.6, "the first change")
+        self.until(lambda: self.js("return !!window.go"), "the second change")
+        self.js("window.go()")
+        self.until(lambda: self.threshold() == 0.5, "the second change, which is the saved value")
+        for value in (0.6, None, own):
+            self.js("window.go = null; document.getElementById('undo').click()")
+            self.until(lambda: self.js("return !!window.go"), "the undo on its way")
+            self.js("window.go()")
+            self.until(lambda: self.threshold() == value, f"undo to {value}")
+
     def test_key_frames_stay_when_their_key_is_changed(self):
         file = self.folder / "my" / "style.toml"
         lines = ["threshold = [[1, 0.02], [24, 0.6]]" if line.startswith("threshold =") else line

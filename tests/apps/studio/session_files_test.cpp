@@ -66,6 +66,29 @@ TEST_F(SessionTest, SaveChangesOneLine) {
   EXPECT_EQ(Call("POST", "/api/save", json::object()).status, 403);
 }
 
+TEST_F(SessionTest, SavesAreListedForTheUndoOfAllPages) {
+  EXPECT_EQ(State()["saves"], json::array());
+  ASSERT_EQ(Call("PATCH", "/api/state", {{"keys", {{"transfer.threshold", 0.5}}}}).status, 200);
+  const HttpResponse saved = Call("POST", "/api/save", json::object());
+  ASSERT_EQ(saved.status, 200);
+  const json first = {{"number", 1},
+                      {"style", "mine"},
+                      {"from", "mine"},
+                      {"keys", {{"transfer.threshold", 0.5}}},
+                      {"before", {{"transfer.threshold", 0.2}}},
+                      {"had_frames", false}};
+  EXPECT_EQ(json::parse(saved.body)["saves"], json::array({first}));
+  EXPECT_EQ(State()["saves"], json::array({first}));
+  for (int i = 2; i <= 25; ++i) {
+    ASSERT_EQ(Call("PATCH", "/api/state", {{"keys", {{"transfer.threshold", i / 100.0}}}}).status, 200);
+    ASSERT_EQ(Call("POST", "/api/save", json::object()).status, 200);
+  }
+  const json saves = State()["saves"];
+  EXPECT_EQ(saves.size(), 20u);
+  EXPECT_EQ(saves.back()["number"], 25);
+  EXPECT_EQ(saves.back()["before"], json({{"transfer.threshold", 0.24}}));
+}
+
 // One value would take the place of all.
 TEST_F(SessionTest, SaveKeepsKeyFrames) {
   const fs::path toml = folder / "mine" / "style.toml";
@@ -86,6 +109,8 @@ TEST_F(SessionTest, SaveKeepsKeyFrames) {
   EXPECT_EQ(TextOf(toml), text);
   EXPECT_EQ(Call("POST", "/api/save-as", {{"name", "other"}}).status, 200);
   EXPECT_EQ(State()["key_frames"], json::object());
+  const json last = State()["saves"].back();
+  EXPECT_EQ(json({last["from"], last["style"], last["had_frames"]}), json({"mine", "other", true}));
 }
 
 TEST_F(SessionTest, SaveAsMakesAWholeStyle) {

@@ -173,6 +173,58 @@ TEST(ColorProfile, EveryFormatThatCarriesOneIsConverted) {
   }
 }
 
+// A PNG of one colour, with or without a profile.
+void WritePng(const std::filesystem::path& path, const ProfileBytes& profile,
+              const std::array<std::uint8_t, 3>& color = {120, 180, 90}) {
+  OIIO::ImageSpec spec(16, 16, 3, OIIO::TypeDesc::UINT8);
+  if (!profile.empty()) {
+    const OIIO::TypeDesc type(OIIO::TypeDesc::UINT8, static_cast<int>(profile.size()));
+    spec.attribute("ICCProfile", type, profile.data());
+  }
+  std::vector<std::uint8_t> bytes;
+  for (int i = 0; i < 256; ++i) bytes.insert(bytes.end(), color.begin(), color.end());
+  auto output = OIIO::ImageOutput::create("a.png");
+  ASSERT_TRUE(output && output->open(path.string(), spec));
+  ASSERT_TRUE(output->write_image(OIIO::TypeDesc::UINT8, bytes.data()) && output->close());
+}
+
+void SpoilPixels(const std::filesystem::path& png) {
+  auto bytes = ReadWholeFile(png);
+  ASSERT_TRUE(bytes);
+  std::string text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+  const std::size_t pixels = text.find("IDAT");
+  ASSERT_NE(pixels, std::string::npos);
+  std::fill_n((*bytes).begin() + static_cast<std::ptrdiff_t>(pixels + 4), 8, std::byte{0xff});
+  ASSERT_TRUE(WriteFileAtomically(png, *bytes));
+}
+
+// A profile that keeps all codes is known without the pixels.
+TEST(ColorProfile, WhetherAPngHasOtherColours) {
+  const TemporaryFolder folder;
+  const std::filesystem::path png = folder / "a.png";
+  for (const ProfileBytes& profile : {ProfileBytes(), Saved(cmsCreate_sRGBProfile())}) {
+    WritePng(png, profile);
+    Expected<bool> other = HasOtherColors(png);
+    ASSERT_TRUE(other) << other.error().message;
+    EXPECT_FALSE(*other);
+    SpoilPixels(png);
+    other = HasOtherColors(png);
+    ASSERT_TRUE(other) << other.error().message;
+    EXPECT_FALSE(*other);
+  }
+  WritePng(png, ProfileOf(kAdobeRgb));
+  const Expected<bool> other = HasOtherColors(png);
+  ASSERT_TRUE(other) << other.error().message;
+  EXPECT_TRUE(*other);
+  WritePng(png, ProfileOf(kAdobeRgb), {0, 0, 0});
+  const Expected<bool> black = HasOtherColors(png);
+  ASSERT_TRUE(black) << black.error().message;
+  EXPECT_FALSE(*black) << "black is black in either";
+  WritePng(png, ProfileOf(kAdobeRgb));
+  SpoilPixels(png);
+  EXPECT_FALSE(HasOtherColors(png)) << "the picture cannot be read";
+}
+
 std::string TextOf(const ProfileBytes& bytes) { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
 
 std::string Digits(std::size_t number, bool lowest_first) {
