@@ -168,7 +168,7 @@ def note_limits(thing, shown, view_layer, unsupported):
         more = f"{levels} levels more than its modifier's" if levels > 0 else "its modifier's own levels"
         unsupported.add(f"object '{thing.name}': its adaptive subdivision is taken for {more}")
     catcher = next((owner for owner in (thing, shown) if export_styles.is_catcher(owner)), None)
-    if catcher is not None and export_styles.style_of(thing, shown) == "catcher":
+    if catcher is not None and export_styles.style_of(thing, shown) in ("catcher", export_styles.TICKED):
         unsupported.add(f"object '{catcher.name}': is a shadow catcher: pictures leave it out, and with --set "
                         "transfer.shadow=paint they have the shadows on it")
 

@@ -20,6 +20,10 @@ namespace scumble {
 namespace {
 
 constexpr const char *kRendered = "rendered", *kCatcher = "catcher";
+// What a box ticked in Blender asks for: no slip where the style paints no shadows.
+constexpr const char* kCatcherOrRendered = "catcher-or-rendered";
+
+bool IsWord(const std::string& style) { return style == kRendered || style == kCatcher || style == kCatcherOrRendered; }
 
 std::string PathOf(const std::filesystem::path& found) {
   std::error_code failed;
@@ -62,6 +66,9 @@ Expected<std::uint16_t> PlaceOf(StyleSet& set, const std::string& name, const st
 Expected<std::uint16_t> PlaceOrWord(StyleSet& set, const std::string& name, const std::filesystem::path& base) {
   if (name == kRendered) return StyleMap::kPassThrough;
   if (name == kCatcher) return StyleMap::kShadowCatcher;
+  if (name == kCatcherOrRendered) {
+    return PaintsShadows(set.first()) ? StyleMap::kShadowCatcher : StyleMap::kPassThrough;
+  }
   return PlaceOf(set, name, base);
 }
 
@@ -153,7 +160,7 @@ std::vector<std::string> StylesAskedFor(const SceneStyleRequests& requests, std:
     for (const auto& [name, style] : *list) {
       const bool is_assigned = std::any_of(patterns.begin(), patterns.end(),
                                            [&](const std::string& pattern) { return FitsPattern(name, pattern); });
-      if (!is_assigned && style != kRendered && style != kCatcher) styles.push_back(style);
+      if (!is_assigned && !IsWord(style)) styles.push_back(style);
     }
   }
   return styles;

@@ -81,7 +81,8 @@ std::string SetsWithout(const StyleSet& set, const LayerSet& layers);
 void CloseSceneStyles(StyleSet& set);
 
 // Opens the default style and every assigned one, each once. "rendered" leaves objects as they are, "catcher" shows
-// nothing of them but the shadows on them. Cancelled between two styles.
+// nothing of them but the shadows on them, "catcher-or-rendered" is "catcher" where the default style paints shadows,
+// otherwise "rendered". Cancelled between two styles.
 Expected<StyleSet> OpenStyles(const StyleRequest& options, const RunContext& context);
 
 // Which style paints which pixel, by the names in the guides, which are `file`'s. The last assignment that fits a

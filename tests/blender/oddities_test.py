@@ -173,7 +173,7 @@ def check_limits(document, extras):
     expect(beside.endswith("/assets/paints/ink"), "beside the library", beside)
     expect(nodes["FlatHair"]["matrix"][4:7] == [0, 0, 0], "hair that is flat is left out", nodes["FlatHair"]["matrix"])
     wanted = {"Bundled": "oil", "Reserved": "catcher", "FlatHair": None, "Shared": None, "Shared.001": None,
-              "Plain/Member": None, "Dark/Member": None, "Catch/Member": "catcher", "Wish/Member": "ink",
+              "Plain/Member": None, "Dark/Member": None, "Catch/Member": "catcher-or-rendered", "Wish/Member": "ink",
               "Outer/Member": None}
     wanted.update({f"{name}/Own": "oil" for name in ("Plain", "Dark", "Catch", "Wish", "Outer")})
     expect(styles == wanted, styles)
