@@ -118,11 +118,9 @@ Expected<FrameWrite> PictureSequence::Make(int frame, const std::string& output,
   return PaintPicture(styles_, *found.guides, found.source, one, context_, Within(progress, guides_share, 1.0), state_);
 }
 
-std::vector<std::string> PictureSequence::Warnings() {
-  std::vector<std::string> warnings = AssignmentReport(styles_);
-  const std::vector<std::string> of_finish = state_.finish_remarks.WarnOfFrames(context_);
-  warnings.insert(warnings.end(), of_finish.begin(), of_finish.end());
-  return warnings;
+void PictureSequence::WarnAtEnd() {
+  WarnOfIdleAssignments(styles_);
+  state_.finish_remarks.WarnOfFrames(context_);
 }
 
 Expected<RunReport> RunOnePicture(StyleSet& styles, const GuideSet& guides, const GuideSource& source,
@@ -131,9 +129,8 @@ Expected<RunReport> RunOnePicture(StyleSet& styles, const GuideSet& guides, cons
   SCUMBLE_ASSIGN(const FrameWrite write, PaintPicture(styles, guides, source, request, context, progress, state));
   RunReport report;
   SCUMBLE_ASSIGN(report.frame, write());
-  report.paints = true;
   context.EndStage("write");
-  report.warnings = AssignmentReport(styles);
+  WarnOfIdleAssignments(styles);
   return report;
 }
 

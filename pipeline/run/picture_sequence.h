@@ -47,8 +47,8 @@ class PictureSequence {
   Expected<FrameWrite> Make(int frame, const std::string& output, const GuidesAt& guides_at, double guides_share,
                             const Progress& progress);
 
-  // What is warned of when all frames are made, for the report.
-  std::vector<std::string> Warnings();
+  // What there is to warn of when all frames are made.
+  void WarnAtEnd();
 
  private:
   // Instead of what must be measured.

@@ -23,6 +23,7 @@
 #include "pipeline/frame/paint_picture.h"
 #include "pipeline/frame/provenance.h"
 #include "pipeline/memory/memory_estimate.h"
+#include "pipeline/run/kept_warnings.h"
 #include "pipeline/scene/run_inputs.h"
 #include "pipeline/style/finish_files.h"
 #include "pipeline/style/finish_order.h"
@@ -196,9 +197,7 @@ Status CheckLayers(const FinishRequest& request, const FinishState& state) {
   return CheckFinish(steps, nullptr);
 }
 
-}  // namespace
-
-Expected<RunReport> RunFinish(FinishRequest request, const SequenceListener& listener, const RunContext& context) {
+Expected<RunReport> FinishPictures(FinishRequest request, const SequenceListener& listener, const RunContext& context) {
   FinishState state;
   SCUMBLE_ASSIGN(state.chain, OpenFinish(request.finishes, context));
   SCUMBLE_RETURN_IF_ERROR(SetFinish(request.sets, state.chain));
@@ -233,7 +232,6 @@ Expected<RunReport> RunFinish(FinishRequest request, const SequenceListener& lis
   SCUMBLE_ASSIGN(const auto layer_outputs, LayerNamesOf(request.layers_out, sequence));
   SCUMBLE_RETURN_IF_ERROR(inputs.CheckOutputs(layer_outputs, "--layers-out", resumes));
   RunReport report;
-  report.paints = true;
   if (!sequence) {
     SCUMBLE_ASSIGN(const FrameWrite write, Finish(request,
                                                   {request.frame, request.picture, request.guides, request.camera,
@@ -302,8 +300,15 @@ Expected<RunReport> RunFinish(FinishRequest request, const SequenceListener& lis
   };
   work.make = finish;
   SCUMBLE_ASSIGN(report.sequence, RunSequence(*sequence, work, listener, context, context.StartProgress("finish")));
-  report.warnings = state.remarks.WarnOfFrames(context);
+  state.remarks.WarnOfFrames(context);
   return report;
+}
+
+}  // namespace
+
+Expected<RunReport> RunFinish(FinishRequest request, const SequenceListener& listener, const RunContext& context) {
+  return KeepWarnings(context,
+                      [&](const RunContext& kept) { return FinishPictures(std::move(request), listener, kept); });
 }
 
 }  // namespace scumble

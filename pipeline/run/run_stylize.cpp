@@ -10,6 +10,7 @@
 #include "core/io/guide_file.h"
 #include "core/io/picture_file.h"
 #include "pipeline/memory/memory_estimate.h"
+#include "pipeline/run/kept_warnings.h"
 #include "pipeline/run/picture_sequence.h"
 #include "pipeline/run/run_requests.h"
 #include "pipeline/scene/scene_sequence.h"
@@ -101,8 +102,7 @@ Expected<RunReport> StylizeSequence(const StylizeRequest& request, const Sequenc
                  RunSequence(sequence, work, listener, context, context.StartProgress("stylize")));
   RunReport report;
   report.sequence = std::move(totals);
-  report.paints = true;
-  report.warnings = pictures.Warnings();
+  pictures.WarnAtEnd();
   return report;
 }
 
@@ -135,9 +135,7 @@ Expected<std::optional<BudgetChoice>> ChooseForStylize(StylizeRequest& request, 
   return choice;
 }
 
-}  // namespace
-
-Expected<RunReport> RunStylize(StylizeRequest request, const SequenceListener& listener, const RunContext& context) {
+Expected<RunReport> Stylize(StylizeRequest request, const SequenceListener& listener, const RunContext& context) {
   SCUMBLE_RETURN_IF_ERROR(CheckPictureRequest(request.picture));
   SCUMBLE_RETURN_IF_ERROR(ShrinkGuides(request));
   const bool plan_only = request.picture.output.empty();
@@ -189,6 +187,12 @@ Expected<RunReport> RunStylize(StylizeRequest request, const SequenceListener& l
                  RunOnePicture(styles, made.guides, source, request.picture, context, Within(all, 0.5, 1.0)));
   report.choice = std::move(choice);
   return report;
+}
+
+}  // namespace
+
+Expected<RunReport> RunStylize(StylizeRequest request, const SequenceListener& listener, const RunContext& context) {
+  return KeepWarnings(context, [&](const RunContext& kept) { return Stylize(std::move(request), listener, kept); });
 }
 
 }  // namespace scumble

@@ -10,6 +10,7 @@
 #include "core/io/picture_file.h"
 #include "pipeline/memory/memory_estimate.h"
 #include "pipeline/run/guide_casters.h"
+#include "pipeline/run/kept_warnings.h"
 #include "pipeline/run/picture_sequence.h"
 #include "pipeline/run/run_requests.h"
 #include "pipeline/scene/scene_sequence.h"
@@ -127,8 +128,7 @@ Expected<RunReport> TransferSequence(const TransferRequest& request, const Seque
                  RunSequence(sequence, work, listener, context, context.StartProgress("transfer")));
   RunReport report;
   report.sequence = std::move(totals);
-  report.paints = true;
-  report.warnings = pictures.Warnings();
+  pictures.WarnAtEnd();
   return report;
 }
 
@@ -150,9 +150,7 @@ Expected<std::optional<BudgetChoice>> ChooseForSequence(TransferRequest& request
   return ChooseForGuides(request.budget, guides, frame, file, over, styles, request.picture, context);
 }
 
-}  // namespace
-
-Expected<RunReport> RunTransfer(TransferRequest request, const SequenceListener& listener, const RunContext& context) {
+Expected<RunReport> Transfer(TransferRequest request, const SequenceListener& listener, const RunContext& context) {
   if (IsScene(request.guides)) {
     return InputError(request.guides +
                       " is a scene: transfer takes guides; use `scumble stylize`, or `scumble guidegen` first");
@@ -197,6 +195,12 @@ Expected<RunReport> RunTransfer(TransferRequest request, const SequenceListener&
                  RunOnePicture(styles, guides, source, request.picture, context, context.StartProgress("transfer")));
   report.choice = std::move(choice);
   return report;
+}
+
+}  // namespace
+
+Expected<RunReport> RunTransfer(TransferRequest request, const SequenceListener& listener, const RunContext& context) {
+  return KeepWarnings(context, [&](const RunContext& kept) { return Transfer(std::move(request), listener, kept); });
 }
 
 }  // namespace scumble

@@ -163,15 +163,12 @@ void FinishRemarks::Tell(const FinishRemark& remark, std::optional<int> frame, c
   if (is_new && context.on_message) context.on_message({remark.message.kind, start + remark.message.text});
 }
 
-std::vector<std::string> FinishRemarks::WarnOfFrames(const RunContext& context) const {
-  std::vector<std::string> warnings;
+void FinishRemarks::WarnOfFrames(const RunContext& context) const {
   for (const auto& [text, frames] : frames_) {
     if (frames.size() < 2) continue;
     const std::vector<int> numbers(frames.begin(), frames.end());
-    warnings.push_back("frames " + FramesToText(numbers) + ": " + text);
-    context.Warn(warnings.back());
+    context.Warn("frames " + FramesToText(numbers) + ": " + text);
   }
-  return warnings;
 }
 
 Expected<std::vector<FinishPreset>> FinishPresets(const RunContext& context) {

@@ -58,8 +58,8 @@ class FinishRemarks {
   void Tell(const FinishRemark& remark, std::optional<int> frame, const std::string& place, const RunContext& context);
   void EndFrame() { is_first_ = false; }
 
-  // At the end of a sequence: what held in several frames, with their numbers, is warned of, and returned.
-  std::vector<std::string> WarnOfFrames(const RunContext& context) const;
+  // At the end of a sequence: what held in several frames, with their numbers, is warned of.
+  void WarnOfFrames(const RunContext& context) const;
 
  private:
   bool is_first_ = true;

@@ -329,16 +329,6 @@ Expected<StyleSet> OpenStyles(const StyleRequest& options, const RunContext& con
   return set;
 }
 
-namespace {
-
-void WarnOnce(StyleSet& set, const std::string& text) {
-  if (std::find(set.warnings.begin(), set.warnings.end(), text) != set.warnings.end()) return;
-  set.warnings.push_back(text);
-  set.context.Warn(text);
-}
-
-}  // namespace
-
 void CloseSceneStyles(StyleSet& set) {
   set.styles.erase(set.styles.begin() + std::ptrdiff_t(set.chosen), set.styles.end());
   set.given.resize(set.chosen);
@@ -373,8 +363,8 @@ Expected<StyleMap> MapStyles(StyleSet& set, const GuideSet& guides, const std::s
     }
     if (!fits && !one.named && !one.warned) {
       one.warned = true;
-      WarnOnce(set, one.where + ": the scene has no such object or material; " +
-                        DescribeNames(one.pattern, objects, materials));
+      set.context.Warn(one.where + ": the scene has no such object or material; " +
+                       DescribeNames(one.pattern, objects, materials));
     }
     one.named = one.named || fits;
   }
@@ -389,16 +379,14 @@ Expected<StyleMap> MapStyles(StyleSet& set, const GuideSet& guides, const std::s
   return map;
 }
 
-std::vector<std::string> AssignmentReport(StyleSet& set) {
+void WarnOfIdleAssignments(const StyleSet& set) {
   std::vector<std::string> idle;
   for (const StyleSet::Assigned& one : set.assigned) {
     if (one.named && one.pixels == 0) idle.push_back(one.where);
   }
-  if (!idle.empty()) {
-    WarnOnce(set, SomeOf(idle) + (idle.size() == 1 ? " paints" : " paint") +
-                      " no pixel: what is named there is not seen, or a later assignment names it too");
-  }
-  return set.warnings;
+  if (idle.empty()) return;
+  set.context.Warn(SomeOf(idle) + (idle.size() == 1 ? " paints" : " paint") +
+                   " no pixel: what is named there is not seen, or a later assignment names it too");
 }
 
 }  // namespace scumble
