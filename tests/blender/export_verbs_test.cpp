@@ -181,6 +181,13 @@ TEST_F(BlenderVerbs, AShadowCatcherIsOneHereToo) {
               HasSubstr("object 'Alone': is a shadow catcher: pictures leave it out"));
 }
 
+TEST_F(BlenderVerbs, NoOtherCameraTakesThePlaceOfTheActiveOne) {
+  const Arguments guidegen = {"guidegen", Blend("panorama"), "--size", "32x18", "-o", "g.exr"};
+  ExpectErrorHere(guidegen, 3, {"active camera 'Round' is panoramic: give --camera NAME, of 'Side', or --view"});
+  EXPECT_EQ(RunHere(With(guidegen, {"--camera", "Side"})).code, 0);
+  EXPECT_EQ(RunHere(With(guidegen, {"--view", "20,30"})).code, 0);
+}
+
 TEST_F(BlenderVerbs, ScenesAndViewLayersAreChosenByName) {
   const auto objects = [&](const Arguments& more, const std::vector<std::string>& notes) {
     const CommandResult run = RunHere(With({"info", Blend("layers"), "--json"}, more));

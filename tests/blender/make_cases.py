@@ -442,6 +442,14 @@ def cameras():
     return result
 
 
+def panorama():
+    """The active camera is panoramic, another one is not."""
+    cube("Cube")
+    camera("Side", (4, -5, 3), (1.1, 0.1, 0.7))
+    bpy.context.scene.camera = camera("Round", (4, -5, 3), (1.1, 0.1, 0.7), type="PANO")
+    return None
+
+
 # ---- Visible to Cycles ----------------------------------------------------------------------------------------------
 
 
@@ -612,7 +620,7 @@ def old(folder):
 
 
 CASES = {"lamps": lamps, "materials": materials, "objects": objects, "deformed": deformed, "cameras": cameras,
-         "rendered": rendered, "bordered": bordered, "layers": layers}
+         "rendered": rendered, "bordered": bordered, "layers": layers, "panorama": panorama}
 FILES = {"broken": broken, "old": old}  # these write their files themselves
 
 
