@@ -265,14 +265,18 @@ Expected<RunReport> FinishPictures(FinishRequest request, const SequenceListener
                   context, progress, state);
   };
   // Where a sequence is resumed, a frame that is kept may be the one to measure.
-  work.begin = [&](std::span<const int>, const Progress& progress) -> Status {
+  work.begin = [&](std::span<const int>, const Progress& progress, std::optional<int>& failed_at) -> Status {
     const bool looks = !state.measures && EverLooksAtMeasures(state.chain);
     const bool measures_colors = MeasuresColors(state.chain.passes);  // of what is painted, which is not written yet
     if (!looks && !measures_colors) return Ok();
     const std::string colors_option = "--set finish.NAME.from of a palette";
     const auto measure_colors = [&](int frame) -> Status {
+      failed_at = frame;
       const Expected<FrameWrite> finished = finish(frame, "", progress);
-      return finished ? Ok() : Status(CannotMeasure(finished.error(), frame, colors_option));
+      if (finished) return Ok();
+      const bool is_own =
+          finished.error().kind == ErrorKind::kInput && !ReadPicture(picture.At(frame), request.view_layer);
+      return CannotMeasure(finished.error(), frame, is_own ? colors_option : "");
     };
     if (state.required.empty() || request.guides.empty()) return measure_colors(sequence->frames.front());
     const std::string options = looks ? "--finish-measures" : colors_option;
@@ -286,14 +290,20 @@ Expected<RunReport> FinishPictures(FinishRequest request, const SequenceListener
     };
     FrameToMeasure choice;
     for (const int frame : sequence->frames) {
+      failed_at = frame;
       const Expected<GuideSet> set = guides_at(frame);
-      if (!set) return CannotMeasure(set.error(), frame, options);
+      if (!set) {
+        const bool is_own = IsOfGuideFile(set.error(), guides.At(frame), state.required);
+        return CannotMeasure(set.error(), frame, is_own ? options : "");
+      }
       if (choice.IsEnough(frame, *set)) return measure(frame, *set);
     }
     if (choice.best) {
+      failed_at = choice.best;
       SCUMBLE_ASSIGN(const GuideSet set, guides_at(*choice.best));
       return measure(*choice.best, set);
     }
+    failed_at.reset();
     if (looks) state.measures.emplace();
     context.Warn(NothingToMeasure(sequence->frames, options));
     return Ok();

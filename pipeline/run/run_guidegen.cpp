@@ -45,7 +45,9 @@ Expected<RunReport> GuidegenSequence(const GuidegenRequest& request, const Seque
     if (info) casters.Add(frame, info->header.attributes);
     return Ok();
   };
-  work.begin = [&](std::span<const int> frames, const Progress& progress) { return scene.Start(frames, progress); };
+  work.begin = [&](std::span<const int> frames, const Progress& progress, std::optional<int>&) {
+    return scene.Start(frames, progress);
+  };
   work.make = [&](int frame, const std::string& output, const Progress& progress) -> Expected<FrameWrite> {
     SCUMBLE_ASSIGN(const SceneGuides* const guides, scene.At(frame, progress));
     casters.Add(frame, guides->guides.attributes);

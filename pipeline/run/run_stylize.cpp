@@ -73,17 +73,19 @@ Expected<RunReport> StylizeSequence(const StylizeRequest& request, const Sequenc
   // How fast a .blend plays is known when it is exported.
   std::optional<FrameRate> fps = options.fps;
   if (!fps && !IsBlenderScene(options.scene)) fps = FrameRate();
-  const int width = size.width * request.picture.upsample, height = size.height * request.picture.upsample;
+  const Size larger{size.width * request.picture.upsample, size.height * request.picture.upsample};
   work.check = [&](int frame, const std::string& output) {
-    return pictures.Check(frame, output, width, height, fps, SamplesText(options),
+    return pictures.Check(frame, output, larger.width, larger.height, fps, SamplesText(options),
                           GuidesText({{kSettingsKey, GuideSettings(options)}}, ""));
   };
-  work.begin = [&](std::span<const int> frames, const Progress& progress) -> Status {
+  // A frame that Blender or the scene cannot give; a limit of memory is that of all frames.
+  const GuidesAhead ahead{guides_ahead, [](int, const Error& error) { return error.kind == ErrorKind::kInput; }};
+  work.begin = [&](std::span<const int> frames, const Progress& progress, std::optional<int>& failed_at) -> Status {
     std::vector<int> wanted(frames.begin(), frames.end());
     const int first = sequence.frames.front();
     // What a .blend asks for is known when its first frame is there: it may be a style that is exposed.
     const bool may_want = IsBlenderScene(options.scene) && request.style.scene_styles && !request.picture.exposure;
-    SCUMBLE_RETURN_IF_ERROR(pictures.ReadOverOfAll(width, height));
+    SCUMBLE_RETURN_IF_ERROR(pictures.ReadOverOfAll(larger));
     const bool look = sequence.frames.size() > 1 && (may_want || pictures.MustLookAhead(sequence));
     if (look && wanted.front() != first) wanted.insert(wanted.begin(), first);
     SCUMBLE_RETURN_IF_ERROR(scene.Start(wanted, progress));
@@ -92,7 +94,7 @@ Expected<RunReport> StylizeSequence(const StylizeRequest& request, const Sequenc
       if (!seen && seen.error().kind != ErrorKind::kInput) return seen.error();
       if (!seen) return Ok();  // reported when it is made
     }
-    SCUMBLE_RETURN_IF_ERROR(pictures.Begin(sequence, width, height, guides_ahead, {}));
+    SCUMBLE_RETURN_IF_ERROR(pictures.Begin(sequence, larger, ahead, {}, failed_at));
     return looks_further ? scene.Restart(frames) : Ok();
   };
   work.make = [&](int frame, const std::string& output, const Progress& progress) {

@@ -9,6 +9,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/io/guide_file.h"
 #include "core/style/finish_keys.h"
 #include "core/style/nearest_name.h"
 #include "finish/mask.h"
@@ -344,8 +345,18 @@ bool FrameToMeasure::IsEnough(int frame, const GuideSet& guides) {
 
 Error CannotMeasure(const Error& error, int frame, const std::string& option) {
   if (error.kind == ErrorKind::kCancelled) return error;
-  return {error.kind, fmt::format("{}; all frames are painted by what frame {} shows: fix it, or give {}",
-                                  error.message, frame, option)};
+  const std::string text = fmt::format("{}; all frames are painted by what frame {} shows", error.message, frame);
+  return {error.kind, option.empty() ? text : text + ": fix it, or give " + option};
+}
+
+bool IsOfGuideFile(const Error& error, const std::string& file, const LayerSet& required) {
+  if (error.kind != ErrorKind::kInput) return false;
+  const auto info = InspectGuides(file);
+  if (!info) return true;
+  LayerSet there;
+  for (const auto& [view_layer, layers] : info->layers) there.Add(layers);
+  return std::none_of(AllLayers().begin(), AllLayers().end(),
+                      [&](const LayerInfo& layer) { return required.Has(layer.layer) && !there.Has(layer.layer); });
 }
 
 std::string NothingToMeasure(const std::vector<int>& frames, const std::string& options) {

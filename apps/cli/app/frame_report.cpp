@@ -129,6 +129,7 @@ void PrintTotals(const SequenceTotals& totals, const RunReport& report, const Gl
     Print(JsonText(json));
     return;
   }
+  if (totals.ended_by && totals.made + totals.kept == 0) return;  // the error says it all
   const std::size_t all = totals.frames();
   std::string text = fmt::format("{} frame{}: {} made", all, all == 1 ? "" : "s", totals.made);
   if (totals.resumed) text += fmt::format(", {} kept", totals.kept);
