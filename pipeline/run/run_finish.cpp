@@ -51,7 +51,7 @@ GuideReadOptions ReadOptions(const FinishRequest& request, const LayerSet& requi
                              const std::string& camera) {
   GuideReadOptions read;
   read.required = required, read.view_layer = request.view_layer, read.light_layer = request.light_layer;
-  read.blender_camera = camera;
+  read.blender_camera = camera, read.user = GuideUser::kFinish;
   if (read.view_layer.empty()) return read;
   const auto info = InspectGuides(guides);
   const auto is_named = [](const auto& layers) { return !layers.first.empty(); };

@@ -449,10 +449,10 @@ TEST_F(CliAssign, TheTwoStepsTakeWhatTheOneTakes) {
   RunOk(With({"transfer", "g.exr", "-o", "two.png"}, styles));
   EXPECT_TRUE(Bytes("one.png") == Bytes("two.png"));
   RunOk({"guidegen", "s.glb", "--size", "32x8", "--style", "red", "-o", "few.exr"});
-  const CommandResult lacks =
-      ExpectError(With({"transfer", "few.exr", "-o", "no.png"}, styles), 3,
-                  {"few.exr has no layer albedo, luminance", "--layers albedo,luminance",
-                   "the same --style, --assign and --set", "It has A, normal, depth, object, material"});
+  const CommandResult lacks = ExpectError(
+      With({"transfer", "few.exr", "-o", "no.png"}, styles), 3,
+      {"few.exr has no layer albedo, luminance", "--layers albedo,luminance",
+       "the same --style, --assign, --set and --finish as here", "It has A, normal, depth, object, material"});
   EXPECT_EQ(Count(lacks.err, "normal.X"), 0) << lacks.err;
   RunOk({"guidegen", "s.glb", "--size", "32x8", "--layers", "albedo,luminance", "-o", "few.exr"});
   RunOk(With({"transfer", "few.exr", "-o", "two.png"}, styles));
