@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "tests/support/cli_harness.h"
+#include "tests/support/gltf_builder.h"
 
 namespace scumble {
 namespace {
@@ -13,6 +14,10 @@ class CliWarnings : public CliTest {
   void SetUp() override {
     WriteStyle("style");
     WriteText("s.obj", "mtllib none.mtl\no Tri\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  }
+  void WriteGlb(const std::string& name, const GltfBuilder& builder) {
+    const std::vector<unsigned char> glb = builder.Glb();
+    WriteText(name, std::string(glb.begin(), glb.end()));
   }
   // The warnings on stderr, which must be those in the JSON output: of a sequence, of a picture, or of guides.
   std::vector<std::string> WarningsOf(const Arguments& arguments) {
@@ -53,6 +58,18 @@ TEST_F(CliWarnings, AreInTheJsonOutputOfEveryRun) {
   EXPECT_EQ(WarningsOf(With(With({"transfer", "g.exr"}, style), With(idle, {"-o", "p.png"}))).size(), 1u);
   EXPECT_EQ(WarningsOf(With(With({"transfer", "g#.exr"}, style), {"--frames", "1-2", "-o", "p#.png"})).size(), 0u);
   EXPECT_EQ(WarningsOf(With(With({"transfer", "g.exr"}, style), {"--fast-io", "-o", "p.png"})).size(), 1u);
+}
+
+TEST_F(CliWarnings, AThingMayBeHiddenByAScaleOfZero) {
+  GltfBuilder b;
+  b.Triangle();
+  b.Root({{"name", "Hidden"}, {"mesh", 0}, {"scale", {0, 0, 0}}});
+  WriteGlb("s.glb", b);
+  const Arguments guidegen = {"guidegen", "s.glb", "--size", "8", "-o", "g.exr"};
+  EXPECT_EQ(RunOk(guidegen).Warning(), "");
+  b.Root({{"name", "Flat"}, {"mesh", 0}, {"scale", {1, 0, 0}}});
+  WriteGlb("s.glb", b);
+  EXPECT_TRUE(Contains(RunOk(guidegen).Warning(), "left out (node 2 'Flat')"));
 }
 
 }  // namespace
