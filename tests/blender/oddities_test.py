@@ -29,6 +29,8 @@ LOST = ["lamp 'Panel': is visible to the camera",
         "material 'fade': image 'Fade' is its alpha and half transparent in wide parts",
         "material 'fog': it has a volume and no surface: its faces are left out",
         "material 'glass': its alpha 0.3 is cut at one half: the surface is left out",
+        "material 'pane': node 'Glass BSDF' (BSDF_GLASS) cannot be expressed; it is Diffuse in its viewport colour "
+        "instead: its surfaces are opaque, also to light",
         "material 'tilted': node 'Mapping'",
         "material 'two': node 'Image Texture.001' at other places than the roughness",
         "material 'veil': its alpha 0.6 is cut at one half: the surface is solid",
