@@ -60,6 +60,18 @@ TEST_F(CliWarnings, AreInTheJsonOutputOfEveryRun) {
   EXPECT_EQ(WarningsOf(With(With({"transfer", "g.exr"}, style), {"--fast-io", "-o", "p.png"})).size(), 1u);
 }
 
+TEST_F(CliWarnings, NamesWithLineBreaksStayOnTheirLine) {
+  GltfBuilder b;
+  b.Triangle("Two\nlines");
+  WriteGlb("s.glb", b);
+  const CommandResult info = RunOk({"info", "s.glb"});
+  EXPECT_TRUE(Contains(info.out, "Two\\nlines\n")) << info.out;
+  EXPECT_EQ(RunOk({"info", "s.glb", "--json"}).Json()["objects"][0], "Two\nlines");
+  const CommandResult run =
+      RunOk({"stylize", "s.glb", "--size", "8", "--style", "style", "--assign", "Nobody=style", "-o", "p.png"});
+  EXPECT_TRUE(Contains(run.Warning(), "its objects are Two\\nlines; its materials")) << run.err;
+}
+
 TEST_F(CliWarnings, AThingMayBeHiddenByAScaleOfZero) {
   GltfBuilder b;
   b.Triangle();
