@@ -173,6 +173,13 @@ def can_be_looked_through(thing):
     return thing.type == "CAMERA" and thing.data.type in {"PERSP", "ORTHO"}
 
 
+def why_lost(thing):
+    """Why nothing can be seen through this camera of a scene."""
+    if thing.type != "CAMERA":
+        return f"is of type {thing.type}"
+    return "has no direction" if can_be_looked_through(thing) else "is panoramic"
+
+
 def cameras_of(scene, unsupported):
     """The cameras of the scene, the active one first, the others by name. A hidden camera counts: cameras are never
     rendered."""
@@ -182,8 +189,7 @@ def cameras_of(scene, unsupported):
         if can_be_looked_through(thing):
             usable.append(thing)
         else:
-            what = "panoramic" if thing.type == "CAMERA" else f"of type {thing.type}"
-            unsupported.add(f"camera '{thing.name}': is {what}, left out")
+            unsupported.add(f"camera '{thing.name}': {why_lost(thing)}, left out")
     return usable
 
 

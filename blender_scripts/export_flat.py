@@ -10,7 +10,7 @@ import export_normals
 import export_rest
 import export_styles
 import export_viewport
-from blend_common import camera_names, cameras_of, can_be_looked_through, has_direction, note_crooked_camera
+from blend_common import camera_names, cameras_of, can_be_looked_through, has_direction, note_crooked_camera, why_lost
 
 MESH_TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 SHAPE_TYPES = MESH_TYPES | {"CURVES"}
@@ -41,6 +41,7 @@ class FlatScene:
     meshes: list = field(default_factory=list)
     lamps: list = field(default_factory=list)
     cameras: list = field(default_factory=list)  # the active one first
+    lost_camera: str = ""  # why the active one is not among them
     materials: dict = field(default_factory=dict)  # by material_key
     shown_maps: dict = field(default_factory=dict)  # by material_key: its meshes' UV maps that renders take
     normals: dict = field(default_factory=dict)  # of metaballs' vertices, by the object's full name
@@ -168,7 +169,7 @@ def note_limits(thing, shown, view_layer, unsupported):
         more = f"{levels} levels more than its modifier's" if levels > 0 else "its modifier's own levels"
         unsupported.add(f"object '{thing.name}': its adaptive subdivision is taken for {more}")
     catcher = next((owner for owner in (thing, shown) if export_styles.is_catcher(owner)), None)
-    if catcher is not None and export_styles.style_of(thing, shown) == "catcher":
+    if catcher is not None and export_styles.style_of(thing, shown) in ("catcher", export_styles.TICKED):
         unsupported.add(f"object '{catcher.name}': is a shadow catcher: pictures leave it out, and with --set "
                         "transfer.shadow=paint they have the shadows on it")
 
@@ -209,6 +210,8 @@ def order_cameras(flat, scene, unsupported):
         if camera.shown == camera.source:
             camera.name = names[camera.source]
     flat.cameras = [camera for camera in flat.cameras if has_direction(camera.name, camera.matrix, unsupported)]
+    if scene.camera is not None and all(camera.shown != scene.camera for camera in flat.cameras):
+        flat.lost_camera = f"'{scene.camera.name}' {why_lost(scene.camera)}"
     flat.cameras.sort(key=lambda camera: (camera.shown != scene.camera, camera.name))
     for camera in flat.cameras:
         note_crooked_camera(camera.name, camera.matrix, unsupported)

@@ -22,6 +22,8 @@ IGNORED = {"Subsurface": 0.0, "Specular": 0.5, "Specular Tint": 0.0, "Anisotropi
            "Transmission": 0.0, "Diffuse Roughness": 0.0, "Thin Film Thickness": 0.0}
 DEFAULT_INDEX, CLOSE_INDEX = 1.5, 0.06  # 1.45 was the default of 4.0 and 4.1: F0 is 0.034 instead of 0.04
 CYCLES_OWN = {"N", "generated", "pointiness", "random_per_island", "tangent"}  # attributes that no mesh stores
+OPAQUE = ": its surfaces are opaque, also to light"
+GLASS = {"BSDF_GLASS", "BSDF_REFRACTION", "BSDF_TRANSLUCENT"}
 WHITE = (1.0, 1.0, 1.0)  # of Specular Tint from Blender 4.0 on, where it is a colour
 
 
@@ -137,7 +139,7 @@ def drop_ignored(tree, node, reader):
             value, nothing = tuple(value)[:3], WHITE
         if previous(socket) is None and value == nothing:
             continue
-        reader.complain(f"Principled {socket.name} is ignored")
+        reader.complain(f"Principled {socket.name} is ignored" + (OPAQUE if name == "Transmission" else ""))
         clear_links(tree, socket)
         socket.default_value = nothing if isinstance(nothing, float) else (*nothing, 1.0)
     # From Blender 4.0 on the index is that of the reflection, too.
@@ -222,7 +224,7 @@ def unknown_surface(copy, surface, reader):
         reader.complain("a surface without a node is black")
         return diffuse((0.0, 0.0, 0.0))  # as in Cycles
     reader.complain(f"node '{surface.node.name}' ({surface.node.type}) cannot be expressed; it is Diffuse in its "
-                    "viewport colour instead")
+                    "viewport colour instead" + (OPAQUE if surface.node.type in GLASS else ""))
     return diffuse(copy.diffuse_color[:3])
 
 

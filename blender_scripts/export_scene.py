@@ -86,6 +86,8 @@ def export(scene, view_layer, output, unsupported):
     document["scenes"][document["scene"]]["extras"] = {"scumble": {
         "world": world, "blender": bpy.app.version_string, "frame": scene.frame_current,
         "unsupported": unsupported.lines}}
+    if flat.lost_camera:
+        document["scenes"][document["scene"]]["extras"]["scumble"]["lost_camera"] = flat.lost_camera
     export_glb.write(output, document, binary)
 
 

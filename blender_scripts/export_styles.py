@@ -5,7 +5,8 @@ import os
 import bpy
 
 PROPERTY = "scumble_style"
-RESERVED = {"rendered", "catcher"}
+TICKED = "catcher-or-rendered"  # what the box Shadow Catcher asks for
+RESERVED = {"rendered", "catcher", TICKED}
 
 
 def owner_of(thing):
@@ -46,7 +47,7 @@ def style_of(thing, shown=None):
     if style is None and shown is not None and shown.type == "EMPTY":
         style = own_style(shown)
     if style is None and (is_catcher(thing) or (shown is not None and is_catcher(shown))):
-        style = "catcher"
+        style = TICKED
     return style
 
 

@@ -8,7 +8,8 @@ from blend_common import GLTF_FROM_BLENDER
 
 
 def choose(scene, name, unsupported):
-    """Makes the camera of that name the scene's; without a name the first one that export_scene.py writes."""
+    """Makes the camera of that name the scene's; without a name the active one, or where there is none, the first that
+    export_scene.py writes."""
     usable = blend_common.cameras_of(scene, unsupported)
     names = blend_common.camera_names(usable)
     cameras = {names[thing]: thing for thing in usable
@@ -17,6 +18,9 @@ def choose(scene, name, unsupported):
         raise LookupError(f"there is no camera '{name}'; there are: " + (", ".join(cameras) or "none"))
     if not cameras:
         raise LookupError("the scene has no perspective or orthographic camera: add one")
+    if not name and scene.camera is not None and scene.camera not in cameras.values():
+        raise LookupError(f"the active camera '{scene.camera.name}' {blend_common.why_lost(scene.camera)}: "
+                          f"give --camera NAME of {', '.join(cameras)}")
     scene.camera = cameras[name] if name else next(iter(cameras.values()))
     for marker in scene.timeline_markers:
         marker.camera = None  # the render would take the camera of the frame's marker again

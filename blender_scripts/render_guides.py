@@ -52,6 +52,7 @@ SET_HERE = {"scenes": re.compile(r"^(render\.(?!use_simplify$|simplify_)|cycles\
             "cameras": re.compile(r"^dof\.use_dof$"),
             "lights": re.compile(r"^cycles\.use_multiple_importance_sampling$"),
             "objects": re.compile(r"^(cycles\.)?shadow_terminator_\w*offset$")}
+GREASE_PENCIL = {"GPENCIL", "GREASEPENCIL"}  # until Blender 4.2, from 4.3 on
 BOUNCES = ("max_bounces", "diffuse_bounces", "glossy_bounces", "transmission_bounces", "volume_bounces")
 
 
@@ -173,6 +174,14 @@ def set_up_layer(scene, name):
     return chosen
 
 
+def hide_grease_pencil():
+    """Blender draws it over Cycles' picture, and into its pass of depths."""
+    for thing in bpy.data.objects:
+        if thing.type in GREASE_PENCIL:
+            blend_common.release(thing, re.compile(r"^hide_render$"))
+            thing.hide_render = True
+
+
 def choose_passes(layer, wanted):
     for prop in layer.bl_rna.properties:
         if prop.identifier.startswith("use_pass_") and prop.identifier != "use_pass_cryptomatte_accurate":
@@ -225,6 +234,7 @@ def main():
     set_up_output(scene)
     set_up_cycles(scene)
     layer = set_up_layer(scene, options.view_layer)
+    hide_grease_pencil()
     unsupported.say()
     guide_camera.write(scene, options.output.with_suffix(".camera"))
     choose_passes(layer, DATA_PASSES)

@@ -29,6 +29,9 @@ Status WriteGuides(const std::filesystem::path& path, const GuideSet& guides, co
 // Whether WriteGuides supports the ending and the compression. Call it before the work.
 Status CheckGuideTarget(const std::filesystem::path& path, const GuideWriteOptions& options = {});
 
+// Whose options an error about missing layers names.
+enum class GuideUser { kTransfer, kFinish };
+
 struct GuideReadOptions {
   LayerSet required = AlwaysWritten();  // an error names those that are missing, and what is there
   LayerSet optional;                    // read where present
@@ -37,6 +40,7 @@ struct GuideReadOptions {
   // The caller's remedy without the layers that are missing, for the end of a message's sentence; may be empty.
   std::function<std::string(const LayerSet& missing)> remedy;
   std::filesystem::path blender_camera;  // the .camera file of a Blender render; empty: the camera is solved
+  GuideUser user = GuideUser::kTransfer;
 };
 
 // Reads only the channels that are asked for; matches them by name (ParseChannelName). Ids in channels that are called

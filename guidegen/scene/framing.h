@@ -56,7 +56,7 @@ void ReplaceLights(Scene& scene, const Camera& camera, const LightAngles& light)
 // Prepares the scene for rendering. Picks the camera by name (empty: the first; none in the file or `view` given: a
 // framing one). Adds the key light to the scene if it has no light and `needs_light`; a surface that glows by a texture
 // is no light. Each such decision is one line of `notes`, for stderr. An unknown camera name is a usage error that
-// lists the names in the file.
+// lists the names in the file. kInput where the first would be taken, and Blender's active camera was left out.
 struct PreparedView {
   Camera camera;
   std::vector<std::string> notes;

@@ -193,6 +193,7 @@ struct Scene {
   // decoded.
   std::vector<std::shared_ptr<const EncodedTexture>> encoded_textures;
   std::vector<Camera> cameras;
+  std::string lost_camera;  // of a .blend whose active camera is not among these: its name and why
   std::vector<Light> lights;
   bool has_own_lights = true;         // false: `lights` are others than the file's
   glm::vec3 world_radiance{0.0f};     // from every direction without a hit; linear

@@ -33,9 +33,9 @@ bool MeasuresColors(const StyleSet& styles) { return MeasuresColors(AllPasses(st
 
 }  // namespace
 
-Status PictureSequence::Begin(const Sequence& sequence, int width, int height, const GuidesAt& guides_at,
-                              const Progress& progress) {
-  SCUMBLE_RETURN_IF_ERROR(ReadOverOfAll(width, height));
+Status PictureSequence::Begin(const Sequence& sequence, const Size& size, const GuidesAhead& ahead,
+                              const Progress& progress, std::optional<int>& failed_at) {
+  SCUMBLE_RETURN_IF_ERROR(ReadOverOfAll(size));
   if (!MustLookAhead(sequence)) return Ok();
   const auto is_exposed = [&] { return MeasuresExposure(styles_, request_); };  // a scene's styles come with its guides
   const auto measure = [&](int frame, const FrameGuides& found) -> Status {
@@ -45,7 +45,8 @@ Status PictureSequence::Begin(const Sequence& sequence, int width, int height, c
     MeasureFinishOf(styles_, guides, frame, context_, state_);
     if (MeasuresColors(styles_)) {  // of what is painted: the picture itself is made when its turn comes
       const auto painted = PaintInMemory(styles_, guides, found.source, one, context_, progress, state_);
-      if (!painted) return CannotMeasure(painted.error(), frame, kColorsOption);
+      const bool is_own = !painted && painted.error().kind == ErrorKind::kInput;  // as a picture of --over
+      if (!painted) return CannotMeasure(painted.error(), frame, is_own ? kColorsOption : "");
     }
     if (!is_exposed()) return Ok();
     context_.Warn(
@@ -56,14 +57,20 @@ Status PictureSequence::Begin(const Sequence& sequence, int width, int height, c
   };
   FrameToMeasure choice;
   for (const int frame : sequence.frames) {
-    const Expected<FrameGuides> found = guides_at(frame, progress);
-    if (!found) return CannotMeasure(found.error(), frame, OptionsThatGive(is_exposed(), "--exposure STOPS"));
+    failed_at = frame;
+    const Expected<FrameGuides> found = ahead.at(frame, progress);
+    if (!found) {
+      const bool is_own = ahead.is_own(frame, found.error());
+      return CannotMeasure(found.error(), frame, is_own ? OptionsThatGive(is_exposed(), "--exposure STOPS") : "");
+    }
     if (choice.IsEnough(frame, *found->guides)) return measure(frame, *found);
   }
   if (choice.best) {
-    SCUMBLE_ASSIGN(const FrameGuides found, guides_at(*choice.best, progress));
+    failed_at = choice.best;
+    SCUMBLE_ASSIGN(const FrameGuides found, ahead.at(*choice.best, progress));
     return measure(*choice.best, found);
   }
+  failed_at.reset();
   if (is_exposed()) state_.exposure = 0.0;
   if (MeasuresFinish(styles_)) state_.finish_measures.emplace();
   context_.Warn(NothingToMeasure(sequence.frames, OptionsThatGive(is_exposed(), "--exposure")));
@@ -78,13 +85,13 @@ std::string PictureSequence::OptionsThatGive(bool is_exposed, const std::string&
   return fmt::format("{}", fmt::join(options, " and "));
 }
 
-Status PictureSequence::ReadOverOfAll(int width, int height) {
+Status PictureSequence::ReadOverOfAll(const Size& size) {
   SCUMBLE_ASSIGN(const FrameName over, FrameName::Parse(request_.over));
   if (request_.over.empty() || over.has_place()) return Ok();
   SCUMBLE_RETURN_IF_ERROR(ReadOver(request_, state_));
-  if (width == 0 || (state_.over->width == width && state_.over->height == height)) return Ok();
+  if (size.width == 0 || (state_.over->width == size.width && state_.over->height == size.height)) return Ok();
   return InputError(fmt::format("--over {} is {}×{}, the frames are {}×{}: render both at one size", request_.over,
-                                state_.over->width, state_.over->height, width, height));
+                                state_.over->width, state_.over->height, size.width, size.height));
 }
 
 Status PictureSequence::Check(int frame, const std::string& output, int width, int height, std::optional<FrameRate> fps,
@@ -122,10 +129,8 @@ Expected<RunReport> PictureSequence::Run(const Sequence& sequence, const Sequenc
                                          const SequenceListener& listener, const Progress& progress) {
   RunReport report;
   SCUMBLE_ASSIGN(report.sequence, RunSequence(sequence, work, listener, context_, progress));
-  report.paints = true;
-  report.warnings = AssignmentReport(styles_);
-  const std::vector<std::string> of_finish = state_.finish_remarks.WarnOfFrames(context_);
-  report.warnings.insert(report.warnings.end(), of_finish.begin(), of_finish.end());
+  WarnOfIdleAssignments(styles_);
+  state_.finish_remarks.WarnOfFrames(context_);
   return report;
 }
 
@@ -135,9 +140,8 @@ Expected<RunReport> RunOnePicture(StyleSet& styles, const GuideSet& guides, cons
   SCUMBLE_ASSIGN(const FrameWrite write, PaintPicture(styles, guides, source, request, context, progress, state));
   RunReport report;
   SCUMBLE_ASSIGN(report.frame, write());
-  report.paints = true;
   context.EndStage("write");
-  report.warnings = AssignmentReport(styles);
+  WarnOfIdleAssignments(styles);
   return report;
 }
 

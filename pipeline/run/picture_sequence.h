@@ -25,6 +25,13 @@ struct FrameGuides {
 };
 using GuidesAt = std::function<Expected<FrameGuides>(int frame, const Progress& progress)>;
 
+// The guides that a sequence looks at before it paints.
+struct GuidesAhead {
+  GuidesAt at;
+  // Whether an error of `at` is the frame's own: its file is missing or broken.
+  std::function<bool(int frame, const Error& error)> is_own;
+};
+
 // The styles, the request and the state of a sequence of pictures. Styles, request and context are borrowed.
 class PictureSequence {
  public:
@@ -34,9 +41,10 @@ class PictureSequence {
   // Exposure and finishing effects are measured on the first frame of the range that shows a surface, even where it is
   // kept: a sequence that is resumed goes on as it began. `guides_at` is asked for frames of the range in their order,
   // until one shows some. One picture underneath all frames must be there, and have the size of the first that is
-  // known.
-  Status Begin(const Sequence& sequence, int width, int height, const GuidesAt& guides_at, const Progress& progress);
-  Status ReadOverOfAll(int width, int height);
+  // known. `failed_at`: see SequenceWork::begin.
+  Status Begin(const Sequence& sequence, const Size& size, const GuidesAhead& ahead, const Progress& progress,
+               std::optional<int>& failed_at);
+  Status ReadOverOfAll(const Size& size);
 
   // Whether a picture that is there is one that Make would make, as far as can be told without its guides. `samples`:
   // of its guides' light, where that is known; `guides`: their GuidesText, likewise.

@@ -23,6 +23,7 @@
 #include "pipeline/frame/paint_picture.h"
 #include "pipeline/frame/provenance.h"
 #include "pipeline/memory/memory_estimate.h"
+#include "pipeline/run/kept_warnings.h"
 #include "pipeline/scene/run_inputs.h"
 #include "pipeline/style/finish_files.h"
 #include "pipeline/style/finish_order.h"
@@ -50,7 +51,7 @@ GuideReadOptions ReadOptions(const FinishRequest& request, const LayerSet& requi
                              const std::string& camera) {
   GuideReadOptions read;
   read.required = required, read.view_layer = request.view_layer, read.light_layer = request.light_layer;
-  read.blender_camera = camera;
+  read.blender_camera = camera, read.user = GuideUser::kFinish;
   if (read.view_layer.empty()) return read;
   const auto info = InspectGuides(guides);
   const auto is_named = [](const auto& layers) { return !layers.first.empty(); };
@@ -259,14 +260,19 @@ Status CheckMade(const FinishRequest& request, const FrameFiles& files, FinishSt
 
 // Measures what a sequence measures on one of its frames. Where it is resumed, that may be a frame that is kept.
 Status MeasureSequence(const FinishRequest& request, const std::vector<int>& frames, const FrameNames& names,
-                       const RunContext& context, const Progress& progress, FinishState& state) {
+                       const RunContext& context, const Progress& progress, FinishState& state,
+                       std::optional<int>& failed_at) {
   const bool looks = !state.measures && EverLooksAtMeasures(state.chain);
   const bool measures_colors = MeasuresColors(state.chain.passes);  // of what is painted, which is not written yet
   if (!looks && !measures_colors) return Ok();
   const std::string colors_option = "--set finish.NAME.from of a palette";
   const auto measure_colors = [&](int frame) -> Status {
+    failed_at = frame;
     const Expected<FrameWrite> finished = Finish(request, names.At(frame, ""), context, progress, state);
-    return finished ? Ok() : Status(CannotMeasure(finished.error(), frame, colors_option));
+    if (finished) return Ok();
+    const bool is_own =
+        finished.error().kind == ErrorKind::kInput && !ReadPicture(names.picture.At(frame), request.view_layer);
+    return CannotMeasure(finished.error(), frame, is_own ? colors_option : "");
   };
   if (state.required.empty() || request.guides.empty()) return measure_colors(frames.front());
   const std::string options = looks ? "--finish-measures" : colors_option;
@@ -280,22 +286,26 @@ Status MeasureSequence(const FinishRequest& request, const std::vector<int>& fra
   };
   FrameToMeasure choice;
   for (const int frame : frames) {
+    failed_at = frame;
     const Expected<GuideSet> set = guides_at(frame);
-    if (!set) return CannotMeasure(set.error(), frame, options);
+    if (!set) {
+      const bool is_own = IsOfGuideFile(set.error(), names.guides.At(frame), state.required);
+      return CannotMeasure(set.error(), frame, is_own ? options : "");
+    }
     if (choice.IsEnough(frame, *set)) return measure(frame, *set);
   }
   if (choice.best) {
+    failed_at = choice.best;
     SCUMBLE_ASSIGN(const GuideSet set, guides_at(*choice.best));
     return measure(*choice.best, set);
   }
+  failed_at.reset();
   if (looks) state.measures.emplace();
   context.Warn(NothingToMeasure(frames, options));
   return Ok();
 }
 
-}  // namespace
-
-Expected<RunReport> RunFinish(FinishRequest request, const SequenceListener& listener, const RunContext& context) {
+Expected<RunReport> FinishPictures(FinishRequest request, const SequenceListener& listener, const RunContext& context) {
   FinishState state;
   SCUMBLE_ASSIGN(state.chain, OpenFinish(request.finishes, context));
   SCUMBLE_RETURN_IF_ERROR(SetFinish(request.sets, state.chain));
@@ -308,7 +318,6 @@ Expected<RunReport> RunFinish(FinishRequest request, const SequenceListener& lis
   SCUMBLE_ASSIGN(const auto sequence, PlanSequence(request.sequence, request.frame, request.output));
   SCUMBLE_RETURN_IF_ERROR(NameFiles(sequence, state.chain, request));
   RunReport report;
-  report.paints = true;
   if (!sequence) {
     SCUMBLE_ASSIGN(const FrameWrite write, Finish(request,
                                                   {request.frame, request.picture, request.guides, request.camera,
@@ -321,15 +330,22 @@ Expected<RunReport> RunFinish(FinishRequest request, const SequenceListener& lis
   SCUMBLE_ASSIGN(const FrameNames names, NamesOfFrames(request));
   SequenceWork work;
   work.check = [&](int frame, const std::string& output) { return CheckMade(request, names.At(frame, output), state); };
-  work.begin = [&](std::span<const int>, const Progress& progress) {
-    return MeasureSequence(request, sequence->frames, names, context, progress, state);
+  work.begin = [&](std::span<const int>, const Progress& progress, std::optional<int>& failed_at) {
+    return MeasureSequence(request, sequence->frames, names, context, progress, state, failed_at);
   };
   work.make = [&](int frame, const std::string& output, const Progress& progress) {
     return Finish(request, names.At(frame, output), context, progress, state);
   };
   SCUMBLE_ASSIGN(report.sequence, RunSequence(*sequence, work, listener, context, context.StartProgress("finish")));
-  report.warnings = state.remarks.WarnOfFrames(context);
+  state.remarks.WarnOfFrames(context);
   return report;
+}
+
+}  // namespace
+
+Expected<RunReport> RunFinish(FinishRequest request, const SequenceListener& listener, const RunContext& context) {
+  return KeepWarnings(context,
+                      [&](const RunContext& kept) { return FinishPictures(std::move(request), listener, kept); });
 }
 
 }  // namespace scumble

@@ -10,6 +10,7 @@
 #include "core/io/guide_file.h"
 #include "pipeline/memory/memory_estimate.h"
 #include "pipeline/run/guide_casters.h"
+#include "pipeline/run/kept_warnings.h"
 #include "pipeline/run/run_requests.h"
 #include "pipeline/scene/run_inputs.h"
 #include "pipeline/scene/scene_sequence.h"
@@ -44,7 +45,9 @@ Expected<RunReport> GuidegenSequence(const GuidegenRequest& request, const Seque
     if (info) casters.Add(frame, info->header.attributes);
     return Ok();
   };
-  work.begin = [&](std::span<const int> frames, const Progress& progress) { return scene.Start(frames, progress); };
+  work.begin = [&](std::span<const int> frames, const Progress& progress, std::optional<int>&) {
+    return scene.Start(frames, progress);
+  };
   work.make = [&](int frame, const std::string& output, const Progress& progress) -> Expected<FrameWrite> {
     SCUMBLE_ASSIGN(const SceneGuides* const guides, scene.At(frame, progress));
     casters.Add(frame, guides->guides.attributes);
@@ -78,9 +81,7 @@ Status CheckFiles(RunInputs& files, const GuidegenRequest& request, const std::o
   return files.CheckOutputs(outputs, "-o", sequence && sequence->resume);
 }
 
-}  // namespace
-
-Expected<RunReport> RunGuidegen(GuidegenRequest request, const SequenceListener& listener, const RunContext& context) {
+Expected<RunReport> Guidegen(GuidegenRequest request, const SequenceListener& listener, const RunContext& context) {
   const LayerSet asked = request.layers;
   const bool motion = asked.Has(Layer::kMotion);
   std::optional<StyleSet> styles;
@@ -148,6 +149,12 @@ Expected<RunReport> RunGuidegen(GuidegenRequest request, const SequenceListener&
   report.frame = ReportOf(request, request.output, made.guides, made);
   report.frame->bytes_written = BytesWrittenByThisThread();
   return report;
+}
+
+}  // namespace
+
+Expected<RunReport> RunGuidegen(GuidegenRequest request, const SequenceListener& listener, const RunContext& context) {
+  return KeepWarnings(context, [&](const RunContext& kept) { return Guidegen(std::move(request), listener, kept); });
 }
 
 }  // namespace scumble

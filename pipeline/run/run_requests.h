@@ -44,8 +44,7 @@ struct RunReport {
   std::optional<FrameReport> frame;        // of a single picture, or of a single set of guides
   std::optional<SequenceTotals> sequence;  // of a range; each frame went to the listener
   std::optional<BudgetChoice> choice;
-  bool paints = false;                // pictures, not guides
-  std::vector<std::string> warnings;  // about assignments, where it paints
+  std::vector<std::string> warnings;  // each text once
   // Of a plan alone:
   std::vector<PlanItem> plan;
   MemoryNeed memory;

@@ -10,6 +10,7 @@
 #include "core/io/guide_file.h"
 #include "core/io/picture_file.h"
 #include "pipeline/memory/memory_estimate.h"
+#include "pipeline/run/kept_warnings.h"
 #include "pipeline/run/picture_sequence.h"
 #include "pipeline/run/run_requests.h"
 #include "pipeline/scene/scene_sequence.h"
@@ -72,17 +73,19 @@ Expected<RunReport> StylizeSequence(const StylizeRequest& request, const Sequenc
   // How fast a .blend plays is known when it is exported.
   std::optional<FrameRate> fps = options.fps;
   if (!fps && !IsBlenderScene(options.scene)) fps = FrameRate();
-  const int width = size.width * request.picture.upsample, height = size.height * request.picture.upsample;
+  const Size larger{size.width * request.picture.upsample, size.height * request.picture.upsample};
   work.check = [&](int frame, const std::string& output) {
-    return pictures.Check(frame, output, width, height, fps, SamplesText(options),
+    return pictures.Check(frame, output, larger.width, larger.height, fps, SamplesText(options),
                           GuidesText({{kSettingsKey, GuideSettings(options)}}, ""));
   };
-  work.begin = [&](std::span<const int> frames, const Progress& progress) -> Status {
+  // A frame that Blender or the scene cannot give; a limit of memory is that of all frames.
+  const GuidesAhead ahead{guides_ahead, [](int, const Error& error) { return error.kind == ErrorKind::kInput; }};
+  work.begin = [&](std::span<const int> frames, const Progress& progress, std::optional<int>& failed_at) -> Status {
     std::vector<int> wanted(frames.begin(), frames.end());
     const int first = sequence.frames.front();
     // What a .blend asks for is known when its first frame is there: it may be a style that is exposed.
     const bool may_want = IsBlenderScene(options.scene) && request.style.scene_styles && !request.picture.exposure;
-    SCUMBLE_RETURN_IF_ERROR(pictures.ReadOverOfAll(width, height));
+    SCUMBLE_RETURN_IF_ERROR(pictures.ReadOverOfAll(larger));
     const bool look = sequence.frames.size() > 1 && (may_want || pictures.MustLookAhead(sequence));
     if (look && wanted.front() != first) wanted.insert(wanted.begin(), first);
     SCUMBLE_RETURN_IF_ERROR(scene.Start(wanted, progress));
@@ -91,7 +94,7 @@ Expected<RunReport> StylizeSequence(const StylizeRequest& request, const Sequenc
       if (!seen && seen.error().kind != ErrorKind::kInput) return seen.error();
       if (!seen) return Ok();  // reported when it is made
     }
-    SCUMBLE_RETURN_IF_ERROR(pictures.Begin(sequence, width, height, guides_ahead, {}));
+    SCUMBLE_RETURN_IF_ERROR(pictures.Begin(sequence, larger, ahead, {}, failed_at));
     return looks_further ? scene.Restart(frames) : Ok();
   };
   work.make = [&](int frame, const std::string& output, const Progress& progress) {
@@ -129,9 +132,7 @@ Expected<std::optional<BudgetChoice>> ChooseForStylize(StylizeRequest& request, 
   return choice;
 }
 
-}  // namespace
-
-Expected<RunReport> RunStylize(StylizeRequest request, const SequenceListener& listener, const RunContext& context) {
+Expected<RunReport> Stylize(StylizeRequest request, const SequenceListener& listener, const RunContext& context) {
   SCUMBLE_RETURN_IF_ERROR(CheckPictureRequest(request.picture));
   SCUMBLE_RETURN_IF_ERROR(ShrinkGuides(request));
   const bool plan_only = request.picture.output.empty();
@@ -183,6 +184,12 @@ Expected<RunReport> RunStylize(StylizeRequest request, const SequenceListener& l
                  RunOnePicture(styles, made.guides, source, request.picture, context, Within(all, 0.5, 1.0)));
   report.choice = std::move(choice);
   return report;
+}
+
+}  // namespace
+
+Expected<RunReport> RunStylize(StylizeRequest request, const SequenceListener& listener, const RunContext& context) {
+  return KeepWarnings(context, [&](const RunContext& kept) { return Stylize(std::move(request), listener, kept); });
 }
 
 }  // namespace scumble

@@ -10,6 +10,7 @@
 #include "core/io/picture_file.h"
 #include "pipeline/memory/memory_estimate.h"
 #include "pipeline/run/guide_casters.h"
+#include "pipeline/run/kept_warnings.h"
 #include "pipeline/run/picture_sequence.h"
 #include "pipeline/run/run_requests.h"
 #include "pipeline/scene/scene_sequence.h"
@@ -76,19 +77,21 @@ Expected<RunReport> TransferSequence(const TransferRequest& request, const Seque
   SCUMBLE_ASSIGN(const FrameName camera, FrameName::Parse(request.camera));
   PictureSequence pictures(styles, request.picture, context);
   std::optional<GuideSet> guides;
-  std::string guides_file;  // that `guides` are from
-  MemoryNeed memory;        // with them
+  std::string guides_file;        // that `guides` are from
+  std::optional<LayerSet> asked;  // of the file that was read last; none before it is read
+  MemoryNeed memory;              // with them
   GuideCasters casters(context);
   const GuidesAt guides_at = [&](int frame, const Progress&) -> Expected<FrameGuides> {
     const std::string file = guides_name.At(frame);
     if (guides && file == guides_file) return FrameGuides{&*guides, {file, {}, {}, {}, memory, ChosenOf(request)}};
-    guides.reset();
+    guides.reset(), asked.reset();
     GuideReadOptions one = read;
     SCUMBLE_RETURN_IF_ERROR(RequireOfFile(styles, file, request.picture.GuideFactor(), one));
     SCUMBLE_RETURN_IF_ERROR(check_files());
     one.blender_camera = camera.At(frame);
     SCUMBLE_ASSIGN(memory, CheckMemoryOfFile(request, file, styles, one, true, context));
     Stopwatch watch;
+    asked = one.required;
     SCUMBLE_ASSIGN(guides, ReadGuides(file, one));
     context.EndStage("read");
     guides_file = file;
@@ -107,18 +110,21 @@ Expected<RunReport> TransferSequence(const TransferRequest& request, const Seque
                           SamplesAsked(info->header.attributes),
                           GuidesText(info->header.attributes, ChosenOf(request)));
   };
-  work.begin = [&](std::span<const int> frames, const Progress& progress) -> Status {
+  const GuidesAhead ahead{guides_at, [&](int frame, const Error& error) {
+                            return asked && IsOfGuideFile(error, guides_name.At(frame), *asked);
+                          }};
+  work.begin = [&](std::span<const int> frames, const Progress& progress, std::optional<int>& failed_at) -> Status {
     if (!request.camera.empty() && !camera.has_place()) SCUMBLE_RETURN_IF_ERROR(ReadBlenderCamera(request.camera));
     // What is wrong with guides that serve all frames would be wrong in each.
     if (!guides_name.has_place()) SCUMBLE_RETURN_IF_ERROR(guides_at(frames.front(), {}));
-    int width = 0, height = 0;
+    Size size{0, 0};
     for (const int frame : frames) {
       const auto info = InspectGuides(guides_name.At(frame));
       const int factor = request.picture.upsample;
-      if (info) width = info->width * factor, height = info->height * factor;
+      if (info) size = {info->width * factor, info->height * factor};
       if (info || request.picture.over.empty()) break;
     }
-    return pictures.Begin(sequence, width, height, guides_at, progress);
+    return pictures.Begin(sequence, size, ahead, progress, failed_at);
   };
   work.make = [&](int frame, const std::string& output, const Progress& progress) {
     return pictures.Make(frame, output, guides_at, 0.1, progress);
@@ -144,9 +150,7 @@ Expected<std::optional<BudgetChoice>> ChooseForSequence(TransferRequest& request
   return ChooseForGuides(request.budget, guides, frame, file, over, styles, request.picture, context);
 }
 
-}  // namespace
-
-Expected<RunReport> RunTransfer(TransferRequest request, const SequenceListener& listener, const RunContext& context) {
+Expected<RunReport> Transfer(TransferRequest request, const SequenceListener& listener, const RunContext& context) {
   if (IsScene(request.guides)) {
     return InputError(request.guides +
                       " is a scene: transfer takes guides; use `scumble stylize`, or `scumble guidegen` first");
@@ -191,6 +195,12 @@ Expected<RunReport> RunTransfer(TransferRequest request, const SequenceListener&
                  RunOnePicture(styles, guides, source, request.picture, context, context.StartProgress("transfer")));
   report.choice = std::move(choice);
   return report;
+}
+
+}  // namespace
+
+Expected<RunReport> RunTransfer(TransferRequest request, const SequenceListener& listener, const RunContext& context) {
+  return KeepWarnings(context, [&](const RunContext& kept) { return Transfer(std::move(request), listener, kept); });
 }
 
 }  // namespace scumble

@@ -118,11 +118,14 @@ class FrameCounters {
       Failed(frame, error.message);
       return Ok();
     }
-    if (HasAny() && error.kind != ErrorKind::kCancelled) {
-      if (listener_.failed) listener_.failed(frame, sequence_.output.At(frame), error.message);
-      totals_.failed.push_back(frame);
-    }
+    if (HasAny()) EndAt(frame, error);
     return Error{error.kind, fmt::format("frame {}: {}", frame, error.message)};
+  }
+  // The frame at which the sequence ends; what is cancelled fails nowhere.
+  void EndAt(int frame, const Error& error) {
+    if (error.kind == ErrorKind::kCancelled) return;
+    if (listener_.failed) listener_.failed(frame, sequence_.output.At(frame), error.message);
+    totals_.failed.push_back(frame);
   }
   SequenceTotals Totals(double total_ms) {
     totals_.total_ms = total_ms, totals_.resumed = sequence_.resume;
@@ -233,7 +236,10 @@ Expected<SequenceTotals> RunSequence(const Sequence& sequence, const SequenceWor
     }
     if (frames.empty()) return Ok();
     const double beginning = 1.0 / static_cast<double>(frames.size() + 1);
-    SCUMBLE_RETURN_IF_ERROR(work.begin(frames, Within(progress, 0.0, beginning)));
+    std::optional<int> failed_at;
+    const Status begun = work.begin(frames, Within(progress, 0.0, beginning), failed_at);
+    if (!begun && failed_at) counters.EndAt(*failed_at, begun.error());
+    SCUMBLE_RETURN_IF_ERROR(begun);
     return MakeFrames(frames, sequence, work, counters, context, progress);
   };
   const Status made = run();

@@ -43,8 +43,9 @@ Expected<std::vector<std::string>> LayerNamesOf(const std::string& name, const s
 struct SequenceWork {
   // Ok where the frame's output is there, whole, and what would be made.
   std::function<Status(int frame, const std::string& output)> check;
-  // Called once, with the frames that are left to make, unless there are none. An error ends the sequence.
-  std::function<Status(std::span<const int> frames, const Progress& progress)> begin;
+  // Called once, with the frames that are left to make, unless there are none. An error ends the sequence; `failed_at`
+  // is to be set to the frame whose fault it is, if it is one's.
+  std::function<Status(std::span<const int> frames, const Progress& progress, std::optional<int>& failed_at)> begin;
   // Makes the frame, all but its file.
   std::function<Expected<FrameWrite>(int frame, const std::string& output, const Progress& progress)> make;
 };
@@ -70,7 +71,7 @@ struct SequenceTotals {
 // Makes the frames one after the other. With `resume` those that `check` accepts are left as they are. A frame whose
 // input is missing or broken (kInput) does not stop the others: the totals name all of them. Any other error would come
 // again in every frame, and ends the sequence: the totals tell of the frames until then and of that one, where others
-// were made or kept. A frame
+// were made or kept, or `begin` failed at it. A frame
 // is encoded and written by another thread while the next one is made: two frames are in memory, never three, and where
 // one cannot be written, the next has been made in vain. With one thread, or where no other can be started, it is
 // written before the next one is begun. The reports and their order are the same.

@@ -9,6 +9,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/io/guide_file.h"
 #include "core/style/finish_keys.h"
 #include "core/style/nearest_name.h"
 #include "finish/mask.h"
@@ -163,15 +164,12 @@ void FinishRemarks::Tell(const FinishRemark& remark, std::optional<int> frame, c
   if (is_new && context.on_message) context.on_message({remark.message.kind, start + remark.message.text});
 }
 
-std::vector<std::string> FinishRemarks::WarnOfFrames(const RunContext& context) const {
-  std::vector<std::string> warnings;
+void FinishRemarks::WarnOfFrames(const RunContext& context) const {
   for (const auto& [text, frames] : frames_) {
     if (frames.size() < 2) continue;
     const std::vector<int> numbers(frames.begin(), frames.end());
-    warnings.push_back("frames " + FramesToText(numbers) + ": " + text);
-    context.Warn(warnings.back());
+    context.Warn("frames " + FramesToText(numbers) + ": " + text);
   }
-  return warnings;
 }
 
 Expected<std::vector<FinishPreset>> FinishPresets(const RunContext& context) {
@@ -347,8 +345,18 @@ bool FrameToMeasure::IsEnough(int frame, const GuideSet& guides) {
 
 Error CannotMeasure(const Error& error, int frame, const std::string& option) {
   if (error.kind == ErrorKind::kCancelled) return error;
-  return {error.kind, fmt::format("{}; all frames are painted by what frame {} shows: fix it, or give {}",
-                                  error.message, frame, option)};
+  const std::string text = fmt::format("{}; all frames are painted by what frame {} shows", error.message, frame);
+  return {error.kind, option.empty() ? text : text + ": fix it, or give " + option};
+}
+
+bool IsOfGuideFile(const Error& error, const std::string& file, const LayerSet& required) {
+  if (error.kind != ErrorKind::kInput) return false;
+  const auto info = InspectGuides(file);
+  if (!info) return true;
+  LayerSet there;
+  for (const auto& [view_layer, layers] : info->layers) there.Add(layers);
+  return std::none_of(AllLayers().begin(), AllLayers().end(),
+                      [&](const LayerInfo& layer) { return required.Has(layer.layer) && !there.Has(layer.layer); });
 }
 
 std::string NothingToMeasure(const std::vector<int>& frames, const std::string& options) {

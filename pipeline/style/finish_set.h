@@ -58,8 +58,8 @@ class FinishRemarks {
   void Tell(const FinishRemark& remark, std::optional<int> frame, const std::string& place, const RunContext& context);
   void EndFrame() { is_first_ = false; }
 
-  // At the end of a sequence: what held in several frames, with their numbers, is warned of, and returned.
-  std::vector<std::string> WarnOfFrames(const RunContext& context) const;
+  // At the end of a sequence: what held in several frames, with their numbers, is warned of.
+  void WarnOfFrames(const RunContext& context) const;
 
  private:
   bool is_first_ = true;
@@ -115,8 +115,12 @@ struct FrameToMeasure {
 };
 
 // The error of a frame that cannot be read, and might be the one to measure: without it, others would be painted
-// otherwise than with it. `option`: what gives what was to be measured.
+// otherwise than with it. `option`: what gives what was to be measured; empty where the error would come all the same.
 Error CannotMeasure(const Error& error, int frame, const std::string& option);
+
+// Whether the error of reading a guide file is that file's own: it is missing or broken, rather than without layers
+// that are required.
+bool IsOfGuideFile(const Error& error, const std::string& file, const LayerSet& required);
 
 // The warning of a sequence in which no frame shows a surface. `options`: those that give what was to be measured.
 std::string NothingToMeasure(const std::vector<int>& frames, const std::string& options);

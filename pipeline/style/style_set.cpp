@@ -20,6 +20,10 @@ namespace scumble {
 namespace {
 
 constexpr const char *kRendered = "rendered", *kCatcher = "catcher";
+// What a box ticked in Blender asks for: no slip where the style paints no shadows.
+constexpr const char* kCatcherOrRendered = "catcher-or-rendered";
+
+bool IsWord(const std::string& style) { return style == kRendered || style == kCatcher || style == kCatcherOrRendered; }
 
 std::string PathOf(const std::filesystem::path& found) {
   std::error_code failed;
@@ -62,6 +66,9 @@ Expected<std::uint16_t> PlaceOf(StyleSet& set, const std::string& name, const st
 Expected<std::uint16_t> PlaceOrWord(StyleSet& set, const std::string& name, const std::filesystem::path& base) {
   if (name == kRendered) return StyleMap::kPassThrough;
   if (name == kCatcher) return StyleMap::kShadowCatcher;
+  if (name == kCatcherOrRendered) {
+    return PaintsShadows(set.first()) ? StyleMap::kShadowCatcher : StyleMap::kPassThrough;
+  }
   return PlaceOf(set, name, base);
 }
 
@@ -153,7 +160,7 @@ std::vector<std::string> StylesAskedFor(const SceneStyleRequests& requests, std:
     for (const auto& [name, style] : *list) {
       const bool is_assigned = std::any_of(patterns.begin(), patterns.end(),
                                            [&](const std::string& pattern) { return FitsPattern(name, pattern); });
-      if (!is_assigned && style != kRendered && style != kCatcher) styles.push_back(style);
+      if (!is_assigned && !IsWord(style)) styles.push_back(style);
     }
   }
   return styles;
@@ -322,16 +329,6 @@ Expected<StyleSet> OpenStyles(const StyleRequest& options, const RunContext& con
   return set;
 }
 
-namespace {
-
-void WarnOnce(StyleSet& set, const std::string& text) {
-  if (std::find(set.warnings.begin(), set.warnings.end(), text) != set.warnings.end()) return;
-  set.warnings.push_back(text);
-  set.context.Warn(text);
-}
-
-}  // namespace
-
 void CloseSceneStyles(StyleSet& set) {
   set.styles.erase(set.styles.begin() + std::ptrdiff_t(set.chosen), set.styles.end());
   set.given.resize(set.chosen);
@@ -366,8 +363,8 @@ Expected<StyleMap> MapStyles(StyleSet& set, const GuideSet& guides, const std::s
     }
     if (!fits && !one.named && !one.warned) {
       one.warned = true;
-      WarnOnce(set, one.where + ": the scene has no such object or material; " +
-                        DescribeNames(one.pattern, objects, materials));
+      set.context.Warn(one.where + ": the scene has no such object or material; " +
+                       DescribeNames(one.pattern, objects, materials));
     }
     one.named = one.named || fits;
   }
@@ -382,16 +379,14 @@ Expected<StyleMap> MapStyles(StyleSet& set, const GuideSet& guides, const std::s
   return map;
 }
 
-std::vector<std::string> AssignmentReport(StyleSet& set) {
+void WarnOfIdleAssignments(const StyleSet& set) {
   std::vector<std::string> idle;
   for (const StyleSet::Assigned& one : set.assigned) {
     if (one.named && one.pixels == 0) idle.push_back(one.where);
   }
-  if (!idle.empty()) {
-    WarnOnce(set, SomeOf(idle) + (idle.size() == 1 ? " paints" : " paint") +
-                      " no pixel: what is named there is not seen, or a later assignment names it too");
-  }
-  return set.warnings;
+  if (idle.empty()) return;
+  set.context.Warn(SomeOf(idle) + (idle.size() == 1 ? " paints" : " paint") +
+                   " no pixel: what is named there is not seen, or a later assignment names it too");
 }
 
 }  // namespace scumble

@@ -42,7 +42,6 @@ struct StyleSet {
   RunContext context;                           // likewise
   std::size_t chosen = 1;                       // so many of `styles` are the user's, the others the scene's
   std::map<std::string, std::uint16_t> opened;  // by path
-  std::vector<std::string> warnings;            // that were given
   FinishChain finish;                           // of StyleRequest::finishes
 
   const Style& first() const { return styles.front(); }
@@ -81,7 +80,8 @@ std::string SetsWithout(const StyleSet& set, const LayerSet& layers);
 void CloseSceneStyles(StyleSet& set);
 
 // Opens the default style and every assigned one, each once. "rendered" leaves objects as they are, "catcher" shows
-// nothing of them but the shadows on them. Cancelled between two styles.
+// nothing of them but the shadows on them, "catcher-or-rendered" is "catcher" where the default style paints shadows,
+// otherwise "rendered". Cancelled between two styles.
 Expected<StyleSet> OpenStyles(const StyleRequest& options, const RunContext& context);
 
 // Which style paints which pixel, by the names in the guides, which are `file`'s. The last assignment that fits a
@@ -89,7 +89,7 @@ Expected<StyleSet> OpenStyles(const StyleRequest& options, const RunContext& con
 // that fits nothing is warned of once in all frames; it is kInput where the guides lack the layer in which it might.
 Expected<StyleMap> MapStyles(StyleSet& set, const GuideSet& guides, const std::string& file);
 
-// After the last frame: warns of assignments that have painted no pixel. Returns all warnings about assignments.
-std::vector<std::string> AssignmentReport(StyleSet& set);
+// After the last frame: warns of assignments that have painted no pixel.
+void WarnOfIdleAssignments(const StyleSet& set);
 
 }  // namespace scumble

@@ -176,9 +176,16 @@ TEST_F(BlenderVerbs, StylesOfTheFileAreHeeded) {
 TEST_F(BlenderVerbs, AShadowCatcherIsOneHereToo) {
   const CommandResult run = RunHere({"info", Blend("layers"), "--scene", "Other", "--json"});
   ASSERT_EQ(run.code, 0) << run.err;
-  EXPECT_EQ(run.Json().at("styles"), nlohmann::json({{"Alone", "catcher"}}));
+  EXPECT_EQ(run.Json().at("styles"), nlohmann::json({{"Alone", "catcher-or-rendered"}}));
   EXPECT_THAT(run.Json().at("warnings").dump(),
               HasSubstr("object 'Alone': is a shadow catcher: pictures leave it out"));
+}
+
+TEST_F(BlenderVerbs, NoOtherCameraTakesThePlaceOfTheActiveOne) {
+  const Arguments guidegen = {"guidegen", Blend("panorama"), "--size", "32x18", "-o", "g.exr"};
+  ExpectErrorHere(guidegen, 3, {"active camera 'Round' is panoramic: give --camera NAME, of 'Side', or --view"});
+  EXPECT_EQ(RunHere(With(guidegen, {"--camera", "Side"})).code, 0);
+  EXPECT_EQ(RunHere(With(guidegen, {"--view", "20,30"})).code, 0);
 }
 
 TEST_F(BlenderVerbs, ScenesAndViewLayersAreChosenByName) {

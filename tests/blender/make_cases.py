@@ -16,10 +16,10 @@ from export_cases.lights import lamps  # noqa: E402
 from export_cases.materials import materials  # noqa: E402
 from export_cases.objects import deformed, objects  # noqa: E402
 from export_cases.parts import clear, save  # noqa: E402
-from export_cases.views import bordered, cameras, layers, rendered  # noqa: E402
+from export_cases.views import bordered, cameras, layers, panorama, rendered  # noqa: E402
 
 CASES = {"lamps": lamps, "materials": materials, "objects": objects, "deformed": deformed, "cameras": cameras,
-         "rendered": rendered, "bordered": bordered, "layers": layers}
+         "rendered": rendered, "bordered": bordered, "layers": layers, "panorama": panorama}
 FILES = {"broken": broken, "old": old}  # these write their files themselves
 
 

@@ -178,8 +178,22 @@ def crooked():
     bpy.context.view_layer.material_override = material("Clay", "ShaderNodeBsdfDiffuse", (0.5, 0.5, 0.5))
 
 
+def draw_lines():
+    """Grease pencil before the camera, whose visibility is animated."""
+    known = {item.identifier for item in bpy.types.Object.bl_rna.properties["type"].enum_items}
+    if "GREASEPENCIL" in known and hasattr(bpy.ops.object, "grease_pencil_add") and bpy.app.version >= (4, 3):
+        bpy.ops.object.grease_pencil_add(type="MONKEY", location=(0, 0, 0.7))
+    else:
+        bpy.ops.object.gpencil_add(type="MONKEY", location=(0, 0, 0.7))
+    lines = bpy.context.object
+    lines.scale = (2, 2, 2)
+    lines.keyframe_insert("hide_render", frame=1)
+
+
 def keyed():
-    """Two cameras bound to markers, and animation and a driver of settings that the reference sets itself."""
+    """Two cameras bound to markers, animation and a driver of settings that the reference sets itself, and grease
+    pencil."""
+    draw_lines()
     scene = bpy.context.scene
     grey = material("Grey", "ShaderNodeBsdfDiffuse", (0.5, 0.5, 0.5))
     mesh("Ball", lambda b: bmesh.ops.create_uvsphere(b, u_segments=48, v_segments=24, radius=1.0), (0, 0, 0.7), grey,

@@ -278,6 +278,7 @@ def said():
         polygon.material_index = 1
     plane("Veil", 34, mixed("veil", "BsdfDiffuse", 0, factor=0.6))
     plane("Velvet", 35, mixed("velvet", "BsdfVelvet", 0, picture("Leaf", 0.0)))
+    plane("Pane", 37, shader("pane", "ShaderNodeBsdfGlass")[0])
     ray = mixed("by ray", "BsdfDiffuse", 0)
     ray.node_tree.links.new(ray.node_tree.nodes.new("ShaderNodeLightPath").outputs[0],
                             ray.node_tree.nodes["Mix Shader"].inputs["Fac"])

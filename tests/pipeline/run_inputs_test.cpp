@@ -39,7 +39,7 @@ TEST(RunInputs, AResumedRangeWritesOnlyWhatItDoesNotKeep) {
     bool begun = false;
     SequenceWork work;
     work.check = [&](int frame, const std::string&) { return frame == 1 ? Ok() : Status(InputError("torn")); };
-    work.begin = [&](std::span<const int>, const Progress&) {
+    work.begin = [&](std::span<const int>, const Progress&, std::optional<int>&) {
       begun = true;
       return Ok();
     };
@@ -60,7 +60,7 @@ TEST(RunInputs, TheFrameThatEndsASequenceIsNamed) {
     const Sequence sequence{{1, 2, 3}, *FrameName::Parse((folder / "p.#.png").string()), false};
     std::vector<int> made, failed;
     SequenceWork work;
-    work.begin = [](std::span<const int>, const Progress&) { return Ok(); };
+    work.begin = [](std::span<const int>, const Progress&, std::optional<int>&) { return Ok(); };
     work.make = [&](int frame, const std::string& output, const Progress&) -> Expected<FrameWrite> {
       return FrameWrite([=]() -> Expected<FrameReport> {
         if (frame == 2) return Error{is_cancelled ? ErrorKind::kCancelled : ErrorKind::kOutput, output + ": full"};

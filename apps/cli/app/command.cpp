@@ -1,5 +1,6 @@
 #include "apps/cli/app/command.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <cstdio>
@@ -65,9 +66,24 @@ void ConnectToTerminal(Globals& globals) {
     if (message.kind == Message::Kind::kNote && globals.quiet) return;
     ClearProgress();
     const char* const before = message.kind == Message::Kind::kWarning ? "scumble: warning: " : "";
-    std::fprintf(stderr, "%s%s\n", before, message.text.c_str());
+    std::fprintf(stderr, "%s%s\n", before, OneLine(message.text).c_str());
   };
   globals.on_progress = [&globals](const std::string& label) { return ShowProgress(label, globals.quiet); };
+}
+
+std::string OneLine(const std::string& text) {
+  std::string line;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte >= 0x20 && byte != 0x7f) {
+      line += c;
+    } else if (c == '\n' || c == '\r' || c == '\t') {
+      line += c == '\n' ? "\\n" : c == '\r' ? "\\r" : "\\t";
+    } else {
+      line += fmt::format("\\x{:02x}", byte);
+    }
+  }
+  return line;
 }
 
 void Print(const std::string& text) {

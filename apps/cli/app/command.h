@@ -52,6 +52,9 @@ void AddStudioVerb(CLI::App& app, Globals& globals, Action& chosen);
 
 ExitCode ExitCodeFor(ErrorKind kind);
 
+// The text with its control characters escaped, as \n: names in files may hold any.
+std::string OneLine(const std::string& text);
+
 // Prints results to stdout; a closed or full stdout is checked once, at the end of the program.
 void Print(const std::string& text);
 

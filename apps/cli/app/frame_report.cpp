@@ -115,7 +115,7 @@ Json ChoiceToJson(const BudgetChoice& choice) {
 
 // Facts of a whole run.
 void AddRun(const RunReport& report, const Globals& globals, Json& json) {
-  if (!report.warnings.empty() || report.paints) json["warnings"] = report.warnings;
+  json["warnings"] = report.warnings;
   if (report.choice) json.update(ChoiceToJson(*report.choice));
   if (globals.clock) json["timing"] = ClockToJson(*globals.clock);
 }
@@ -129,6 +129,7 @@ void PrintTotals(const SequenceTotals& totals, const RunReport& report, const Gl
     Print(JsonText(json));
     return;
   }
+  if (totals.ended_by && totals.made + totals.kept == 0) return;  // the error says it all
   const std::size_t all = totals.frames();
   std::string text = fmt::format("{} frame{}: {} made", all, all == 1 ? "" : "s", totals.made);
   if (totals.resumed) text += fmt::format(", {} kept", totals.kept);
@@ -208,6 +209,7 @@ Expected<ExitCode> PrintRun(const RunReport& report, const Globals& globals, Seq
   if (!report.frame) {
     Json json{{"plan", PlanToJson(report.plan)}, {"memory", MemoryToJson(report.memory)}};
     for (const auto& [name, ms] : report.plan_times) json["ms"][name] = ms;
+    json["warnings"] = report.warnings;
     const bool timed = report.plan_is_timed && globals.clock;
     if (timed) json["timing"] = ClockToJson(*globals.clock);
     Print(globals.json

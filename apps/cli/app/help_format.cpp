@@ -1,5 +1,9 @@
 #include "apps/cli/app/help_format.h"
 
+#include <charconv>
+#include <cmath>
+#include <string>
+#include <system_error>
 #include <vector>
 
 namespace scumble {
@@ -59,6 +63,13 @@ std::string ExplainUnknown(const CLI::App& app, const std::string& word) {
   return CommandName(verb) + " does not take the argument '" + word + "'";
 }
 
+// A number that is not whole.
+bool IsFraction(const std::string& text) {
+  double number = 0.0;
+  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return failure == std::errc() && end == text.data() + text.size() && number != std::floor(number);
+}
+
 std::string Explain(const CLI::App& app, const CLI::ParseError& error) {
   if (const std::vector<std::string> unknown = app.remaining(true); !unknown.empty()) {
     return ExplainUnknown(app, unknown.front());
@@ -68,7 +79,11 @@ std::string Explain(const CLI::App& app, const CLI::ParseError& error) {
   std::string reason = error.what();
   // Every option that is converted is a number.
   const std::string unreadable = "Could not convert: ";
-  if (reason.rfind(unreadable, 0) == 0) reason = "expected a number: " + reason.substr(unreadable.size());
+  if (reason.rfind(unreadable, 0) == 0) {
+    const std::string given = reason.substr(unreadable.size());
+    reason =
+        (IsFraction(given.substr(given.rfind(' ') + 1)) ? "expected a whole number: " : "expected a number: ") + given;
+  }
   return CommandName(verb) + ": " + reason;
 }
 

@@ -177,7 +177,7 @@ std::string FirstNames(const Json& names) {
   constexpr std::size_t kShown = 40;
   std::string text;
   for (std::size_t i = 0; i < std::min(names.size(), kShown); ++i) {
-    text += (i == 0 ? "" : ", ") + names[i].get<std::string>();
+    text += (i == 0 ? "" : ", ") + OneLine(names[i].get<std::string>());
   }
   if (names.size() > kShown) text += fmt::format(" and {} more: --json lists them all", names.size() - kShown);
   return text.empty() ? "none" : text;
@@ -191,17 +191,18 @@ std::string ToText(const Json& json) {
     std::string shown;
     if (key == "exemplars" || key == "finish" || key == "warnings") {  // sentences, one a line
       const std::string between = "\n" + std::string(widest + 2, ' ');
-      for (const Json& item : value) shown += (shown.empty() ? "" : between) + item.get<std::string>();
+      for (const Json& item : value) shown += (shown.empty() ? "" : between) + OneLine(item.get<std::string>());
       if (shown.empty()) shown = "none";
     } else if (value.is_array()) {
       shown = FirstNames(value);
     } else if (value.is_object()) {
       for (const auto& [name, item] : value.items()) {
-        shown += (shown.empty() ? "" : ", ") + name + ": " + (item.is_string() ? item.get<std::string>() : item.dump());
+        shown += (shown.empty() ? "" : ", ") + OneLine(name) + ": " +
+                 (item.is_string() ? OneLine(item.get<std::string>()) : item.dump());
       }
       if (shown.empty()) shown = "the defaults";
     } else {
-      shown = value.is_string() ? value.get<std::string>() : value.dump();
+      shown = value.is_string() ? OneLine(value.get<std::string>()) : value.dump();
     }
     text += fmt::format("{:<{}}  {}\n", key, widest, shown);
   }

@@ -8,6 +8,8 @@
 #include <fstream>
 #include <limits>
 
+#include "core/io/file/readable_file.h"
+
 namespace scumble {
 namespace internal {
 
@@ -98,6 +100,7 @@ ZipReader::ZipReader(ZipReader&&) noexcept = default;
 ZipReader& ZipReader::operator=(ZipReader&&) noexcept = default;
 
 Expected<ZipReader> ZipReader::Open(const std::filesystem::path& path) {
+  SCUMBLE_RETURN_IF_ERROR(internal::CheckReadable(path));
   int code = 0;
   auto archive = std::make_unique<Archive>();
   archive->handle.reset(zip_open(path.c_str(), ZIP_RDONLY, &code));

@@ -256,15 +256,17 @@ BlenderLight LightOf(const FileContents& contents, const std::string& prefix, co
 }
 
 // Layers that guidegen always writes need no option.
-std::string RemedyFor(const LayerSet& missing) {
+std::string RemedyFor(const LayerSet& missing, GuideUser user) {
   std::string asked;
   for (const LayerInfo& info : AllLayers()) {
     if (missing.Has(info.layer) && !AlwaysWritten().Has(info.layer))
       asked += (asked.empty() ? "" : ",") + std::string(info.name);
   }
   if (asked.empty()) return ". Make guides with `scumble guidegen`, or render that pass too";
-  return ". Make the guides again with --layers " + asked +
-         ", or with the same --style, --assign and --set as here; where a renderer made them, render that pass too";
+  const std::string by_style =
+      user == GuideUser::kFinish ? "" : ", or with the same --style, --assign, --set and --finish as here";
+  return ". Make the guides again with --layers " + asked + by_style +
+         "; where a renderer made them, render that pass too";
 }
 
 LayerSet EveryLayer() {
@@ -344,7 +346,7 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
     }
   }
   if (!missing.empty()) {
-    std::string remedy = contents.from_blender ? BlenderPassesFor(missing) : RemedyFor(missing);
+    std::string remedy = contents.from_blender ? BlenderPassesFor(missing) : RemedyFor(missing, options.user);
     if (solves_camera && missing.Has(Layer::kPosition)) {
       remedy += ", or give the camera with --camera FILE, which does without Position";
     }

@@ -227,6 +227,9 @@ Status ReadSceneExtras(const tinygltf::Model& model, int scene_index, const std:
   if (const tinygltf::Value* version = Find(extras, "blender"); version && version->IsString()) {
     ShadeAsCycles(version->Get<std::string>(), scene);
   }
+  if (const tinygltf::Value* lost = Find(extras, "lost_camera"); lost && lost->IsString()) {
+    scene.lost_camera = Excerpt(lost->Get<std::string>(), kLongestWarning);
+  }
   const tinygltf::Value* unsupported = Find(extras, "unsupported");
   if (!unsupported || !unsupported->IsArray()) return Ok();
   for (std::size_t i = 0; i < unsupported->ArrayLen(); ++i) {

@@ -120,7 +120,10 @@ class GltfLoader {
     }
     // A skeleton places its mesh anew, and an animation may restore a mesh that is flat at rest.
     if (Flattens(visit.world) && !visit.moves && node.skin < 0) {
-      warnings_.Add("objects that their transform flattens are left out", Label(visit.node));
+      // A scale of 0 along all axes is how glTF and Blender hide things.
+      if (glm::dmat3(visit.world) != glm::dmat3(0.0)) {
+        warnings_.Add("objects that their transform flattens are left out", Label(visit.node));
+      }
       return Ok();
     }
     Instance instance{names_[index], 0, visit.world};

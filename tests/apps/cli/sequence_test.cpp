@@ -397,6 +397,20 @@ TEST_F(CliSequence, OneExposureForAllFrames) {
   EXPECT_FALSE(Pixels("p.0003.png") == third);
   fs::remove(At("g.0001.exr"));
   ExpectError(With(transfer, {"--frames", "1-3"}), 3, {"g.0001.exr", "frame 1", "--exposure STOPS"});
+  const CommandResult failed = Run(With(transfer, {"--frames", "1-3", "--json"}));
+  EXPECT_EQ(failed.code, 3);
+  EXPECT_EQ(failed.Json()["failed"], 1);
+  ASSERT_EQ(failed.Json()["frames"].size(), 1u) << failed.out;
+  EXPECT_EQ(failed.Json()["frames"][0]["frame"], 1);
+  EXPECT_EQ(failed.Json()["frames"][0]["state"], "failed");
+  EXPECT_TRUE(Contains(failed.Json()["frames"][0]["error"], "all frames are painted by what frame 1 shows"));
+  // Stops are no remedy for guides without the layer, nor for a limit of memory.
+  WriteGuideFile("g.0001.exr", Ball(32));
+  const CommandResult lacks = ExpectError(With(transfer, {"--frames", "1-3"}), 3, {"has no layer luminance"});
+  EXPECT_FALSE(Contains(lacks.err, "STOPS")) << lacks.err;
+  WriteLitBall("g.0001.exr", 0.1f);
+  const CommandResult large = ExpectError(With(transfer, {"--frames", "1-3", "--max-memory", "1M"}), 2, {"of memory"});
+  EXPECT_FALSE(Contains(large.err, "STOPS")) << large.err;
   // In memory it is the same.
   const Arguments stylize = {"stylize", Scene("stilllife.glb"), "--style", "style", "--size", "48", "--frames", "1-2"};
   const CommandResult memory = RunOk(With(stylize, {"-o", "s#.png"}));

@@ -100,6 +100,7 @@ TEST_F(CliUsage, NumbersOutOfRange) {
   ExpectError(With(transfer, {"--seed", "-1"}), 2, {"--seed: -1 is negative"});
   ExpectError(With(transfer, {"--seed", "99999999999999999999"}), 2, {"too large: expected less than 2^64"});
   ExpectError(With(transfer, {"--seed", "x"}), 2, {"expected a number: --seed = x"});
+  ExpectError(With(transfer, {"--frame", "1.5"}), 2, {"expected a whole number: --frame = 1.5"});
 }
 
 TEST_F(CliUsage, SizesAndViews) {

@@ -41,6 +41,14 @@ def cameras():
     return result
 
 
+def panorama():
+    """The active camera is panoramic, another one is not."""
+    cube("Cube")
+    camera("Side", (4, -5, 3), (1.1, 0.1, 0.7))
+    bpy.context.scene.camera = camera("Round", (4, -5, 3), (1.1, 0.1, 0.7), type="PANO")
+    return None
+
+
 def ball(name, location, scale, material, collection=None):
     data = bpy.data.meshes.new(name)
     shape = bmesh.new()

@@ -490,6 +490,16 @@ TEST(PrepareView, ChoosesCameraAndLight) {
   EXPECT_EQ(view.error().kind, ErrorKind::kUsage);
   EXPECT_THAT(view.error().message, HasSubstr("there are: 'A', 'B'"));
   EXPECT_EQ(PrepareView(scene, "B", ViewAngles{}, 1.5, true).error().kind, ErrorKind::kUsage);
+
+  // Another camera than the active one is nobody's wish.
+  scene.lost_camera = "'Round' is panoramic";
+  view = PrepareView(scene, "", std::nullopt, 1.5, true);
+  ASSERT_FALSE(view.ok());
+  EXPECT_EQ(view.error().kind, ErrorKind::kInput);
+  EXPECT_THAT(view.error().message,
+              HasSubstr("active camera 'Round' is panoramic: give --camera NAME, of 'A', 'B', or --view"));
+  EXPECT_EQ(PrepareView(scene, "B", std::nullopt, 1.5, true)->camera.name, "B");
+  EXPECT_EQ(PrepareView(scene, "", ViewAngles{.azimuth = 10}, 1.5, true)->camera.name, "framing");
 }
 
 }  // namespace

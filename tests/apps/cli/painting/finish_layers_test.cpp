@@ -182,7 +182,9 @@ TEST_F(CliFinishLayers, GoWithSequences) {
   const std::string before = Bytes("l.0002.ora");
   std::filesystem::remove(At("l.0002.ora"));
   WriteText("l.0003.ora", "broken");
-  EXPECT_EQ(kept(RunOk(With(run, {"l.####.ora"})).Json()), 1) << "a frame without its layers is made again";
+  const CommandResult resumed = RunOk(With(run, {"l.####.ora"}));
+  EXPECT_EQ(kept(resumed.Json()), 1) << "a frame without its layers is made again";
+  EXPECT_TRUE(Contains(resumed.err, "cannot read l.0002.ora: there is no such file: made again")) << resumed.err;
   EXPECT_EQ(Bytes("l.0002.ora"), before);
   EXPECT_EQ(kept(RunOk(With(run, {"l.####.ora"})).Json()), 3);
   // Pictures that were made anew without their layers.

@@ -310,7 +310,9 @@ TEST_F(CliFinish, SaysWhatIsWrong) {
   ExpectError({"finish", "p.png", "--finish", "tones", "-o", "p.png"}, 2, {"p.png"});
   RunOk({"guidegen", kBall, "--size", "40", "-o", "g.exr"});
   ExpectError({"finish", "p.png", "g.exr", "--finish", "outline", "-o", "o.png"}, 3, {"32×32", "40×40"});
-  ExpectError({"finish", "p.png", "g.exr", "--finish", "noir", "-o", "o.png"}, 3, {"g.exr", "luminance"});
+  const CommandResult lacks =
+      ExpectError({"finish", "p.png", "g.exr", "--finish", "noir", "-o", "o.png"}, 3, {"g.exr", "--layers luminance"});
+  EXPECT_FALSE(Contains(lacks.err, "--style")) << lacks.err;
   WriteStyle("plain");
   ExpectError({"stylize", kBall, "--style", "plain", "--set", "finish.ink.width=3", "-o", "o.png"}, 2,
               {"no finish has that name", "--finish"});

@@ -187,6 +187,31 @@ TEST_F(CliSceneStyles, WishesThatCannotBeGranted) {
   }
 }
 
+// A box ticked in Blender is no slip: a style without shadows leaves the object out.
+TEST_F(CliSceneStyles, ATickedCatcherIsLeftOutByStylesWithoutShadows) {
+  GltfBuilder b = Tiles(4, 1);
+  Want(b, 1, "catcher-or-rendered", true);
+  WriteGlb("s.glb", b);
+  const Arguments red = {"--style", "red", "-o", "p.png"}, shadow = {"--set", "transfer.shadow=paint"};
+  const Arguments stylize = With({"stylize", "s.glb", "--size", "32x8"}, red);
+  RunOk(With(stylize, {"--no-scene-styles", "--assign", "Tile1=rendered"}));
+  const std::string left_out = Pixels("p.png");
+  EXPECT_EQ(Colors("p.png", 4, 1), "r.rr");
+  RunOk(stylize);
+  EXPECT_TRUE(Pixels("p.png") == left_out);
+  RunOk({"guidegen", "s.glb", "--size", "32x8", "--style", "red", "-o", "g.exr"});
+  RunOk(With({"transfer", "g.exr"}, red));
+  EXPECT_TRUE(Pixels("p.png") == left_out);
+  ASSERT_TRUE(WritePicture(At("under.png"), Picture(32, 8)));
+  RunOk(With(stylize, {"--over", "under.png"}));
+  EXPECT_EQ(Colors("p.png", 4, 1), "r.rr");
+  RunOk(With(With(stylize, shadow), {"--no-scene-styles", "--assign", "Tile1=catcher"}));
+  const std::string caught = Pixels("p.png");
+  RunOk(With(stylize, shadow));
+  EXPECT_TRUE(Pixels("p.png") == caught);
+  ExpectError(With(stylize, {"--no-scene-styles", "--assign", "Tile1=catcher"}), 2, {"--assign Tile1=catcher"});
+}
+
 // A sphere's shadow on an unpainted floor, in the style's darkest paint: over paper, transparency or a picture.
 TEST_F(CliSceneStyles, ACatcherShowsTheShadowsOnIt) {
   WriteColor("grey", 120, 120, 120);
@@ -424,10 +449,10 @@ TEST_F(CliAssign, TheTwoStepsTakeWhatTheOneTakes) {
   RunOk(With({"transfer", "g.exr", "-o", "two.png"}, styles));
   EXPECT_TRUE(Bytes("one.png") == Bytes("two.png"));
   RunOk({"guidegen", "s.glb", "--size", "32x8", "--style", "red", "-o", "few.exr"});
-  const CommandResult lacks =
-      ExpectError(With({"transfer", "few.exr", "-o", "no.png"}, styles), 3,
-                  {"few.exr has no layer albedo, luminance", "--layers albedo,luminance",
-                   "the same --style, --assign and --set", "It has A, normal, depth, object, material"});
+  const CommandResult lacks = ExpectError(
+      With({"transfer", "few.exr", "-o", "no.png"}, styles), 3,
+      {"few.exr has no layer albedo, luminance", "--layers albedo,luminance",
+       "the same --style, --assign, --set and --finish as here", "It has A, normal, depth, object, material"});
   EXPECT_EQ(Count(lacks.err, "normal.X"), 0) << lacks.err;
   RunOk({"guidegen", "s.glb", "--size", "32x8", "--layers", "albedo,luminance", "-o", "few.exr"});
   RunOk(With({"transfer", "few.exr", "-o", "two.png"}, styles));
