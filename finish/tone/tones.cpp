@@ -11,10 +11,10 @@ namespace {
 // Steps of so little sharpness are straight lines, to half a code of 16 bits.
 constexpr float kStraight = 0.01f;
 
-// The soft steps of Winnemöller, Olsen and Gooch ("Real-Time Video Abstraction", 2006, section 3.2). Three changes: the
-// sigmoid is no tanh (finish/tone/sigmoid.h), the first level is black and the last is white, and the curve of each step
-// is stretched so that it meets the next one. It is continuous and rises; levels and the middles between them keep
-// their lightness.
+// Soft steps of Winnemöller, Olsen and Gooch ("Real-Time Video Abstraction", 2006, section 3.2), with three changes:
+// the sigmoid is no tanh (finish/tone/sigmoid.h), the first level is black and the last is white, and the curve of each
+// step is stretched so that it meets the next one. It is continuous and rises; levels and the middles between them
+// keep their lightness.
 SCUMBLE_WIDE_LOOPS void TakeSoftSteps(int levels, float sharpness, std::size_t count, float* lightness) {
   const float steps = static_cast<float>(levels - 1), width = 1.0f / steps,
               half_per_sigmoid = 0.5f / Sigmoid(sharpness);
