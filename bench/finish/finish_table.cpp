@@ -51,6 +51,13 @@ class Table {
     return spread.median;
   }
 
+  // Work that changes nothing, beside a copy of the picture.
+  void Measure(const std::string& name, const std::function<void()>& run) {
+    if (name.find(part_) == std::string::npos) return;
+    const Spread spread = Timed(runs_, run, [&] { other_.Touch(); });
+    Print(name, spread, TimeOfCopies({}));
+  }
+
   // Another's time, and what part of it ours took, if that was measured. Beside a copy of the picture.
   void Against(const Rival& rival, double ours, const char* name) {
     if (!(ours > 0.0)) return;
@@ -103,6 +110,12 @@ void MeasureEffects(const Picture& painted, Table& table) {
     table.Measure("depth, blur " + std::to_string(int(blur)), {depth});
   }
   table.Measure("tones, shadows, depth, grade", FusedPasses());
+  for (std::size_t count = 1; count < FusedPasses().size(); ++count) {  // what each further pass adds
+    std::vector<FinishPass> passes = FusedPasses();
+    passes.resize(count);
+    table.Measure("of these the first " + std::to_string(count), passes);
+  }
+  table.Measure("palette statistics", [&] { MeasureColors(painted); });
   for (const double width : {2.0, 8.0, 32.0})
     table.Measure("outline, width " + std::to_string(int(width)), Outlining(width));
   for (const double soften : {8.0, 64.0}) {

@@ -24,19 +24,28 @@
 namespace scumble::internal {
 namespace {
 
-// How much of a pixel strokes of this share of ink cover: lines `spacing` apart and share · spacing wide, across a
-// pixel of width 1.
-float LineCover(float across, float spacing, float share) {
+// How much of a box strokes of this share of ink cover: lines `spacing` apart and share · spacing wide, across a box of
+// that width, 1 at most.
+float BoxCover(float across, float spacing, float share, float width) {
   const float turns = across / spacing;
   float part = turns - static_cast<float>(static_cast<int>(turns));  // without std::floor, which may be a call
   if (part < 0.0f) part = part + 1.0f;
-  const float from_middle = std::fabs(part - 0.5f) * spacing;
-  // Both the line and the gap may be thinner than a pixel.
+  const float from_middle = std::fabs(part - 0.5f) * spacing, reach = 0.5f * width;
+  // Both the line and the gap may be thinner than the box.
   const float half = 0.5f * share * spacing;
-  const float low = std::max(from_middle - 0.5f, -half), high = std::min(from_middle + 0.5f, half);
-  const float next_low = std::max(from_middle - 0.5f, spacing - half),
-              next_high = std::min(from_middle + 0.5f, spacing + half);
-  return std::clamp(std::max(0.0f, high - low) + std::max(0.0f, next_high - next_low), 0.0f, 1.0f);
+  const float low = std::max(from_middle - reach, -half), high = std::min(from_middle + reach, half);
+  const float next_low = std::max(from_middle - reach, spacing - half),
+              next_high = std::min(from_middle + reach, spacing + half);
+  return std::clamp((std::max(0.0f, high - low) + std::max(0.0f, next_high - next_low)) / width, 0.0f, 1.0f);
+}
+
+// How much of a pixel they cover, seen along their axis: of a box as wide as the pixel's one side, spread over the
+// other. Two boxes of equal variance stand for that. So four pixels show what one of twice the size does.
+float LineCover(float across, float spacing, float share, Axis along) {
+  const float x = std::fabs(along.x), y = std::fabs(along.y), width = std::max(x, y),
+              off = std::min(x, y) * 0.28867513f;
+  const float cover = BoxCover(across - off, spacing, share, width);
+  return off > 0.01f ? 0.5f * (cover + BoxCover(across + off, spacing, share, width)) : cover;
 }
 
 // The tone that strokes leave, as a share of 1.
@@ -63,11 +72,12 @@ class Strokes {
   Strokes(const HatchPass& pass, double spacing) : spacing_(static_cast<float>(spacing)) {
     if (pass.texture) texture_.emplace(*pass.texture, spacing, pass.spacing);
   }
-  // `at` in pixels, along the strokes and across them; `layer` counts from 0; `share`: of ink, wanted.
-  float Cover(glm::vec2 at, int layer, float share) const {
+  // `at` in pixels, along the strokes and across them; `along`: their axis in the picture; `layer` counts from 0;
+  // `share`: of ink, wanted.
+  float Cover(glm::vec2 at, Axis along, int layer, float share) const {
     const float wider = WiderBy(layer);
-    if (texture_) return texture_->Cover(at / wider + glm::vec2(13.1f * spacing_ * static_cast<float>(layer)), share);
-    return LineCover(at.y, spacing_ * wider, share);
+    if (!texture_) return LineCover(at.y, spacing_ * wider, share, along);
+    return texture_->Cover(at / wider + glm::vec2(13.1f * spacing_ * static_cast<float>(layer)), along, share);
   }
   // On a surface, at a place of pref. `off`: pixels, along and across. Every second stroke grows as the surface comes
   // nearer, so that none moves. Textures change to the finer one within a quarter of an octave.
@@ -79,14 +89,14 @@ class Strokes {
       const glm::vec2 fine = glm::vec2(glm::dot(on.along, place), at) * (spacing_ * WiderBy(layer) / on.step);
       const float coarser = std::clamp(4.0f * (on.coarser - 0.5f) + 0.5f, 0.0f, 1.0f);
       float cover = 0.0f;
-      if (coarser < 1.0f) cover += (1.0f - coarser) * Cover(fine + off, layer, share);
-      if (coarser > 0.0f) cover += coarser * Cover(0.5f * fine + off, layer, share);
+      if (coarser < 1.0f) cover += (1.0f - coarser) * Cover(fine + off, on.axis, layer, share);
+      if (coarser > 0.0f) cover += coarser * Cover(0.5f * fine + off, on.axis, layer, share);
       return cover;
     }
     const float across = at / on.pixel + off.y, spacing = 2.0f * on.step / on.pixel;
     const float between = 0.5f * share * (1.0f - on.coarser);
-    return std::min(1.0f,
-                    LineCover(across + 0.5f * spacing, spacing, share - between) + LineCover(across, spacing, between));
+    return std::min(1.0f, LineCover(across + 0.5f * spacing, spacing, share - between, on.axis) +
+                              LineCover(across, spacing, between, on.axis));
   }
 
  private:
@@ -150,7 +160,7 @@ void DrawHatch(const HatchPass& pass, double strength, std::span<const std::uint
           } else {
             const Axis along = Turned(axis, turn);
             const glm::vec2 place(at.x * along.x + at.y * along.y, at.y * along.x - at.x * along.y);
-            bare *= 1.0f - strokes.Cover(place + off, k, share);
+            bare *= 1.0f - strokes.Cover(place + off, along, k, share);
           }
           left = share < 1.0f ? left / (1.0f - share) : 1.0f;
         }

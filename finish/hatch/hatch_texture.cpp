@@ -91,8 +91,10 @@ TextureStrokes::TextureStrokes(const HatchTexture& texture, double spacing, doub
   while (level + 1 < texture.levels.size() && static_cast<float>(texture.levels[level + 1].size) >= least) ++level;
   level_ = &texture.levels[level];
   texels_per_pixel_ = static_cast<float>(level_->size) / pixels;
-  // More than one a texel: texels are turned against pixels, and what one sample missed would show in half the size.
-  samples_ = std::max(2, static_cast<int>(std::ceil(1.5f * texels_per_pixel_)));
+  // More than one a texel, as texels are turned against pixels; in the large picture's pixels.
+  const float sized = static_cast<float>(reference) * kSpacingsOfTexture;
+  const float large = std::max(2.0f, std::ceil(1.5f * static_cast<float>(level_->size) / sized));
+  samples_ = std::max(2, static_cast<int>(std::ceil(large * sized / pixels - 0.01f)));
 }
 
 // The nearest: means of several would lie nearer to the middle, and ink would no longer be what the tone lacks.
@@ -105,7 +107,7 @@ float TextureStrokes::Threshold(glm::vec2 texel) const {
   return level_->thresholds[wrapped(texel.y) * std::size_t(size) + wrapped(texel.x)];
 }
 
-float TextureStrokes::Cover(glm::vec2 at, float share) const {
+float TextureStrokes::Cover(glm::vec2 at, Axis along, float share) const {
   if (!(share > 0.0f)) return 0.0f;
   if (share >= 1.0f) return 1.0f;
   const float level = LevelFor(share);
@@ -113,7 +115,8 @@ float TextureStrokes::Cover(glm::vec2 at, float share) const {
   float sum = 0.0f;
   for (int v = 0; v < samples_; ++v) {
     for (int u = 0; u < samples_; ++u) {
-      const glm::vec2 off(first + step * static_cast<float>(u), first + step * static_cast<float>(v));
+      const float x = first + step * static_cast<float>(u), y = first + step * static_cast<float>(v);
+      const glm::vec2 off(x * along.x + y * along.y, y * along.x - x * along.y);
       sum += std::clamp((level - Threshold((at + off) * texels_per_pixel_)) / kEdge + 0.5f, 0.0f, 1.0f);
     }
   }

@@ -47,6 +47,7 @@ Track TrackOf(const HatchPass& pass, float spacing, glm::vec3 per_x, glm::vec3 p
     layer.across = turn.x * across + turn.y * along, layer.along = turn.x * along - turn.y * across;
     const glm::vec2 slope(glm::dot(per_x, layer.across), glm::dot(per_y, layer.across));
     layer.pixel = std::sqrt(glm::dot(slope, slope));
+    layer.axis = layer.pixel > 0.0f ? Axis(slope.y, -slope.x) / layer.pixel : axis;
     const double level = Log2(layer.pixel * spacing * WiderBy(k)), octave = std::floor(level);
     layer.step = static_cast<float>(Exp2(octave)), layer.coarser = static_cast<float>(level - octave);
     track.is_there = track.is_there && layer.step > 1e-30f;

@@ -17,6 +17,7 @@ struct Track {
   struct OfLayer {
     glm::vec3 along, across;     // unit vectors
     float pixel, step, coarser;  // pixel: how far pref goes across the strokes in one
+    Axis axis;                   // of the strokes in the picture
   };
   std::array<OfLayer, kMostLayers> layers = {};
   bool is_there = false;

@@ -235,7 +235,7 @@ void Smooth(const SmoothPass& pass, double strength, std::span<const std::uint8_
         GuidedFilter(sigma, pass.range, planes);
         break;
       case SmoothPass::Filter::kWavelets:
-        WaveletsFilter(sigma, pass.range, stops, planes);
+        WaveletsFilter(sigma, pass.range, frame.scale, stops, planes);
         break;
     }
   }

@@ -103,7 +103,7 @@ std::size_t WaveletsPad(double sigma, std::size_t longer_side) {
   return std::size_t{1} << WaveletLevels(sigma, longer_side);  // two taps of half of that
 }
 
-void WaveletsFilter(double sigma, double range, const WaveletStops& stops, SmoothPlanes& planes) {
+void WaveletsFilter(double sigma, double range, double scale, const WaveletStops& stops, SmoothPlanes& planes) {
   planes.MakeNext();
   const int levels = WaveletLevels(sigma, std::max(planes.width, planes.height));
   const bool has_stops = !stops.depth.empty();
@@ -123,9 +123,9 @@ void WaveletsFilter(double sigma, double range, const WaveletStops& stops, Smoot
                          planes.next_b.data(),
                          apart,
                          apart * std::ptrdiff_t(planes.stride),
-                         BiweightPerSquare(std::ldexp(range, -level)),
+                         BiweightPerSquare(std::ldexp(range * scale, -level)),
                          BiweightPerSquare(0.5),
-                         BiweightPerSquare(0.01 * double(apart))};
+                         BiweightPerSquare(0.01 * double(apart) / scale)};
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, planes.height, 16), [&](const auto& part) {
       for (std::size_t y = part.begin(); y != part.end(); ++y)
         HWY_DYNAMIC_DISPATCH(WaveletsHere)(run, planes.At(0, y), planes.width);

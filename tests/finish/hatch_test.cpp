@@ -28,8 +28,8 @@ double Mean(const std::vector<double>& values) {
 }
 
 // Flat, in a light whose lightness is `tone`.
-GuideSet FlatInLight(double tone) {
-  GuideSet guides = FlatGuides(300, 300);
+GuideSet FlatInLight(double tone, int size = 300) {
+  GuideSet guides = FlatGuides(size, size);
   for (float& value : guides.Plane(Layer::kLuminance)) value = static_cast<float>(tone * tone * tone);
   return guides;
 }
@@ -291,6 +291,15 @@ TEST(Hatch, HalfTheSizeHasTheSameStrokesAtTheSamePlaces) {
   }
 }
 
+// Slanted strokes are seen through the pixel's square, not through a strip as wide as its side.
+TEST(Hatch, HalfTheSizeHasTheSameSlantedStrokes) {
+  for (const double angle : {0.0, 20.0, 45.0, 70.0}) {
+    HatchPass pass;
+    pass.along = HatchPass::Along::kFixed, pass.angle = angle, pass.layers = 1, pass.wobble = 0.0;
+    EXPECT_LT(ChangeAtHalfSize(pass, FlatInLight(0.6), FlatInLight(0.6, 150)), 0.016) << angle;
+  }
+}
+
 std::shared_ptr<const HatchTexture> Bundled(const std::string& tool) {
   const Expected<Picture> picture = ReadPicture(SCUMBLE_SOURCE_DIR "/finish/hatching/" + tool + ".png");
   EXPECT_TRUE(picture) << tool;
@@ -320,6 +329,18 @@ TEST(HatchTexture, HalfTheSizeHasTheSameStrokesAtTheSamePlaces) {
     HatchPass pass;
     pass.texture = Bundled(tool), pass.spacing = 13.0;
     EXPECT_LT(ChangeAtHalfSize(pass, HatchedBall(600), HatchedBall(300)), 0.04) << tool;
+  }
+}
+
+// Both sizes look at the texture at the same places.
+TEST(HatchTexture, HalfTheSizeHasTheSameSlantedStrokes) {
+  for (const char* const tool : {"pencil", "pen", "charcoal"}) {
+    for (const double angle : {0.0, 20.0, 45.0}) {
+      HatchPass pass;
+      pass.texture = Bundled(tool), pass.spacing = 13.0, pass.wobble = 0.0;
+      pass.along = HatchPass::Along::kFixed, pass.angle = angle, pass.layers = 1;
+      EXPECT_LT(ChangeAtHalfSize(pass, FlatInLight(0.6), FlatInLight(0.6, 150)), 0.002) << tool << angle;
+    }
   }
 }
 

@@ -304,11 +304,13 @@ TEST(Guided, IsTheFormula) {
   }
 }
 
-// Level by level, tap by tap.
-TEST(Wavelets, AreTheFormula) {
+// Level by level, tap by tap. In a smaller picture the first level is what a later one is in the large picture.
+class WaveletsOfScale : public ::testing::TestWithParam<double> {};
+TEST_P(WaveletsOfScale, AreTheFormula) {
   constexpr int kWidth = 29, kHeight = 21;
+  const double scale = GetParam();
   SmoothPass pass;
-  pass.filter = Filter::kWavelets, pass.radius = 2.0, pass.passes = 1, pass.range = 0.15;
+  pass.filter = Filter::kWavelets, pass.radius = 2.0 / scale, pass.passes = 1, pass.range = 0.15 / scale;
   GuideSet guides = FlatGuides(kWidth, kHeight);
   for (int i = 0; i < kWidth * kHeight; ++i) {
     const auto p = std::size_t(i);
@@ -325,7 +327,7 @@ TEST(Wavelets, AreTheFormula) {
     const double room = std::max(0.0, 1.0 - 0.2928932188134524 * distance * distance / (half * half));
     return room * room;
   };
-  const Picture given = NoisyHalves(kWidth, kHeight), made = Finished(StepOf(pass), &guides, given);
+  const Picture given = NoisyHalves(kWidth, kHeight), made = Finished(StepOf(pass), &guides, given, {}, 0, scale);
   std::vector<glm::dvec3> now(std::size_t(kWidth * kHeight)), next(now.size());
   for (int i = 0; i < kWidth * kHeight; ++i) now[std::size_t(i)] = LabAt(given, i % kWidth, i / kWidth);
   const double spline[] = {0.375, 0.25, 0.0625};
@@ -347,7 +349,7 @@ TEST(Wavelets, AreTheFormula) {
             const double weight = spline[std::abs(u)] * spline[std::abs(v)] *
                                   biweight(glm::length(other - now[std::size_t(y * kWidth + x)]), 0.15 / apart) *
                                   biweight(glm::length(normals), 0.5) *
-                                  biweight(std::abs(z - qz) / std::sqrt(z * qz), 0.01 * apart);
+                                  biweight(std::abs(z - qz) / std::sqrt(z * qz), 0.01 * apart / scale);
             sum += weight * other, weights += weight;
           }
         }
@@ -361,6 +363,7 @@ TEST(Wavelets, AreTheFormula) {
     ASSERT_LT(glm::length(LabAt(made, i % kWidth, i / kWidth) - expected), 4e-5) << i;
   }
 }
+INSTANTIATE_TEST_SUITE_P(Wavelets, WaveletsOfScale, ::testing::Values(1.0, 0.5));
 
 }  // namespace
 }  // namespace scumble

@@ -78,6 +78,31 @@ TEST(Tones, LevelsAndMiddlesStayAndTheCurveRises) {
   }
 }
 
+// Only hard steps are the same when taken twice. Soft ones, taken again and again, bring all greys to levels, but for
+// those in the middle between two, which stay.
+TEST(Tones, TakenAgainAndAgainComeToLevels) {
+  TonesPass pass;
+  pass.bins = 5, pass.sharpness = 4.0;
+  Picture greys(41, 1);
+  for (int x = 0; x <= 40; ++x) {
+    std::fill_n(greys.At(x, 0), 3, GreyOf(x / 40.0));
+    greys.At(x, 0)[3] = 65535;
+  }
+  const auto off_level = [](const Picture& picture, int x) {
+    const double level = 4.0 * double(LabOf(picture.At(x, 0)).x);
+    return std::abs(level - std::round(level));
+  };
+  const Picture once = Finished(StepOf(pass), nullptr, greys), twice = Finished(StepOf(pass), nullptr, once);
+  Picture often = twice;
+  for (int i = 0; i < 8; ++i) often = Finished(StepOf(pass), nullptr, often);
+  for (int x = 0; x <= 40; ++x) {
+    if (x % 10 == 5) continue;
+    EXPECT_LE(off_level(twice, x), off_level(once, x) + 1e-3) << x;
+    EXPECT_LT(off_level(often, x), 1e-3) << x;
+    EXPECT_NEAR(LabOf(often.At(x, 0)).x, std::round(x / 10.0) / 4.0, 1e-3) << x;
+  }
+}
+
 TEST(Sigmoid, IsNearTheHyperbolicTangent) {
   for (int i = -500; i <= 500; ++i) {
     const float x = float(i) / 100.0f;
