@@ -12,6 +12,7 @@
 #include "core/filter/edge_test.h"
 #include "core/filter/wide_loops.h"
 #include "core/image/oklab.h"
+#include "finish/outline/border_joiners.h"
 #include "finish/outline/tangent_planes.h"
 #include "finish/outline/valleys.h"
 
@@ -21,24 +22,28 @@ namespace {
 // Of a step in depth, as a share of the distance; see DepthTolerance.
 constexpr double kDepthTolerance = 0.002;
 
-// By how much of a surface's slope the step to its last pixel may differ from it. A ball's depth falls like the root of
-// the distance to its rim: the last step is up to 1 + √2 times the one before.
-constexpr float kSlopeGive = 1.0f, kSlopeGiveAtEnd = 1.5f;
+// How much the depth may change without a step: by that share of the tolerance, and beyond the slope beside by that
+// share of it. A ball's depth falls like the root of the distance to its rim: to its last pixel it changes up to 1 + √2
+// times as much as before.
+struct StepGive {
+  float share, slope, slope_at_end;
+};
+constexpr StepGive kFullStepGive{1.0f, 1.0f, 1.5f};
+// A line of full steps goes on where one is more than this: along a fold that fades it would be dashed otherwise.
+constexpr StepGive kWeakStepGive{0.25f, 0.5f, 0.75f};
+// From a line of no fewer borders, at the reference height.
+constexpr double kShortestSteps = 4.0;
 // Up to how much of the slope that its normal gives the farther pixel's surface may have: flat faces with the normals
 // of a round form are steeper than these say.
 constexpr float kTangentShare = 1.4f;
 
 // A crease goes on where the angle is no smaller than this share of `crease_angle`: a fold whose angle is about that
-// would be dashed otherwise. Two thresholds, as Canny's edges have them (1986, section VIII).
+// would be dashed otherwise.
 constexpr double kCreaseGoesOn = 2.0 / 3.0;
 constexpr int kLeastBeside = 1;  // pixels of the surface beside the two of a border where a crease begins
 // Where a crease begins, the flatter of its sides turns by no more than the first share of its angle, the rounder one
 // by no more than the second.
 constexpr double kMostBeside = 0.25, kMostRound = 0.6;
-// In a map that is not finished: an angle that is enough for a crease to go on, not for one to begin.
-constexpr std::uint8_t kWeakCrease = 0xff;
-// The same, where one may go on from a step in depth.
-constexpr std::uint8_t kFullCrease = 0xfe;
 
 std::vector<glm::vec3> OklabOf(const GuideSet& guides) {
   std::vector<glm::vec3> colors(guides.pixel_count());
@@ -53,21 +58,32 @@ std::vector<glm::vec3> OklabOf(const GuideSet& guides) {
 struct PairPlanes {
   const float *coverage, *depth, *object, *material, *shadow, *normal_x, *normal_y, *normal_z;
   float give_share, give_fixed, crease;
+  float weak_give;  // of both parts of the give; 1: there are no weak steps
 };
 
 // For `count` pairs of pixels from (first, first + step) on: 0 where neither is covered, and where both are and
-// depth, normal, object, material and shadow go on; 1 where Classifier::Between has to decide.
-SCUMBLE_WIDE_LOOPS void FindDoubts(const PairPlanes& of, std::size_t first, std::size_t step, std::size_t count,
-                                   std::uint32_t* doubts) {
-  const float give_share = of.give_share, give_fixed = of.give_fixed, crease = of.crease;
+// depth, normal, object, material and shadow go on; 1 where Classifier::Between has to decide. `before`, `after`: how
+// far away the pixels beyond the two are; 0 at the picture's edge.
+SCUMBLE_WIDE_LOOPS void FindDoubts(const PairPlanes& of, std::size_t first, std::size_t step, std::size_t before,
+                                   std::size_t after, std::size_t count, std::uint32_t* doubts) {
+  const float give_share = of.give_share, give_fixed = of.give_fixed, crease = of.crease, weak_give = of.weak_give;
   const float *const coverage = of.coverage + first, *const depth = of.depth + first, *const object = of.object + first,
                      *const material = of.material + first, *const shadow = of.shadow + first;
   const float *const x = of.normal_x + first, *const y = of.normal_y + first, *const z = of.normal_z + first;
+  const float *const depth_before = depth - before, *const depth_after = depth + step + after;
+  const float *const object_before = object - before, *const object_after = object + step + after;
   for (std::size_t p = 0; p < count; ++p) {
     const std::size_t q = p + step;
     const bool covers_p = coverage[p] > 0.0f, covers_q = coverage[q] > 0.0f;
     const float nearer = depth[q] < depth[p] ? depth[q] : depth[p];
-    const bool goes_on = std::fabs(depth[q] - depth[p]) <= give_fixed + give_share * nearer;
+    const float rise = depth[q] - depth[p], give = give_fixed + give_share * nearer, weak = weak_give * give;
+    const float rise_before = depth[p] - depth_before[p], rise_after = depth_after[p] - depth[q];
+    // Beside the background a slope is infinite, and less than infinity is needed.
+    const bool is_as_before = (std::fabs(rise - rise_before) < kWeakStepGive.slope * std::fabs(rise_before) + weak) &
+                              (object_before[p] == object[p]);
+    const bool is_as_after = (std::fabs(rise - rise_after) < kWeakStepGive.slope * std::fabs(rise_after) + weak) &
+                             (object_after[p] == object[p]);
+    const bool goes_on = (std::fabs(rise) <= give) & ((std::fabs(rise) <= weak) | is_as_before | is_as_after);
     const bool is_flat = x[p] * x[q] + y[p] * y[q] + z[p] * z[q] > crease;
     const bool is_same = (object[p] == object[q]) & (material[p] == material[q]);
     const bool is_lit_alike = (shadow[p] >= 0.5f) == (shadow[q] >= 0.5f);
@@ -76,7 +92,7 @@ SCUMBLE_WIDE_LOOPS void FindDoubts(const PairPlanes& of, std::size_t first, std:
   }
 }
 
-constexpr std::uint8_t CodeOf(LineClass line) { return static_cast<std::uint8_t>(1 + int(line)); }
+bool IsOn(const OutlinePass& pass, LineClass line) { return pass.of_class[std::size_t(line)] > 0.0; }
 
 class Classifier {
  public:
@@ -100,16 +116,18 @@ class Classifier {
     if (IsOn(LineClass::kSuggestive)) valleys_.emplace(pass, guides, scale);
   }
 
-  // Of `count` pairs from (first, first + step) on: 0 where Between gives 0 for sure.
-  void Doubts(std::size_t first, std::size_t step, std::size_t count, std::uint32_t* doubts) const {
+  // Of `count` pairs from (first, first + step) on: 0 where Between gives 0 for sure. The rest as FindDoubts has it.
+  void Doubts(std::size_t first, std::size_t step, std::size_t before, std::size_t after, std::size_t count,
+              std::uint32_t* doubts) const {
     if (!colors_.empty() || valleys_) return static_cast<void>(std::fill_n(doubts, count, 1u));
     const auto normal = [&](int c) { return guides_.Plane(Layer::kNormal, c).data(); };
     // Where a layer is not looked at, the object's values stand in, which are compared anyway.
     const auto or_object = [&](std::span<const float> plane) { return (plane.empty() ? object_ : plane).data(); };
     FindDoubts({coverage_.data(), depth_.data(), object_.data(), or_object(material_), or_object(shadow_), normal(0),
                 normal(1), normal(2), give_.share, give_.fixed,
-                static_cast<float>(std::cos(std::min(weak_crease_, std::numbers::pi)))},
-               first, step, count, doubts);
+                static_cast<float>(std::cos(std::min(weak_crease_, std::numbers::pi))),
+                IsOn(LineClass::kOcclusion) ? kWeakStepGive.share : 1.0f},
+               first, step, before, after, count, doubts);
   }
 
   // Of the border between pixels p and q, the next one of a row or a column. `before` and `after`: the pixels beyond
@@ -119,13 +137,18 @@ class Classifier {
     const bool covers_p = coverage_[p] > 0.0f, covers_q = coverage_[q] > 0.0f;
     if (!covers_p && !covers_q) return 0;
     if (!only_.empty() && !IsWanted(p, q)) return 0;
-    const std::optional<LineClass> line = covers_p == covers_q ? Inside(before, p, q, after) : LineClass::kSilhouette;
-    if (line) return IsOn(*line) ? CodeOf(*line) : 0;
-    return IsOn(LineClass::kCrease) ? GoingOn(p, q) : 0;
+    if (covers_p != covers_q) return CodeIfOn(LineClass::kSilhouette);
+    if (object_[p] != object_[q]) return CodeIfOn(LineClass::kObject);
+    if (!DepthGoesOn(before, p, q, after)) return CodeIfOn(LineClass::kOcclusion);
+    const std::optional<LineClass> line = OnSurface(p, q);
+    const std::uint8_t code = line ? CodeIfOn(*line) : IsOn(LineClass::kCrease) ? GoingOn(p, q) : 0;
+    const bool is_weak_step = IsOn(LineClass::kOcclusion) && !DepthGoesOn(before, p, q, after, kWeakStepGive);
+    return is_weak_step ? code | kWeakStep : code;
   }
 
  private:
-  bool IsOn(LineClass line) const { return pass_.of_class[std::size_t(line)] > 0.0; }
+  std::uint8_t CodeIfOn(LineClass line) const { return IsOn(line) ? CodeOf(line) : std::uint8_t{0}; }
+  bool IsOn(LineClass line) const { return internal::IsOn(pass_, line); }
 
   bool IsWanted(std::size_t p, std::size_t q) const {
     return only_[owner_.Of(p, q)] || ((only_[p] || only_[q]) && owner_.Meet(p, q));
@@ -134,16 +157,16 @@ class Classifier {
   // Whether the depth goes on from p to q: as it does on one of the sides, by up to twice the slope there, give or take
   // the tolerance, and by a little more where the surface ends. A step's two sides are flatter than the step. Or as the
   // farther pixel's surface does, which a bevel of a pixel or two shows at its rim: behind a step it is not that steep.
-  bool DepthGoesOn(std::optional<std::size_t> before, std::size_t p, std::size_t q,
-                   std::optional<std::size_t> after) const {
-    const float step = depth_[q] - depth_[p], give = give_.At(std::min(depth_[p], depth_[q]));
+  bool DepthGoesOn(std::optional<std::size_t> before, std::size_t p, std::size_t q, std::optional<std::size_t> after,
+                   const StepGive& of = kFullStepGive) const {
+    const float step = depth_[q] - depth_[p], give = of.share * give_.At(std::min(depth_[p], depth_[q]));
     if (std::fabs(step) <= give) return true;
     const auto goes_on = [&](std::optional<std::size_t> there, std::size_t here) {
       return there && coverage_[*there] > 0.0f && object_[*there] == object_[here];
     };
     const bool has_before = goes_on(before, p), has_after = goes_on(after, q);
     const auto fits = [&](float slope, bool is_end) {
-      return std::fabs(step - slope) <= (is_end ? kSlopeGiveAtEnd : kSlopeGive) * std::fabs(slope) + give;
+      return std::fabs(step - slope) <= (is_end ? of.slope_at_end : of.slope) * std::fabs(slope) + give;
     };
     return (has_before && fits(depth_[p] - depth_[*before], !has_after)) ||
            (has_after && fits(depth_[*after] - depth_[q], !has_before)) || IsSteepBehind(p, q, give);
@@ -212,11 +235,8 @@ class Classifier {
     return rest >= crease_ ? kFullCrease : rest >= weak_crease_ ? kWeakCrease : 0;
   }
 
-  // Both pixels are covered.
-  std::optional<LineClass> Inside(std::optional<std::size_t> before, std::size_t p, std::size_t q,
-                                  std::optional<std::size_t> after) const {
-    if (object_[p] != object_[q]) return LineClass::kObject;
-    if (!DepthGoesOn(before, p, q, after)) return LineClass::kOcclusion;
+  // Both pixels are of one surface.
+  std::optional<LineClass> OnSurface(std::size_t p, std::size_t q) const {
     if (CreaseBegins(p, q)) return LineClass::kCrease;
     if (!material_.empty() && material_[p] != material_[q]) return LineClass::kMaterial;
     if (!shadow_.empty() && (shadow_[p] >= 0.5f) != (shadow_[q] >= 0.5f)) return LineClass::kShadow;
@@ -239,68 +259,6 @@ class Classifier {
   std::vector<glm::vec3> colors_;
   float texture_step_;
   std::optional<Valleys> valleys_;
-};
-
-// Makes creases of the weak ones that lie end to end with one of the same object, of full ones also beside a step in
-// depth there, and drops the others.
-class CreaseJoiner {
- public:
-  CreaseJoiner(std::span<const float> object, BorderMap& map) : object_(object), map_(map) {}
-
-  void Run() {
-    const auto count = static_cast<std::int64_t>(map_.right.size());
-    for (std::int64_t p = 0; p < count; ++p) {
-      for (const bool is_below : {false, true}) {
-        if (At({p, is_below}) == kCrease || At({p, is_below}) == kOcclusion) Follow({p, is_below});
-      }
-    }
-    for (auto* borders : {&map_.right, &map_.below})
-      std::replace_if(
-          borders->begin(), borders->end(), [](std::uint8_t border) { return border >= kFullCrease; }, kNone);
-  }
-
- private:
-  struct Border {
-    std::int64_t pixel;
-    bool is_below;
-  };
-  static constexpr std::uint8_t kNone = 0, kCrease = CodeOf(LineClass::kCrease),
-                                kOcclusion = CodeOf(LineClass::kOcclusion);
-
-  std::uint8_t& At(Border of) { return (of.is_below ? map_.below : map_.right)[static_cast<std::size_t>(of.pixel)]; }
-
-  void Follow(Border from) {
-    todo_.assign(1, from);
-    while (!todo_.empty()) {
-      const Border at = todo_.back();
-      todo_.pop_back();
-      last_code_ = At(at) == kOcclusion ? kFullCrease : kWeakCrease;
-      // The six that share an end with it: two in its own direction, four in the other.
-      const std::int64_t p = at.pixel, on = at.is_below ? 1 : map_.width, aside = at.is_below ? map_.width : 1;
-      const bool other = !at.is_below;
-      const bool is_first = at.is_below && p % map_.width == 0, is_last = at.is_below && (p + 1) % map_.width == 0;
-      const float object = object_[std::size_t(p)];
-      if (!is_first)
-        for (const Border next : {Border{p - on, at.is_below}, Border{p - on, other}, Border{p - on + aside, other}})
-          Take(next, object);
-      if (!is_last)
-        for (const Border next : {Border{p + on, at.is_below}, Border{p, other}, Border{p + aside, other}})
-          Take(next, object);
-    }
-  }
-
-  // A crease has the same object on both of its sides.
-  void Take(Border next, float object) {
-    if (next.pixel < 0 || next.pixel >= static_cast<std::int64_t>(map_.right.size())) return;
-    if (At(next) < kFullCrease || At(next) > last_code_ || object_[std::size_t(next.pixel)] != object) return;
-    At(next) = kCrease;
-    todo_.push_back(next);
-  }
-
-  std::span<const float> object_;
-  BorderMap& map_;
-  std::vector<Border> todo_;
-  std::uint8_t last_code_ = kWeakCrease;  // which may follow: up to that
 };
 
 }  // namespace
@@ -351,13 +309,14 @@ BorderMap FindBorders(const OutlinePass& pass, const GuideSet& guides, double sc
     const auto at = [&](bool is_inside, std::size_t pixel) { return is_inside ? std::optional(pixel) : std::nullopt; };
     for (std::size_t y = rows.begin(); y != rows.end(); ++y) {
       const std::size_t row = y * width;
-      classifier.Doubts(row, 1, width - 1, doubts.data());
+      std::fill(doubts.begin(), doubts.end(), 1u);  // also of the pairs beside the picture's edge
+      if (width > 3) classifier.Doubts(row + 1, 1, 1, 1, width - 3, doubts.data() + 1);
       for (std::size_t x = 0; x + 1 < width; ++x) {
         const std::size_t p = row + x;
         if (doubts[x]) map.right[p] = classifier.Between(at(x > 0, p - 1), p, p + 1, at(x + 2 < width, p + 2));
       }
       if (y + 1 == height) continue;
-      classifier.Doubts(row, width, width, doubts.data());
+      classifier.Doubts(row, width, y > 0 ? width : 0, y + 2 < height ? width : 0, width, doubts.data());
       for (std::size_t x = 0; x < width; ++x) {
         const std::size_t p = row + x;
         if (!doubts[x]) continue;
@@ -365,7 +324,11 @@ BorderMap FindBorders(const OutlinePass& pass, const GuideSet& guides, double sc
       }
     }
   });
-  if (pass.of_class[std::size_t(LineClass::kCrease)] > 0.0) CreaseJoiner(guides.Plane(Layer::kObject), map).Run();
+  if (IsOn(pass, LineClass::kCrease)) JoinCreases(guides.Plane(Layer::kObject), map);
+  if (IsOn(pass, LineClass::kOcclusion)) {
+    const DepthTolerance least(guides, kDepthTolerance * double(kWeakStepGive.share));
+    JoinSteps(guides, only, std::max(kShortestSteps, kShortestSteps * scale), least, map);
+  }
   return map;
 }
 

@@ -6,9 +6,9 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <optional>
 
+#include "finish/outline/border_grid.h"
 #include "finish/outline/line_owners.h"
 
 namespace scumble::internal {
@@ -16,23 +16,15 @@ namespace {
 
 constexpr std::uint8_t kTaken = 0x80;  // a border that is in a line already
 
-// A border: the one to the right of the pixel, or below it.
-struct Border {
-  int x, y;
-  bool is_right;
-  bool operator==(const Border&) const = default;
-};
-
-// A corner of the pixels, 0 … width by 0 … height.
-struct Corner {
-  int x, y;
-  bool operator==(const Corner&) const = default;
-};
-
 class Tracer {
  public:
   Tracer(BorderMap& map, const GuideSet& guides, std::span<const float> shadow)
-      : map_(map), owner_(guides), coverage_(guides.Plane(Layer::kCoverage)), shadow_(shadow) {}
+      : grid_(map),
+        width_(map.width),
+        height_(map.height),
+        owner_(guides),
+        coverage_(guides.Plane(Layer::kCoverage)),
+        shadow_(shadow) {}
 
   std::vector<LineChain> Trace(double shortest) {
     Prune(shortest);
@@ -43,13 +35,13 @@ class Tracer {
       if (!is_noise) chains.push_back(std::move(chain));
     };
     // From ends and junctions first; what is left then are rings.
-    ForEachBorder([&](const Border& border) {
-      for (const Corner& corner : Corners(border)) {
+    grid_.ForEachBorder([&](const Border& border) {
+      for (const Corner& corner : BorderGrid::Corners(border)) {
         if (!(At(border) & kTaken) && Degree(corner) != 2) add(Walk(border, corner));
       }
     });
-    ForEachBorder([&](const Border& border) {
-      if (!(At(border) & kTaken)) add(Walk(border, Corners(border)[0]));
+    grid_.ForEachBorder([&](const Border& border) {
+      if (!(At(border) & kTaken)) add(Walk(border, BorderGrid::Corners(border)[0]));
     });
     return chains;
   }
@@ -58,18 +50,17 @@ class Tracer {
   // Takes short lines with a free end out of the map, so that they do not part the lines that they branch from.
   void Prune(double shortest) {
     std::vector<Border> pruned, line;
-    ForEachBorder([&](const Border& first) {
-      for (const Corner& start : Corners(first)) {
+    grid_.ForEachBorder([&](const Border& first) {
+      for (const Corner& start : BorderGrid::Corners(first)) {
         if (EndAt(start) != LineEnd::kFree) continue;
         line.clear();
         Corner corner = start;
         for (Border border = first; double(line.size()) < shortest;) {
           line.push_back(border);
-          const std::array<Corner, 2> ends = Corners(border);
-          corner = ends[0] == corner ? ends[1] : ends[0];
+          corner = BorderGrid::OtherEnd(border, corner);
           if (Degree(corner) != 2) break;
           const Border last = border;
-          ForEachAt(corner, [&](const Border& one) {
+          grid_.ForEachAt(corner, [&](const Border& one) {
             if (!(one == last)) border = one;
           });
         }
@@ -79,62 +70,18 @@ class Tracer {
     for (const Border& border : pruned) At(border) = 0;
   }
 
-  std::uint8_t& At(const Border& border) {
-    const std::size_t i = std::size_t(border.y) * map_.width + border.x;
-    return border.is_right ? map_.right[i] : map_.below[i];
-  }
+  std::uint8_t& At(const Border& border) { return grid_.At(border); }
 
-  template <class Visit>
-  void ForEachBorder(const Visit& visit) {
-    for (int y = 0; y < map_.height; ++y) {
-      const std::size_t row = std::size_t(y) * map_.width;
-      for (int x = 0; x < map_.width; ++x) {
-        while (x + kAtOnce <= map_.width && HasNone(row + x)) x += kAtOnce;
-        if (x == map_.width) break;
-        if (map_.right[row + x]) visit(Border{x, y, true});
-        if (map_.below[row + x]) visit(Border{x, y, false});
-      }
-    }
-  }
-
-  // Whether kAtOnce pixels have no border.
-  static constexpr int kAtOnce = 8;
-  bool HasNone(std::size_t first) const {
-    std::uint64_t right, below;
-    std::memcpy(&right, map_.right.data() + first, kAtOnce);
-    std::memcpy(&below, map_.below.data() + first, kAtOnce);
-    return (right | below) == 0;
-  }
-
-  static std::array<Corner, 2> Corners(const Border& border) {
-    const auto [x, y, is_right] = border;
-    return is_right ? std::array{Corner{x + 1, y}, Corner{x + 1, y + 1}}
-                    : std::array{Corner{x, y + 1}, Corner{x + 1, y + 1}};
-  }
-
-  // Calls visit for each border that ends in the corner: above, to the left, to the right, below.
-  template <class Visit>
-  void ForEachAt(const Corner& corner, const Visit& visit) {
-    const auto [x, y] = corner;
-    const auto offer = [&](const Border& border) {
-      if (border.x >= 0 && border.y >= 0 && border.x < map_.width && border.y < map_.height && At(border))
-        visit(border);
-    };
-    offer({x - 1, y - 1, true});
-    offer({x - 1, y - 1, false});
-    offer({x, y - 1, false});
-    offer({x - 1, y, true});
-  }
   int Degree(const Corner& corner) {
     int count = 0;
-    ForEachAt(corner, [&](const Border&) { ++count; });
+    grid_.ForEachAt(corner, [&](const Border&) { ++count; });
     return count;
   }
 
   // Of a line that ends in the corner.
   LineEnd EndAt(const Corner& corner) {
     if (Degree(corner) != 1) return LineEnd::kJunction;
-    const bool is_at_edge = corner.x == 0 || corner.y == 0 || corner.x == map_.width || corner.y == map_.height;
+    const bool is_at_edge = corner.x == 0 || corner.y == 0 || corner.x == width_ || corner.y == height_;
     return is_at_edge ? LineEnd::kPictureEdge : LineEnd::kFree;
   }
 
@@ -146,12 +93,11 @@ class Tracer {
     if (chain.begin == LineEnd::kJunction) chain.begin_contour = ContourAt(corner, border, chain.begins_in_contour);
     for (;;) {
       At(border) |= kTaken;
-      const std::array<Corner, 2> ends = Corners(border);
-      corner = ends[0] == corner ? ends[1] : ends[0];
+      corner = BorderGrid::OtherEnd(border, corner);
       chain.points.push_back(PointOf(border));
       Border next{-1, 0, false};
       if (Degree(corner) == 2) {
-        ForEachAt(corner, [&](const Border& one) {
+        grid_.ForEachAt(corner, [&](const Border& one) {
           if (!(At(one) & kTaken)) next = one;
         });
       }
@@ -171,12 +117,8 @@ class Tracer {
     return line == LineClass::kSilhouette || line == LineClass::kObject || line == LineClass::kOcclusion;
   }
 
-  // The pixel to the left of a border, or above it, and whether the other one is the owner.
-  std::size_t First(const Border& border) const { return std::size_t(border.y) * map_.width + std::size_t(border.x); }
-  bool IsSecond(const Border& border) const {
-    const std::size_t p = First(border);
-    return owner_.IsSecond(p, border.is_right ? p + 1 : p + std::size_t(map_.width));
-  }
+  // Whether the pixel to the right of a border, or below it, is the owner.
+  bool IsSecond(const Border& border) const { return owner_.IsSecond(grid_.First(border), grid_.Second(border)); }
 
   // The contour that passes a junction: two borders that belong to one surface, which lies between them. `end`: the
   // last border of a line there; `is_of_it`: whether it is one of the two.
@@ -186,7 +128,7 @@ class Tracer {
     const std::array<Border, 4> around = {Border{x - 1, y - 1, true}, Border{x, y - 1, false}, Border{x - 1, y, true},
                                           Border{x - 1, y - 1, false}};
     std::array<int, 4> owners{};
-    ForEachAt(corner, [&](const Border& one) {
+    grid_.ForEachAt(corner, [&](const Border& one) {
       const auto k = std::size_t(std::find(around.begin(), around.end(), one) - around.begin());
       if (HasSide(LineOf(one))) owners[k] = IsSecond(one) == (k < 2) ? 1 : -1;
     });
@@ -206,7 +148,7 @@ class Tracer {
 
   LinePoint PointOf(const Border& border) {
     const auto [x, y, is_right] = border;
-    const std::size_t p = First(border), q = is_right ? p + 1 : p + std::size_t(map_.width);
+    const std::size_t p = grid_.First(border), q = grid_.Second(border);
     const bool q_owns = IsSecond(border);
     const glm::vec2 across = is_right ? glm::vec2(1, 0) : glm::vec2(0, 1);  // from p to q
     const LineClass line = LineOf(border);
@@ -228,8 +170,8 @@ class Tracer {
   float Uncovered(int x, int y, glm::vec2 inwards) const {
     float sum = 0.0f, last = 0.0f;
     for (int k = 0; k < 4; ++k) {
-      if (x < 0 || y < 0 || x >= map_.width || y >= map_.height) break;
-      const float coverage = std::min(coverage_[std::size_t(y) * std::size_t(map_.width) + std::size_t(x)], 1.0f);
+      if (x < 0 || y < 0 || x >= width_ || y >= height_) break;
+      const float coverage = std::min(coverage_[std::size_t(y) * std::size_t(width_) + std::size_t(x)], 1.0f);
       if (coverage < last) break;
       sum += 1.0f - coverage;
       if (coverage >= 1.0f) break;
@@ -239,7 +181,8 @@ class Tracer {
     return sum;
   }
 
-  BorderMap& map_;
+  BorderGrid grid_;
+  int width_, height_;
   BorderOwner owner_;
   std::span<const float> coverage_, shadow_;
 };

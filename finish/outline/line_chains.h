@@ -1,6 +1,7 @@
 // Borders between pixels, joined to lines.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <optional>
@@ -22,6 +23,12 @@ struct LinePoint {
   bool meets = false;    // two objects meet there, and neither is nearer
   float shift = 0.0f;    // pixels towards the owner, by which the line misses the border where it runs along that
 };
+
+// The pixel on the other side of its border; `width`: of the picture.
+inline std::size_t OtherSide(const LinePoint& point, int width) {
+  return std::size_t(std::ptrdiff_t(point.owner) - std::ptrdiff_t(point.to_owner.x) -
+                     std::ptrdiff_t(width) * std::ptrdiff_t(point.to_owner.y));
+}
 
 enum class LineEnd { kFree, kJunction, kPictureEdge };
 

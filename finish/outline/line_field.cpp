@@ -16,8 +16,8 @@ struct BesideLine {
 
 class LinesBeside {
  public:
-  LinesBeside(const BorderMap& borders, const GuideSet& guides, const LineWidth& width)
-      : borders_(borders), width_of_(width), owner_(guides), width_(static_cast<std::size_t>(borders.width)) {}
+  LinesBeside(const BorderMap& borders, const LineWidth& width)
+      : borders_(borders), width_of_(width), width_(static_cast<std::size_t>(borders.width)) {}
 
   bool Has(std::size_t i) const {
     return borders_.right[i] || borders_.below[i] || (i % width_ > 0 && borders_.right[i - 1]) ||
@@ -28,8 +28,8 @@ class LinesBeside {
     BesideLine widest;
     const auto offer = [&](std::uint8_t border, std::size_t p, std::size_t q) {
       if (!border) return;
-      const std::size_t owner = owner_.Of(p, q);
-      const float width = width_of_.At(owner, static_cast<LineClass>(border - 1));
+      const std::size_t owner = (border & kSecondOwns) != 0 ? q : p;
+      const float width = width_of_.At(owner, static_cast<LineClass>((border & ~kSecondOwns) - 1));
       if (width > widest.width) widest = {width, owner};
     };
     offer(borders_.right[i], i, i + 1);
@@ -42,7 +42,6 @@ class LinesBeside {
  private:
   const BorderMap& borders_;
   const LineWidth& width_of_;
-  BorderOwner owner_;
   std::size_t width_;
 };
 
@@ -55,7 +54,7 @@ StrokeCover CoverByDistance(const OutlinePass& pass, const FinishFrame& frame, c
   cover.share.assign(pixels, 0.0f);
   if (with_owner) cover.owner.assign(pixels, 0);
   const LineWidth width(pass, frame, gaps);
-  const LinesBeside lines(borders, *frame.guides, width);
+  const LinesBeside lines(borders, width);
   const double widest = 64.0 * 4.0 * frame.scale;
   const double most = 2.0 * std::max(widest, 1.0) + 1.0, most_squared = most * most;
   ForNearestFeature(

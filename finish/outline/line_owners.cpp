@@ -25,10 +25,7 @@ class Owners {
   }
 
  private:
-  std::size_t OtherOf(const LinePoint& point) const {
-    return std::size_t(std::ptrdiff_t(point.owner) - std::ptrdiff_t(point.to_owner.x) -
-                       width_ * std::ptrdiff_t(point.to_owner.y));
-  }
+  std::size_t OtherOf(const LinePoint& point) const { return OtherSide(point, width_); }
   std::pair<float, float> PairOf(std::size_t i) const {
     return std::minmax({object_[chain_.points[i].owner], object_[OtherOf(chain_.points[i])]});
   }
@@ -74,7 +71,7 @@ class Owners {
 
   LineChain& chain_;
   std::span<const float> object_;
-  std::ptrdiff_t width_;
+  int width_;
   std::vector<int> votes_;
 };
 

@@ -53,19 +53,24 @@ bool IsCrumb(const OutlinePass& pass, float scale, const LineChain& chain) {
   return std::max(reach.x, reach.y) < kCrumb * static_cast<float>(pass.width * share) * scale;
 }
 
-// `frame`: with the guides of the borders, which are `factor` times smaller than the picture. Pieces of lines whose
-// owner `is_masked` are left out: where they cross others, these show. With a mask each piece of a line between two
-// objects has the owner that it has by itself: if all were of one, the mask of the other would lose the line.
-template <class IsMasked>
-StrokeCover CoverByStrokes(const OutlinePass& pass, const FinishFrame& frame, int factor, const LineNoise& noise,
-                           std::span<const float> shadow, BorderMap& borders, bool with_owner, bool has_mask,
-                           const IsMasked& is_masked) {
+// The lines to draw. `frame`: with the guides of the borders, which are `factor` times smaller than the picture. With a
+// mask each piece of a line between two objects has the owner that it has by itself: if all were of one, the mask of
+// the other would lose the line.
+std::vector<LineChain> LinesOf(const OutlinePass& pass, const FinishFrame& frame, int factor,
+                               std::span<const float> shadow, BorderMap& borders, bool has_mask) {
   // Of small guides a step of a border is several pixels of the picture: it is evened out.
   const double shortest = std::max(kShortest, kShortest * frame.scale / factor);
-  std::vector<LineChain> chains =
+  std::vector<LineChain> lines =
       TraceLines(borders, *frame.guides, shadow, shortest, factor > 1 ? 1.0f : 0.5f, !has_mask);
-  std::erase_if(chains,
-                [&](const LineChain& chain) { return IsCrumb(pass, static_cast<float>(frame.scale / factor), chain); });
+  std::erase_if(lines,
+                [&](const LineChain& line) { return IsCrumb(pass, static_cast<float>(frame.scale / factor), line); });
+  return lines;
+}
+
+// Pieces of lines whose owner `is_masked` are left out: where they cross others, these show.
+template <class IsMasked>
+StrokeCover CoverByStrokes(const OutlinePass& pass, const FinishFrame& frame, int factor, const LineNoise& noise,
+                           std::vector<LineChain> chains, bool with_owner, const IsMasked& is_masked) {
   for (LineChain& chain : chains) {
     const auto times = static_cast<float>(factor);
     for (LinePoint& point : chain.points) point.at *= times;
@@ -82,13 +87,19 @@ StrokeCover CoverByStrokes(const OutlinePass& pass, const FinishFrame& frame, in
   return CoverOf(pieces, frame.guides->width() * factor, frame.guides->height() * factor, with_owner);
 }
 
-// A field has one line for each pixel, so that one that the mask hides must not stand before another.
-void DropHidden(const GuideSet& guides, std::span<const std::uint16_t> shares, BorderMap& borders) {
-  const BorderOwner owner(guides);
-  const auto width = static_cast<std::size_t>(borders.width);
-  for (std::size_t p = 0; p < shares.size(); ++p) {
-    if (borders.right[p] && shares[owner.Of(p, p + 1)] == 0) borders.right[p] = 0;
-    if (borders.below[p] && shares[owner.Of(p, p + width)] == 0) borders.below[p] = 0;
+// Leaves the borders of lines, as CoverByDistance takes them. A field has one line for each pixel, so that one whose
+// owner `is_masked` must not stand before another.
+template <class IsMasked>
+void KeepLines(const std::vector<LineChain>& lines, const IsMasked& is_masked, BorderMap& borders) {
+  std::ranges::fill(borders.right, std::uint8_t{0}), std::ranges::fill(borders.below, std::uint8_t{0});
+  for (const LineChain& line : lines) {
+    for (const LinePoint& point : line.points) {
+      if (is_masked(point.owner)) continue;
+      const std::size_t other = OtherSide(point, borders.width), first = std::min<std::size_t>(point.owner, other);
+      const int owner = point.owner > other ? kSecondOwns : 0;
+      (point.to_owner.x != 0.0f ? borders.right : borders.below)[first] =
+          static_cast<std::uint8_t>(1 + int(point.line) + owner);
+    }
   }
 }
 
@@ -168,7 +179,6 @@ void DrawOutline(const OutlinePass& pass, double strength, std::span<const std::
   std::span<const float> shade = shadow;
   if (shade.empty() && guides.Has(Layer::kShadow)) shade = guides.Plane(Layer::kShadow);
   BorderMap borders = FindBorders(pass, guides, scale, only, shade);
-  if (is_field && !shares.empty()) DropHidden(guides, shares, borders);
   std::optional<SurfaceScale> surface;
   std::optional<NoiseField> across, down, gaps;
   if (pass.stick && (strays || pass.gaps > 0.0)) surface.emplace(guides);
@@ -183,9 +193,11 @@ void DrawOutline(const OutlinePass& pass, double strength, std::span<const std::
   const LineNoise noise{across ? &*across : nullptr, down ? &*down : nullptr, gaps ? &*gaps : nullptr};
   const bool of_paint = pass.color != OutlinePass::Color::kInk, with_owner = of_paint || !shares.empty();
   const auto is_masked = [&](std::uint32_t owner) { return !shares.empty() && shares[middle(owner)] == 0; };
-  const StrokeCover cover =
-      is_field ? CoverByDistance(pass, traced, noise.gaps, borders, with_owner)
-               : CoverByStrokes(pass, traced, factor, noise, shade, borders, with_owner, !shares.empty(), is_masked);
+  std::vector<LineChain> lines = LinesOf(pass, traced, factor, shade, borders, !shares.empty());
+  if (is_field) KeepLines(lines, is_masked, borders);
+  const StrokeCover cover = is_field
+                                ? CoverByDistance(pass, traced, noise.gaps, borders, with_owner)
+                                : CoverByStrokes(pass, traced, factor, noise, std::move(lines), with_owner, is_masked);
   const PaintOfOwner painted(guides);
   std::vector<std::uint16_t> paint;  // as it was before the lines
   if (of_paint) paint = picture.rgba;

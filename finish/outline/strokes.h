@@ -56,9 +56,12 @@ struct StrokeCover {
 // `with_owner`: fills in `owner`. O(pixels + strokes' area). The result does not depend on threads.
 StrokeCover CoverOf(std::span<const StrokePiece> pieces, int width, int height, bool with_owner);
 
+// Added to what a border is: it belongs to the pixel to the right or below.
+constexpr std::uint8_t kSecondOwns = 0x40;
+
 // Lines without strokes: a pixel whose nearest pixel beside a border is d pixels away lies d + 1/2 from that line, and
-// is covered as far as the line is wide. Of a pixel with several borders the widest line counts. O(pixels), whatever
-// the width.
+// is covered as far as the line is wide. Of a pixel with several borders the widest line counts. `borders`: with
+// kSecondOwns. O(pixels), whatever the width.
 StrokeCover CoverByDistance(const OutlinePass& pass, const FinishFrame& frame, const NoiseField* gaps,
                             const BorderMap& borders, bool with_owner);
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "tests/finish/finish_fixtures.h"
@@ -94,6 +95,54 @@ TEST(OutlineSteps, ARoundEdgeInFrontOfItsObjectHasOne) {
         }
       }
     }
+  }
+}
+
+// The tolerance of a step at kDistance, in metres, and the share of it at which a step still goes on.
+constexpr float kFullStep = 0.002f * kDistance, kWeakStep = 0.25f;
+
+// Two faces of one object that face the viewer. The upper one lies behind, by so many full steps at that column. The
+// border climbs through the rows of pixels. Depths err by up to a tenth of a full step.
+template <class Steps>
+GuideSet Fold(float climb, const Steps& steps_at) {
+  GuideSet guides = GuidesOf(kColumns, kRows, [&](glm::vec2 at) {
+    const bool is_behind = kRows / 2.0f - at.y + climb * (at.x - kColumns / 2.0f) > 0.0f;
+    return SeenPoint{true, {0, 0, 1}, kDistance + (is_behind ? steps_at(at.x) * kFullStep : 0.0f), 1.0f};
+  });
+  std::uint32_t state = 1;
+  for (float& depth : guides.Plane(Layer::kDepth)) {
+    state = state * 1664525u + 1013904223u;
+    depth += (static_cast<float>(state >> 8) / float(1 << 23) - 1.0f) * 0.1f * kFullStep;
+  }
+  return guides;
+}
+
+// A step that falls to nothing has one line, up to where it falls below a quarter of a full one.
+TEST(OutlineSteps, TheLineOfAFoldThatFadesHasNoGaps) {
+  constexpr float kFirst = 4.0f, kColumnsPerStep = kColumns / kFirst;
+  const auto fading = [](float x) { return kFirst - x / kColumnsPerStep; };
+  for (const float climb : {0.0f, 0.03f, 0.13f, 0.41f, -0.3f}) {
+    const std::vector<double> ink = InkOfSteps(Fold(climb, fading));
+    std::size_t end = 0;
+    while (end < ink.size() && ink[end] > 0.0) ++end;
+    // Both pixels beside the border err.
+    EXPECT_GE(float(end), kColumnsPerStep * (kFirst - kWeakStep - 0.2f) - 2.0f) << climb;
+    EXPECT_LE(float(end), kColumnsPerStep * (kFirst - kWeakStep + 0.2f) + 2.0f) << climb;
+    EXPECT_EQ(std::count(ink.begin() + std::ptrdiff_t(end), ink.end(), 0.0), std::ptrdiff_t(ink.size() - end)) << climb;
+    const double across = 2.0 * std::sqrt(1.0 + double(climb) * double(climb));
+    for (std::size_t x = 2; x + 3 < end; ++x) EXPECT_NEAR(ink[x], across, 0.4) << climb << ' ' << x;
+  }
+}
+
+// One that is nowhere a full one has no line, however long it is.
+TEST(OutlineSteps, WeakStepsAloneHaveNone) {
+  for (const float climb : {0.0f, 0.13f, 0.41f}) {
+    const std::vector<double> ink = InkOfSteps(Fold(climb, [](float) { return 0.75f; }));
+    EXPECT_EQ(std::ranges::count(ink, 0.0), kColumns) << climb;
+    // Nor beyond a gap of many pixels.
+    const auto two = [](float x) { return x < 60.0f ? 3.0f : x < 80.0f ? 0.0f : 0.75f; };
+    const std::vector<double> half = InkOfSteps(Fold(climb, two));
+    EXPECT_EQ(std::count(half.begin() + 64, half.end(), 0.0), kColumns - 64) << climb;
   }
 }
 

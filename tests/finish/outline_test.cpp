@@ -272,11 +272,16 @@ TEST(Outline, CrumbsOfShadowHaveNoLine) {
     }
     return Sum(InkOf(pass, guides));
   };
-  for (const double radius : {2.0, 3.0, 4.0}) EXPECT_EQ(ink_of(radius, false), 0.0) << radius;
-  for (const double radius : {6.0, 12.0, 30.0})
-    EXPECT_NEAR(ink_of(radius, false) / (2.0 * std::numbers::pi * radius * 3.0), 1.0, 0.1) << radius;
-  pass.of_class[std::size_t(LineClass::kObject)] = 1.0;
-  EXPECT_GT(ink_of(4.0, true), ink_of(0.0, true) + 30.0);
+  for (const auto form : {OutlinePass::Form::kStrokes, OutlinePass::Form::kField}) {
+    pass.form = form;
+    pass.of_class[std::size_t(LineClass::kObject)] = 0.0;
+    const double give = form == OutlinePass::Form::kField ? 0.4 : 0.1;  // a field is wider along slanting borders
+    for (const double radius : {2.0, 3.0, 4.0}) EXPECT_EQ(ink_of(radius, false), 0.0) << radius;
+    for (const double radius : {6.0, 12.0, 30.0})
+      EXPECT_NEAR(ink_of(radius, false) / (2.0 * std::numbers::pi * radius * 3.0), 1.0, give) << radius;
+    pass.of_class[std::size_t(LineClass::kObject)] = 1.0;
+    EXPECT_GT(ink_of(4.0, true), ink_of(0.0, true) + 30.0);
+  }
 }
 
 TEST(Outline, MaterialsAndBaseColoursHaveBorders) {
@@ -391,9 +396,13 @@ OutlinePass LinesBetweenObjects() {
   return pass;
 }
 
+class OutlineForm : public ::testing::TestWithParam<OutlinePass::Form> {};
+INSTANTIATE_TEST_SUITE_P(Either, OutlineForm,
+                         ::testing::Values(OutlinePass::Form::kStrokes, OutlinePass::Form::kField));
+
 // The wall is red, the floor green. Their line has paint of one of them, and where the wall hangs before the floor,
 // that decides.
-TEST(Outline, PaintOfALineBetweenTwoObjectsIsThatOfOne) {
+TEST_P(OutlineForm, HasPaintOfOneOfTwoObjectsAlongTheirLine) {
   for (const float away : {0.0f, 0.1f, -0.1f}) {
     const GuideSet guides = WallOnFloor(away);
     Picture picture = PlainPicture(kSide, kSide, 60000, 5000, 5000);
@@ -405,7 +414,7 @@ TEST(Outline, PaintOfALineBetweenTwoObjectsIsThatOfOne) {
       if (is_mixed) picture.rgba[4 * i] = picture.rgba[4 * i + 1] = i % 2 == 0 ? 20000 : 50000;
     }
     OutlinePass pass = LinesBetweenObjects();
-    pass.color = OutlinePass::Color::kPaint;
+    pass.color = OutlinePass::Color::kPaint, pass.form = GetParam();
     const Picture drawn = Finished(StepOf(pass), &guides, picture);
     int red = 0, green = 0;
     for (int i = 0; i < kSide * kSide; ++i) {
