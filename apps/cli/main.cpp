@@ -72,7 +72,7 @@ int Run(int argc, char** argv) {
   first_arena.initialize();
   SetIoThreads(globals.threads);
   const Expected<ExitCode> result = chosen();
-  if (!result) return Fail(result.error());
+  if (!result) return Fail({result.error().kind, OneLine(result.error().message)});
   if (std::fflush(stdout) != 0 || std::ferror(stdout)) return Fail(OutputError("cannot write to standard output"));
   return Code(*result);
 }

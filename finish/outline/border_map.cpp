@@ -4,7 +4,9 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -31,6 +33,8 @@ struct StepGive {
 constexpr StepGive kFullStepGive{1.0f, 1.0f, 1.5f};
 // A line of full steps goes on where one is more than this: along a fold that fades it would be dashed otherwise.
 constexpr StepGive kWeakStepGive{0.25f, 0.5f, 0.75f};
+// Of depths that were stored as half floats: their rounding alone makes steps of up to a half of the tolerance.
+constexpr float kWeakShareOfHalves = 0.6f;
 // From a line of no fewer borders, at the reference height.
 constexpr double kShortestSteps = 4.0;
 // Up to how much of the slope that its normal gives the farther pixel's surface may have: flat faces with the normals
@@ -44,6 +48,13 @@ constexpr int kLeastBeside = 1;  // pixels of the surface beside the two of a bo
 // Where a crease begins, the flatter of its sides turns by no more than the first share of its angle, the rounder one
 // by no more than the second.
 constexpr double kMostBeside = 0.25, kMostRound = 0.6;
+
+StepGive WeakStepGive(std::span<const float> depth) {
+  const auto has_more_bits = [](float one) { return (std::bit_cast<std::uint32_t>(one) & 0x1fffu) != 0; };
+  StepGive give = kWeakStepGive;
+  if (std::none_of(depth.begin(), depth.end(), has_more_bits)) give.share = kWeakShareOfHalves;
+  return give;
+}
 
 std::vector<glm::vec3> OklabOf(const GuideSet& guides) {
   std::vector<glm::vec3> colors(guides.pixel_count());
@@ -102,6 +113,7 @@ class Classifier {
         only_(only),
         guides_(guides),
         give_(guides, kDepthTolerance),
+        weak_(WeakStepGive(guides.Plane(Layer::kDepth))),
         crease_(pass.crease_angle < 180.0 ? glm::radians(pass.crease_angle) : std::numeric_limits<double>::infinity()),
         weak_crease_(crease_ * (IsOn(LineClass::kCrease) ? kCreaseGoesOn : 1.0)),
         owner_(guides),
@@ -116,6 +128,9 @@ class Classifier {
     if (IsOn(LineClass::kSuggestive)) valleys_.emplace(pass, guides, scale);
   }
 
+  // Of the tolerance, beyond which steps are weak ones.
+  double WeakShare() const { return double(weak_.share); }
+
   // Of `count` pairs from (first, first + step) on: 0 where Between gives 0 for sure. The rest as FindDoubts has it.
   void Doubts(std::size_t first, std::size_t step, std::size_t before, std::size_t after, std::size_t count,
               std::uint32_t* doubts) const {
@@ -126,7 +141,7 @@ class Classifier {
     FindDoubts({coverage_.data(), depth_.data(), object_.data(), or_object(material_), or_object(shadow_), normal(0),
                 normal(1), normal(2), give_.share, give_.fixed,
                 static_cast<float>(std::cos(std::min(weak_crease_, std::numbers::pi))),
-                IsOn(LineClass::kOcclusion) ? kWeakStepGive.share : 1.0f},
+                IsOn(LineClass::kOcclusion) ? weak_.share : 1.0f},
                first, step, before, after, count, doubts);
   }
 
@@ -142,7 +157,7 @@ class Classifier {
     if (!DepthGoesOn(before, p, q, after)) return CodeIfOn(LineClass::kOcclusion);
     const std::optional<LineClass> line = OnSurface(p, q);
     const std::uint8_t code = line ? CodeIfOn(*line) : IsOn(LineClass::kCrease) ? GoingOn(p, q) : 0;
-    const bool is_weak_step = IsOn(LineClass::kOcclusion) && !DepthGoesOn(before, p, q, after, kWeakStepGive);
+    const bool is_weak_step = IsOn(LineClass::kOcclusion) && !DepthGoesOn(before, p, q, after, weak_);
     return is_weak_step ? code | kWeakStep : code;
   }
 
@@ -252,6 +267,7 @@ class Classifier {
   std::span<const std::uint8_t> only_;
   const GuideSet& guides_;
   DepthTolerance give_;
+  StepGive weak_;
   double crease_, weak_crease_;  // radians
   BorderOwner owner_;
   TangentPlanes planes_;
@@ -326,7 +342,7 @@ BorderMap FindBorders(const OutlinePass& pass, const GuideSet& guides, double sc
   });
   if (IsOn(pass, LineClass::kCrease)) JoinCreases(guides.Plane(Layer::kObject), map);
   if (IsOn(pass, LineClass::kOcclusion)) {
-    const DepthTolerance least(guides, kDepthTolerance * double(kWeakStepGive.share));
+    const DepthTolerance least(guides, kDepthTolerance * classifier.WeakShare());
     JoinSteps(guides, only, std::max(kShortestSteps, kShortestSteps * scale), least, map);
   }
   return map;

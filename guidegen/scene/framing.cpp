@@ -198,8 +198,8 @@ Expected<PreparedView> PrepareView(Scene& scene, const std::string& camera_name,
     }
     prepared.camera = *found;
   } else if (!view && !scene.lost_camera.empty()) {
-    return InputError(scene.name + ": its active camera " + scene.lost_camera + ": give --camera NAME" +
-                      (scene.cameras.empty() ? "" : ", of " + Names(scene.cameras)) + ", or --view");
+    return InputError(scene.name + ": its active camera " + scene.lost_camera + ": give " +
+                      (scene.cameras.empty() ? "" : "--camera NAME, of " + Names(scene.cameras) + ", or ") + "--view");
   } else if (view || scene.cameras.empty()) {
     const ViewAngles angles = view.value_or(ViewAngles{});
     prepared.camera = FramingCamera(scene, angles, aspect);

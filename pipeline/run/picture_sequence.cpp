@@ -45,8 +45,7 @@ Status PictureSequence::Begin(const Sequence& sequence, const Size& size, const 
     MeasureFinishOf(styles_, guides, frame, context_, state_);
     if (MeasuresColors(styles_)) {  // of what is painted: the picture itself is made when its turn comes
       const auto painted = PaintInMemory(styles_, guides, found.source, one, context_, progress, state_);
-      const bool is_own = !painted && painted.error().kind == ErrorKind::kInput;  // as a picture of --over
-      if (!painted) return CannotMeasure(painted.error(), frame, is_own ? kColorsOption : "");
+      if (!painted) return CannotMeasure(painted.error(), frame, kColorsOption);  // as a picture of --over
     }
     if (!is_exposed()) return Ok();
     context_.Warn(
@@ -60,7 +59,8 @@ Status PictureSequence::Begin(const Sequence& sequence, const Size& size, const 
     failed_at = frame;
     const Expected<FrameGuides> found = ahead.at(frame, progress);
     if (!found) {
-      const bool is_own = ahead.is_own(frame, found.error());
+      if (found.error().kind != ErrorKind::kInput) return found.error();
+      const bool is_own = ahead.is_own(frame);
       return CannotMeasure(found.error(), frame, is_own ? OptionsThatGive(is_exposed(), "--exposure STOPS") : "");
     }
     if (choice.IsEnough(frame, *found->guides)) return measure(frame, *found);

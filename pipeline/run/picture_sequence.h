@@ -29,7 +29,7 @@ using GuidesAt = std::function<Expected<FrameGuides>(int frame, const Progress& 
 struct GuidesAhead {
   GuidesAt at;
   // Whether an error of `at` is the frame's own: its file is missing or broken.
-  std::function<bool(int frame, const Error& error)> is_own;
+  std::function<bool(int frame)> is_own;
 };
 
 // The styles, the request and the state of a sequence of pictures. Styles, request and context are borrowed.
@@ -39,7 +39,7 @@ class PictureSequence {
       : styles_(styles), request_(request), context_(context) {}
 
   // Exposure and finishing effects are measured on the first frame of the range that shows a surface, even where it is
-  // kept: a sequence that is resumed goes on as it began. `guides_at` is asked for frames of the range in their order,
+  // kept: a sequence that is resumed goes on as it began. `ahead` is asked for frames of the range in their order,
   // until one shows some. One picture underneath all frames must be there, and have the size of the first that is
   // known. `failed_at`: see SequenceWork::begin.
   Status Begin(const Sequence& sequence, const Size& size, const GuidesAhead& ahead, const Progress& progress,

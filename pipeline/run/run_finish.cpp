@@ -269,13 +269,11 @@ Status MeasureSequence(const FinishRequest& request, const std::vector<int>& fra
   const auto measure_colors = [&](int frame) -> Status {
     failed_at = frame;
     const Expected<FrameWrite> finished = Finish(request, names.At(frame, ""), context, progress, state);
-    if (finished) return Ok();
-    const bool is_own =
-        finished.error().kind == ErrorKind::kInput && !ReadPicture(names.picture.At(frame), request.view_layer);
-    return CannotMeasure(finished.error(), frame, is_own ? colors_option : "");
+    return finished ? Ok() : Status(CannotMeasure(finished.error(), frame, colors_option));
   };
   if (state.required.empty() || request.guides.empty()) return measure_colors(frames.front());
-  const std::string options = looks ? "--finish-measures" : colors_option;
+  std::string options = looks ? "--finish-measures" : "";
+  if (measures_colors) options += (looks ? " and " : "") + colors_option;
   const auto guides_at = [&](int frame) {
     const std::string file = names.guides.At(frame);
     return ReadGuides(file, ReadOptions(request, state.required, file, names.camera.At(frame)));
@@ -289,8 +287,7 @@ Status MeasureSequence(const FinishRequest& request, const std::vector<int>& fra
     failed_at = frame;
     const Expected<GuideSet> set = guides_at(frame);
     if (!set) {
-      const bool is_own = IsOfGuideFile(set.error(), names.guides.At(frame), state.required);
-      return CannotMeasure(set.error(), frame, is_own ? options : "");
+      return CannotMeasure(set.error(), frame, IsBroken(names.guides.At(frame)) ? options : "");
     }
     if (choice.IsEnough(frame, *set)) return measure(frame, *set);
   }

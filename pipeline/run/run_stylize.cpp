@@ -78,8 +78,8 @@ Expected<RunReport> StylizeSequence(const StylizeRequest& request, const Sequenc
     return pictures.Check(frame, output, larger.width, larger.height, fps, SamplesText(options),
                           GuidesText({{kSettingsKey, GuideSettings(options)}}, ""));
   };
-  // A frame that Blender or the scene cannot give; a limit of memory is that of all frames.
-  const GuidesAhead ahead{guides_ahead, [](int, const Error& error) { return error.kind == ErrorKind::kInput; }};
+  // What is wrong with a scene in one frame is most likely wrong in all.
+  const GuidesAhead ahead{guides_ahead, [](int) { return false; }};
   work.begin = [&](std::span<const int> frames, const Progress& progress, std::optional<int>& failed_at) -> Status {
     std::vector<int> wanted(frames.begin(), frames.end());
     const int first = sequence.frames.front();

@@ -77,21 +77,19 @@ Expected<RunReport> TransferSequence(const TransferRequest& request, const Seque
   SCUMBLE_ASSIGN(const FrameName camera, FrameName::Parse(request.camera));
   PictureSequence pictures(styles, request.picture, context);
   std::optional<GuideSet> guides;
-  std::string guides_file;        // that `guides` are from
-  std::optional<LayerSet> asked;  // of the file that was read last; none before it is read
-  MemoryNeed memory;              // with them
+  std::string guides_file;  // that `guides` are from
+  MemoryNeed memory;        // with them
   GuideCasters casters(context);
   const GuidesAt guides_at = [&](int frame, const Progress&) -> Expected<FrameGuides> {
     const std::string file = guides_name.At(frame);
     if (guides && file == guides_file) return FrameGuides{&*guides, {file, {}, {}, {}, memory, ChosenOf(request)}};
-    guides.reset(), asked.reset();
+    guides.reset();
     GuideReadOptions one = read;
     SCUMBLE_RETURN_IF_ERROR(RequireOfFile(styles, file, request.picture.GuideFactor(), one));
     SCUMBLE_RETURN_IF_ERROR(check_files());
     one.blender_camera = camera.At(frame);
     SCUMBLE_ASSIGN(memory, CheckMemoryOfFile(request, file, styles, one, true, context));
     Stopwatch watch;
-    asked = one.required;
     SCUMBLE_ASSIGN(guides, ReadGuides(file, one));
     context.EndStage("read");
     guides_file = file;
@@ -110,9 +108,7 @@ Expected<RunReport> TransferSequence(const TransferRequest& request, const Seque
                           SamplesAsked(info->header.attributes),
                           GuidesText(info->header.attributes, ChosenOf(request)));
   };
-  const GuidesAhead ahead{guides_at, [&](int frame, const Error& error) {
-                            return asked && IsOfGuideFile(error, guides_name.At(frame), *asked);
-                          }};
+  const GuidesAhead ahead{guides_at, [&](int frame) { return IsBroken(guides_name.At(frame)); }};
   work.begin = [&](std::span<const int> frames, const Progress& progress, std::optional<int>& failed_at) -> Status {
     if (!request.camera.empty() && !camera.has_place()) SCUMBLE_RETURN_IF_ERROR(ReadBlenderCamera(request.camera));
     // What is wrong with guides that serve all frames would be wrong in each.

@@ -238,7 +238,11 @@ Expected<SequenceTotals> RunSequence(const Sequence& sequence, const SequenceWor
     const double beginning = 1.0 / static_cast<double>(frames.size() + 1);
     std::optional<int> failed_at;
     const Status begun = work.begin(frames, Within(progress, 0.0, beginning), failed_at);
-    if (!begun && failed_at) counters.EndAt(*failed_at, begun.error());
+    if (!begun && failed_at && begun.error().kind == ErrorKind::kInput) {
+      // A frame that is kept has its place in the report: the first that is to be made stands for it.
+      const bool is_left = std::find(frames.begin(), frames.end(), *failed_at) != frames.end();
+      counters.EndAt(is_left ? *failed_at : frames.front(), begun.error());
+    }
     SCUMBLE_RETURN_IF_ERROR(begun);
     return MakeFrames(frames, sequence, work, counters, context, progress);
   };

@@ -63,7 +63,7 @@ struct SequenceTotals {
   std::vector<int> failed;
   std::string first_reason;  // why the first of them failed
   double total_ms = 0;
-  std::optional<Error> ended_by;  // before its last frame, after some were made or kept
+  std::optional<Error> ended_by;  // before its last frame
 
   std::size_t frames() const { return made + kept + failed.size(); }
 };
@@ -71,8 +71,8 @@ struct SequenceTotals {
 // Makes the frames one after the other. With `resume` those that `check` accepts are left as they are. A frame whose
 // input is missing or broken (kInput) does not stop the others: the totals name all of them. Any other error would come
 // again in every frame, and ends the sequence: the totals tell of the frames until then and of that one, where others
-// were made or kept, or `begin` failed at it. A frame
-// is encoded and written by another thread while the next one is made: two frames are in memory, never three, and where
+// were made or kept, or `begin` failed at it. If that one is kept, the first that was to be made is named instead.
+// A frame is encoded and written by another thread while the next one is made: two frames are in memory, never three, and where
 // one cannot be written, the next has been made in vain. With one thread, or where no other can be started, it is
 // written before the next one is begun. The reports and their order are the same.
 Expected<SequenceTotals> RunSequence(const Sequence& sequence, const SequenceWork& work,

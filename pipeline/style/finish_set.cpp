@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 #include <system_error>
+#include <tuple>
 #include <utility>
 
 #include "core/io/guide_file.h"
@@ -344,19 +345,18 @@ bool FrameToMeasure::IsEnough(int frame, const GuideSet& guides) {
 }
 
 Error CannotMeasure(const Error& error, int frame, const std::string& option) {
-  if (error.kind == ErrorKind::kCancelled) return error;
+  if (error.kind != ErrorKind::kInput) return error;
   const std::string text = fmt::format("{}; all frames are painted by what frame {} shows", error.message, frame);
   return {error.kind, option.empty() ? text : text + ": fix it, or give " + option};
 }
 
-bool IsOfGuideFile(const Error& error, const std::string& file, const LayerSet& required) {
-  if (error.kind != ErrorKind::kInput) return false;
-  const auto info = InspectGuides(file);
+bool IsBroken(const std::string& guides) {
+  const auto info = InspectGuides(guides);
   if (!info) return true;
-  LayerSet there;
-  for (const auto& [view_layer, layers] : info->layers) there.Add(layers);
-  return std::none_of(AllLayers().begin(), AllLayers().end(),
-                      [&](const LayerInfo& layer) { return required.Has(layer.layer) && !there.Has(layer.layer); });
+  if (info->layers.empty()) return false;
+  GuideReadOptions what_it_has;
+  std::tie(what_it_has.view_layer, what_it_has.required) = *info->layers.begin();
+  return !ReadGuides(guides, what_it_has);
 }
 
 std::string NothingToMeasure(const std::vector<int>& frames, const std::string& options) {

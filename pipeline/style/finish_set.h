@@ -118,9 +118,8 @@ struct FrameToMeasure {
 // otherwise than with it. `option`: what gives what was to be measured; empty where the error would come all the same.
 Error CannotMeasure(const Error& error, int frame, const std::string& option);
 
-// Whether the error of reading a guide file is that file's own: it is missing or broken, rather than without layers
-// that are required.
-bool IsOfGuideFile(const Error& error, const std::string& file, const LayerSet& required);
+// Whether a guide file cannot be read, not even for the layers that it has. Reads them.
+bool IsBroken(const std::string& guides);
 
 // The warning of a sequence in which no frame shows a surface. `options`: those that give what was to be measured.
 std::string NothingToMeasure(const std::vector<int>& frames, const std::string& options);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -131,6 +132,24 @@ TEST(OutlineSteps, TheLineOfAFoldThatFadesHasNoGaps) {
     EXPECT_EQ(std::count(ink.begin() + std::ptrdiff_t(end), ink.end(), 0.0), std::ptrdiff_t(ink.size() - end)) << climb;
     const double across = 2.0 * std::sqrt(1.0 + double(climb) * double(climb));
     for (std::size_t x = 2; x + 3 < end; ++x) EXPECT_NEAR(ink[x], across, 0.4) << climb << ' ' << x;
+  }
+}
+
+// Depths as half floats lie on terraces, whose borders are no steps, wherever a line ends.
+TEST(OutlineSteps, RoundingToHalfFloatsHasNoLines) {
+  constexpr float kFirst = 4.0f, kColumnsPerStep = kColumns / kFirst;
+  for (const float tilt : {0.1f, 0.3f, 0.6f}) {
+    for (const float turn : {0.0f, 0.5f, -0.7f}) {
+      GuideSet guides = GuidesOf(kColumns, kRows, [&](glm::vec2 at) {
+        const float fold = at.y < kRows / 2.0f ? (kFirst - at.x / kColumnsPerStep) * kFullStep : 0.0f;
+        const float slope = tilt * (at.x / kColumns + turn * at.y / kRows);
+        return SeenPoint{true, {0, 0, 1}, kDistance + slope + fold, 1.0f};
+      });
+      for (float& depth : guides.Plane(Layer::kDepth))
+        depth = std::bit_cast<float>(std::bit_cast<std::uint32_t>(depth) & ~0x1fffu);
+      const std::vector<double> ink = InkOfSteps(guides);
+      for (std::size_t x = 0; x < ink.size(); ++x) EXPECT_LE(ink[x], 2.5) << tilt << ' ' << turn << ' ' << x;
+    }
   }
 }
 

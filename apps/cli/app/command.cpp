@@ -73,9 +73,14 @@ void ConnectToTerminal(Globals& globals) {
 
 std::string OneLine(const std::string& text) {
   std::string line;
-  for (const char c : text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
     const auto byte = static_cast<unsigned char>(c);
-    if (byte >= 0x20 && byte != 0x7f) {
+    const auto next = static_cast<unsigned char>(i + 1 < text.size() ? text[i + 1] : 0);
+    if (byte == 0xc2 && next >= 0x80 && next < 0xa0) {  // U+0080 to U+009F in UTF-8
+      line += fmt::format("\\u{:04x}", next);
+      ++i;
+    } else if (byte >= 0x20 && byte != 0x7f) {
       line += c;
     } else if (c == '\n' || c == '\r' || c == '\t') {
       line += c == '\n' ? "\\n" : c == '\r' ? "\\r" : "\\t";

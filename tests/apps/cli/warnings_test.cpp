@@ -70,6 +70,11 @@ TEST_F(CliWarnings, NamesWithLineBreaksStayOnTheirLine) {
   const CommandResult run =
       RunOk({"stylize", "s.glb", "--size", "8", "--style", "style", "--assign", "Nobody=style", "-o", "p.png"});
   EXPECT_TRUE(Contains(run.Warning(), "its objects are Two\\nlines; its materials")) << run.err;
+  b.Append("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.1}}}});
+  b.Root({{"name", "Evil\n\x1b]0;\xc2\x9b"}, {"camera", 0}});
+  WriteGlb("s.glb", b);
+  ExpectError({"guidegen", "s.glb", "--camera", "Nope", "--size", "8", "-o", "g.exr"}, 2,
+              {"there are: 'Evil\\n\\x1b]0;\\u009b"});
 }
 
 TEST_F(CliWarnings, AThingMayBeHiddenByAScaleOfZero) {
