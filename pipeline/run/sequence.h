@@ -72,9 +72,9 @@ struct SequenceTotals {
 // input is missing or broken (kInput) does not stop the others: the totals name all of them. Any other error would come
 // again in every frame, and ends the sequence: the totals tell of the frames until then and of that one, where others
 // were made or kept, or `begin` failed at it. If that one is kept, the first that was to be made is named instead.
-// A frame is encoded and written by another thread while the next one is made: two frames are in memory, never three, and where
-// one cannot be written, the next has been made in vain. With one thread, or where no other can be started, it is
-// written before the next one is begun. The reports and their order are the same.
+// A frame is encoded and written by another thread while the next one is made: two frames are in memory, never three,
+// and where one cannot be written, the next has been made in vain. With one thread, or where no other can be started,
+// it is written before the next one is begun. The reports and their order are the same.
 Expected<SequenceTotals> RunSequence(const Sequence& sequence, const SequenceWork& work,
                                      const SequenceListener& listener, const RunContext& context,
                                      const Progress& progress);
