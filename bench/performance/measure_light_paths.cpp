@@ -19,7 +19,9 @@ Style LightPathStyle() {
   for (const char* layer : {"LDE", "LSE", "LDDE", "LD12E"}) {
     settings.push_back(std::string("guide_weights.lpe.") + layer + "=0.5");
   }
-  settings.insert(settings.end(), {"edge_aware=false", "reference_height=0", "paper=\"\""});
+  // The keys by which the style is painted may change; the figure is to be of the search.
+  settings.insert(settings.end(), {"threshold=0.25", "blend_radius=1", "hybrid=0", "variety=0", "edge_aware=false",
+                                   "reference_height=0", "paper=\"\""});
   for (std::string& setting : settings) setting.insert(0, "transfer.");
   return OrStop(LoadStyle(std::string(SCUMBLE_SOURCE_DIR) + "/exemplars/scene-oil", settings));
 }
