@@ -6,6 +6,8 @@
     /usr/bin/python3 bench/paint_pairs.py --draw later       # pictures, sheets without names, into out/paint-pairs/
     /usr/bin/python3 bench/paint_pairs.py --measure later    # figures of what is drawn (build/bench/paint_figures)
     /usr/bin/python3 bench/paint_pairs.py --read later FILE  # a reading: {"121": ["A", "why"], …}
+    /usr/bin/python3 bench/paint_pairs.py --table            # the first table of docs/paint-texture.md, of today's styles
+    /usr/bin/python3 bench/paint_pairs.py --failures         # the picture of that page: where the measure is wrong
 
 Sets of pairs of ways to draw a painting on a scene, good ones and deliberately bad ones: 120 *open* pairs by which the
 measure was chosen, 80 *locked* ones that were kept away until it was, and *later* ones that were drawn and read long
@@ -26,6 +28,8 @@ sys.dont_write_bytecode = True
 
 import numpy as np
 import OpenImageIO as oiio
+
+from marked_pages import replaced
 
 ROOT = Path(__file__).resolve().parent.parent
 PAIRS = ROOT / "bench/paint_pairs.json"
@@ -65,10 +69,14 @@ WAYS = {  # options of `scumble transfer`; a name in capitals: what is done to t
     "flat fill": ["method=litsphere", "FLAT"],
     "blurred": ["BLUR"],
     "noise of the right spectrum": ["method=litsphere", "NOISE"],
-    "mosaic": ["threshold=0.6", "blend_radius=0"],
+    "mosaic": ["threshold=0.6", "blend_radius=0", "hybrid=0"],
     "repeats": ["method=litsphere", "REPEATS"],
 }
 GREY = 0.93
+TABLE = [("oil", "suzanne"), ("graphite", "toys"), ("watercolour", "snail")]
+TABLE_WAYS = ["as it is", "another seed", "Lit Sphere", "mosaic", "hybrid 8", "threshold 0.4", "threshold 0.03",
+              "blend_radius 8", "blend_radius 0", "strokes of half the size", "strokes of twice the size"]
+FAILURES = [193, 285, 263, 237, 219, 290]  # pairs of styles that are still as they were read
 
 
 def lot(*parts):
@@ -302,6 +310,7 @@ def measure(pairs, of):
             sys.exit(done.stderr)
         for line in map(json.loads, done.stdout.splitlines()):
             way = files[line.pop("picture")]
+            del line["halves"]
             figures[key_of(style, scene, crop) + way] = {k: round(v, 4) for k, v in line.items()}
         print(style, scene, *crop, flush=True)
     rows = ",\n ".join("%s: %s" % (json.dumps(name), json.dumps(of)) for name, of in sorted(figures.items()))
@@ -354,12 +363,72 @@ def report(pairs, of):
         agreement(pairs, of)
 
 
+def table_column(style, scene):
+    """Figures of one column, at 960×540: halves of the exemplar, the ways, and what is done to the style's picture."""
+    files = [picture_file(style, scene, way, 540) for way in TABLE_WAYS]
+    own = read(files[0])
+    for name, pixels in (("blurred by 1 pixel", blurred(own.astype(np.float64), 1)),
+                         ("blurred by 3 pixels", blurred(own.astype(np.float64), 3)),
+                         ("grey noise, deviation 0.05", with_noise(own, 0.05))):
+        files.append(OUT / "pictures" / ("%s-%s-%s.png" % (style, scene, name.replace(" ", "_"))))
+        write(files[-1], pixels)
+    done = subprocess.run([str(ROOT / "build/bench/paint_figures"), str(ROOT / "exemplars" / style),
+                           str(guides(style, scene, 540)), *map(str, files)], capture_output=True, text=True)
+    if done.returncode != 0:
+        sys.exit(done.stderr)
+    figures = [json.loads(line) for line in done.stdout.splitlines()]
+    return [figures[0]["halves"]] + [figure["paint"] for figure in figures]
+
+
+def with_noise(pixels, deviation):
+    noise = np.random.default_rng(1).normal(0.0, deviation, pixels.shape[:2])[..., None]
+    return np.concatenate([np.clip(pixels[..., :3] + noise, 0.0, 1.0), pixels[..., 3:]], -1)
+
+
+def write_table():
+    columns = [table_column(style, scene) for style, scene in TABLE]
+    names = (["halves of the exemplar", "**the style**"] + TABLE_WAYS[1:]
+             + ["blurred by 1 pixel", "blurred by 3 pixels", "grey noise, deviation 0.05"])
+    rows = ["| | " + " | ".join("%s, %s" % column for column in TABLE) + " |", "|---" * (len(TABLE) + 1) + "|"]
+    for name, figures in zip(names, zip(*columns)):
+        cells = ["**%.3f**" % f if "**" in name else "%.3f" % f for f in figures]
+        rows.append("| %s | %s |" % (name, " | ".join(cells)))
+    page = ROOT / "docs/paint-texture.md"
+    page.write_text(replaced(page, page.read_text(encoding="utf-8"), "ways", "bench/paint_pairs.py --table",
+                             "\n".join(rows) + "\n"), encoding="utf-8")
+
+
+def draw_failures(pairs):
+    """Pairs in which all readers chose the picture with the larger figure: exemplar, their choice, the other."""
+    figures = json.loads(FIGURES.read_text(encoding="utf-8"))
+    rows, texts, top = [], [], 0
+    for number in FAILURES:
+        pair = dict(pairs[number - 1])
+        chosen = majority(pair)
+        pair["A"], pair["B"] = pair[chosen], pair["B" if chosen == "A" else "A"]
+        row, a, b = draw_row(pair)
+        key = key_of(pair["style"], pair["scene"], pair["crop"])
+        for words, x in (("%s, %s" % (pair["style"], pair["scene"]), 4),
+                         ("chosen: %s, %.3f" % (pair["A"], figures[key + pair["A"]]["texture"]), a),
+                         ("not: %s, %.3f" % (pair["B"], figures[key + pair["B"]]["texture"]), b)):
+            texts += ["--text:x=%d:y=%d:size=18:font=DejaVuSans:color=0.1,0.1,0.1" % (x + 4, top + 19), words]
+        rows.append(row)
+        top += row.shape[0]
+    width = max(row.shape[1] for row in rows)
+    rows = [np.pad(row, ((0, 0), (0, width - row.shape[1]), (0, 0)), constant_values=0.97) for row in rows]
+    write(OUT / "sheet.png", np.concatenate(rows, 0))
+    subprocess.run(["oiiotool", "--nosoftwareattrib", str(OUT / "sheet.png"), *texts, "-d", "uint8", "--compression",
+                    "jpeg:78", "-o", str(ROOT / "docs/gallery/paint-failures.jpg")], check=True)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--choose", choices=SETS, help="pick the pairs of a set anew and forget their votes")
     parser.add_argument("--draw", choices=SETS, help="draw pictures and sheets of these pairs")
     parser.add_argument("--measure", choices=SETS, help="measure their pictures")
     parser.add_argument("--read", nargs=2, metavar=("SET", "FILE"), help="add one reading of a set")
+    parser.add_argument("--table", action="store_true", help="measure the first table of docs/paint-texture.md")
+    parser.add_argument("--failures", action="store_true", help="draw the picture of docs/paint-texture.md")
     parser.add_argument("--force", action="store_true", help="choose, draw or measure a set that has votes")
     options = parser.parse_args()
     pairs = json.loads(PAIRS.read_text(encoding="utf-8"))
@@ -374,6 +443,10 @@ def main():
         measure(pairs, options.measure)
     elif options.read:
         add_reading(pairs, *options.read)
+    elif options.table:
+        write_table()
+    elif options.failures:
+        draw_failures(pairs)
     else:
         for of in SETS:
             report(pairs, of)
