@@ -6,7 +6,7 @@
     /usr/bin/python3 bench/paint_pairs.py --draw later       # pictures, sheets without names, into out/paint-pairs/
     /usr/bin/python3 bench/paint_pairs.py --measure later    # figures of what is drawn (build/bench/paint_figures)
     /usr/bin/python3 bench/paint_pairs.py --read later FILE  # a reading: {"121": ["A", "why"], …}
-    /usr/bin/python3 bench/paint_pairs.py --table            # the first table of docs/paint-texture.md, of today's styles
+    /usr/bin/python3 bench/paint_pairs.py --table            # the table of docs/paint-texture.md, of today's styles
     /usr/bin/python3 bench/paint_pairs.py --failures         # the picture of that page: where the measure is wrong
 
 Sets of pairs of ways to draw a painting on a scene, good ones and deliberately bad ones: 120 *open* pairs by which the
