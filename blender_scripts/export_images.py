@@ -21,7 +21,7 @@ COPY = "scumble_copy"  # properties of an image, by kind: the copy that stands f
 KIND = "scumble_kind"  # properties of an image, by use: kind_needed's answer
 RANGE = "scumble_range"  # property of a copy: by what its numbers must be multiplied
 MOST_PIXELS = 8192 * 8192  # of all tiles together
-CLIPPED, CLIPPED_SHARE = 1.02, 1e-3  # a colour beyond it is clipped visibly; more of the pixels are worth a word
+CLIPPED, CLIPPED_SHARE = (-0.02, 1.02), 1e-3  # beyond them a value is clipped visibly; more of the pixels are told
 WHITE, NEUTRAL = (1.0, 1.0, 1.0, 1.0), (0.5, 0.5, 1.0, 1.0)  # where there is no tile; as a normal, it bends nothing
 ROWS = 128  # that are converted at once
 PACKED = {"CHANNEL_PACKED", "NONE"}  # alpha modes with colours that do not depend on alpha
@@ -63,6 +63,12 @@ def quantised(values, bits):
         return (np.clip(np.nan_to_num(values), 0.0, 1.0) * most + 0.5).astype(np.uint8 if bits == 8 else np.uint16)
 
 
+@functools.lru_cache
+def table_of_codes():
+    """The linear number with 16 bits of each one in sRGB with 16 bits."""
+    return quantised(decoded(np.arange(1 << 16) / 65535), 16)
+
+
 @dataclass
 class Look:
     """What pixels mean, and what becomes of them."""
@@ -101,11 +107,14 @@ def converted(pixels, look):
         colors = matched(pixels[rows], look)
         if table is not None:
             result[rows, :, :3] = table.take(colors.astype(np.float32, copy=False).view(np.uint32) >> 13)
-            most = np.maximum(np.maximum(colors[..., 0], colors[..., 1]), colors[..., 2])
-            clipped += np.count_nonzero(most > CLIPPED)
+            clipped += np.count_nonzero((colors > CLIPPED[1]).any(axis=2))
+        elif look.colour or look.is_linear:
+            values = (colors - look.low) / look.range
+            result[rows, :, :3] = quantised(values, look.bits)
+            if look.bits == 16:
+                clipped += np.count_nonzero(((values < CLIPPED[0]) | (values > CLIPPED[1])).any(axis=2))
         else:
-            values = colors if look.colour or look.is_linear else decoded(colors)
-            result[rows, :, :3] = quantised((values - look.low) / look.range, look.bits)
+            result[rows, :, :3] = table_of_codes().take(quantised(colors, 16))
         if look.keeps_alpha:
             result[rows, :, 3] = quantised(pixels[rows, :, 3], look.bits)
     return result, clipped
@@ -255,6 +264,7 @@ def join_tiles(image, kind, alpha):
     """One picture of all tiles: (its pixels, the share that is clipped, what has to be said); None without any."""
     places, left, low, columns, rows = tile_grid(image)
     tiles, lost, lines = {}, [], []
+    kind = "data" if kind == "height" else kind  # all tiles have one range
     for number in sorted(places):
         tile = read_tile(image, number, MOST_PIXELS // (columns * rows), kind, alpha)
         if tile is None:
@@ -290,6 +300,16 @@ def stretched(pixels, height, width, bits):
         return pixels
     down, across = (np.arange(size) * pixels.shape[axis] // size for axis, size in ((0, height), (1, width)))
     return pixels[down][:, across]
+
+
+def turned_fault(node):
+    """glTF cannot turn coordinates and then scale them unevenly, as tiles need it that are no square together."""
+    source = previous(node.inputs["Vector"])
+    _, _, _, columns, rows = tile_grid(node.image)
+    if source is None or source.node.type != "MAPPING" or columns == rows:
+        return None
+    turn = source.node.inputs["Rotation"].default_value[2]
+    return f"node '{node.name}' with {columns} x {rows} tiles at turned coordinates" if abs(turn) > 1e-6 else None
 
 
 def aim_at_tiles(node, image):
@@ -350,8 +370,8 @@ def make(image, kind, alpha):
         if image.source == "FILE" and not image.is_dirty:
             image.buffers_free()  # the original is not needed any more
     if clipped > CLIPPED_SHARE:
-        result.lines.append(f"image '{image.name}': {100 * clipped:.2g}% of its pixels have colours above 1, which are "
-                            "taken for 1")
+        what = "colours above 1, which are taken for 1" if kind == "colour" else "numbers beyond 0 and 1, which are cut"
+        result.lines.append(f"image '{image.name}': {100 * clipped:.2g}% of its pixels have {what}")
     write_png(result.path, pixels)
     return result
 
@@ -373,6 +393,9 @@ def fault(node, use, unsupported):
     """The fault in an image texture; None where glTF has it, or now has a copy of its image. `use`: "colour", "data",
     "height", "alpha", or "any" of colours and numbers."""
     if node.image is not None and place_fault(node) is None:
+        turned = turned_fault(node) if node.image.source == "TILED" else None
+        if turned is not None:
+            return turned
         alpha, kind = bool(node.get(READS_ALPHA)), kind_needed(node.image, use)
         if kind is None and use == "alpha":  # one picture with the colours
             node.image = node.image.get(f"{COPY}.colour.1") or node.image

@@ -52,7 +52,8 @@ LOST_IMAGES = ["image 'bright.exr': 81% of its pixels have colours above 1",
                "image 'large': its tiles are shrunk to 8 x 8 pixels, because 2 x 1 of them",
                "material 'boxed': node 'Image Texture' with BOX projection",
                "material 'damaged': node 'Image Texture' with an image in Linear",
-               "material 'frames': node 'Image Texture' with an image of source SEQUENCE"]
+               "material 'frames': node 'Image Texture' with an image of source SEQUENCE",
+               "material 'turned': node 'Image Texture' with 2 x 1 tiles at turned coordinates"]
 FEW_PIXELS = ("import sys; sys.dont_write_bytecode = True; sys.path.insert(0, {!r}); import export_images; "
               "export_images.MOST_PIXELS = 128")
 

@@ -223,6 +223,8 @@ def build_lost(folder):
     plane("Damaged", 3, textured("damaged", damaged))
     large = tiles(folder, "large", (1001, 1002), space="sRGB", sizes=(16,))
     spread(plane("Large", 4, textured("large", large)), 2)
+    turned = ("Mapping", {"Rotation": (0, 0, 0.5)}), ("TexCoord", {})
+    spread(plane("Turned", 6, textured("turned", large, *turned)), 2)
     boxed = textured("boxed", bright)
     boxed.node_tree.nodes["Image Texture"].projection = "BOX"
     plane("Boxed", 5, boxed)
