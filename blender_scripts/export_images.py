@@ -51,7 +51,7 @@ def decoded(values):
 
 @functools.lru_cache
 def table_of_floats():
-    """The byte in sRGB of each linear float, by the float's first 19 bits: within 1/20 of a byte's step."""
+    """The byte in sRGB of each linear float, by the float's first 19 bits: within 1/16 of a byte's step."""
     floats = (np.arange(1 << 19, dtype=np.uint32) << 13 | 1 << 12).view(np.float32)
     with np.errstate(invalid="ignore"):
         return quantised(encoded(np.clip(np.nan_to_num(floats, nan=0.0, posinf=1.0), 0.0, 1.0)), 8)
