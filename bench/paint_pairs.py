@@ -7,6 +7,7 @@
     /usr/bin/python3 bench/paint_pairs.py --measure later    # figures of what is drawn (build/bench/paint_figures)
     /usr/bin/python3 bench/paint_pairs.py --read later FILE  # a reading: {"121": ["A", "why"], …}
     /usr/bin/python3 bench/paint_pairs.py --table            # the table of docs/paint-texture.md, of today's styles
+    /usr/bin/python3 bench/paint_pairs.py --styles           # its table of votes for and against new keys
     /usr/bin/python3 bench/paint_pairs.py --failures         # the picture of that page: where the measure is wrong
 
 Sets of pairs of ways to draw a painting on a scene, good ones and deliberately bad ones: 120 *open* pairs by which the
@@ -77,7 +78,9 @@ GREY = 0.93
 TABLE = [("oil", "suzanne"), ("graphite", "toys"), ("watercolour", "snail")]
 TABLE_WAYS = ["as it is", "another seed", "Lit Sphere", "mosaic", "hybrid 8", "threshold 0.4", "threshold 0.03",
               "blend_radius 8", "blend_radius 0", "strokes of half the size", "strokes of twice the size"]
-FAILURES = [193, 285, 263, 237, 219]  # pairs of styles that are still as they were read
+FAILURES = [193, 285, 263, 237, 219]
+KEYS_THEN = {"gouache": ["threshold=0.1", "blend_radius=1"],  # that changed after these pairs were read
+             "graphite": ["threshold=0.17", "hybrid=0"]}
 
 
 def lot(*parts):
@@ -194,15 +197,15 @@ def guides(style, scene, height):
     return file
 
 
-def picture_file(style, scene, way, height):
-    """Without paper."""
-    name = "%s-%s-%d-%s" % (style, scene, height, way.replace(" ", "_").replace(",", ""))
+def picture_file(style, scene, way, height, keys=()):
+    """Without paper. `keys`: of the style, before those of the way."""
+    name = "-".join([style, scene, str(height), way.replace(" ", "_").replace(",", ""), *keys])
     file = OUT / "pictures" / (name + ".png")
     if not file.exists():
         file.parent.mkdir(parents=True, exist_ok=True)
         marks = [part for part in WAYS[way] if part.isupper()]
         options = ["--set", "transfer.paper="]
-        for part in WAYS[way]:
+        for part in [*keys, *WAYS[way]]:
             if "=" in part:
                 options += ["--set", "transfer." + part]
             elif not part.isupper():
@@ -218,9 +221,9 @@ def picture_file(style, scene, way, height):
     return file
 
 
-def picture(style, scene, way, height):
+def picture(style, scene, way, height, keys=()):
     """On light grey: (height, width, 3)."""
-    pixels = read(picture_file(style, scene, way, height))
+    pixels = read(picture_file(style, scene, way, height, keys))
     alpha = pixels[..., 3:]
     return pixels[..., :3] * alpha + GREY * (1.0 - alpha)
 
@@ -245,13 +248,13 @@ def exemplar_part(style, height, size):
     return panel
 
 
-def draw_row(pair):
+def draw_row(pair, keys=()):
     if pair["crop"]:
         x, y = pair["crop"]
-        sides = [picture(pair["style"], pair["scene"], pair[s], 540)[y:y + CROP, x:x + CROP] for s in "AB"]
+        sides = [picture(pair["style"], pair["scene"], pair[s], 540, keys)[y:y + CROP, x:x + CROP] for s in "AB"]
         panels = [exemplar_part(pair["style"], 540, CROP)] + sides
     else:
-        sides = [picture(pair["style"], pair["scene"], pair[s], 360) for s in "AB"]
+        sides = [picture(pair["style"], pair["scene"], pair[s], 360, keys) for s in "AB"]
         panels = [exemplar_part(pair["style"], 360, 360)] + sides
     gap = np.full((panels[0].shape[0], 8, 3), 0.97)
     row = np.concatenate([panels[0], gap, panels[1], gap, panels[2]], 1)
@@ -400,6 +403,27 @@ def write_table():
                              "\n".join(rows) + "\n"), encoding="utf-8")
 
 
+def write_styles():
+    """Votes for new keys or another painting of a style against the old, of all that were tried."""
+    tried = {}
+    for name in ("tuned", "repainted", "retuned"):
+        for pair in json.loads((ROOT / ("bench/%s_pairs.json" % name)).read_text(encoding="utf-8"))["pairs"]:
+            change = "`%s`" % "`, `".join(pair["new"]) if "new" in pair else "keys" if name == "tuned" else "28 November"
+            votes = [reading["vote"] for reading in pair["readings"]]
+            tally = tried.setdefault(pair["style"], {}).setdefault(change.replace("=", " = "), [0, 0, 0])
+            for i, vote in enumerate(("new", "old", "=")):
+                tally[i] += votes.count(vote)
+    rows = ["| style | what was new | new : old, even |", "|---|---|---|"]
+    for style, changes in sorted(tried.items()):
+        for change, (new, old, even) in changes.items():
+            taken = "**" if new >= 4 * old else ""
+            count = "%s%d : %d%s" % (taken, new, old, taken)
+            rows.append("| %s | %s | %s%s |" % (style, change, count, ", %d" % even if even else ""))
+    page = ROOT / "docs/paint-texture.md"
+    page.write_text(replaced(page, page.read_text(encoding="utf-8"), "styles", "bench/paint_pairs.py --styles",
+                             "\n".join(rows) + "\n"), encoding="utf-8")
+
+
 def draw_failures(pairs):
     """Pairs in which all readers chose the picture with the larger figure: exemplar, their choice, the other."""
     figures = json.loads(FIGURES.read_text(encoding="utf-8"))
@@ -408,7 +432,7 @@ def draw_failures(pairs):
         pair = dict(pairs[number - 1])
         chosen = majority(pair)
         pair["A"], pair["B"] = pair[chosen], pair["B" if chosen == "A" else "A"]
-        row, a, width = draw_row(pair)
+        row, a, width = draw_row(pair, KEYS_THEN.get(pair["style"], ()))
         key = key_of(pair["style"], pair["scene"], pair["crop"])
         for words, x in (("%s, %s" % (pair["style"], pair["scene"]), 4),
                          ("chosen: %s, %.3f" % (pair["A"], figures[key + pair["A"]]["texture"]), a),
@@ -417,8 +441,9 @@ def draw_failures(pairs):
         rows.append(row)
         top += row.shape[0]
     write(OUT / "sheet.png", np.concatenate(rows, 0))
-    subprocess.run(["oiiotool", "--nosoftwareattrib", str(OUT / "sheet.png"), *texts, "--resize", "1240x0", "-d", "uint8",
-                    "--compression", "jpeg:72", "-o", str(ROOT / "docs/gallery/paint-failures.jpg")], check=True)
+    subprocess.run(["oiiotool", "--nosoftwareattrib", str(OUT / "sheet.png"), *texts, "--resize", "1240x0",
+                    "-d", "uint8", "--compression", "jpeg:66", "-o", str(ROOT / "docs/gallery/paint-failures.jpg")],
+                   check=True)
 
 
 def main():
@@ -428,6 +453,7 @@ def main():
     parser.add_argument("--measure", choices=SETS, help="measure their pictures")
     parser.add_argument("--read", nargs=2, metavar=("SET", "FILE"), help="add one reading of a set")
     parser.add_argument("--table", action="store_true", help="measure the first table of docs/paint-texture.md")
+    parser.add_argument("--styles", action="store_true", help="count the votes for and against new keys of styles")
     parser.add_argument("--failures", action="store_true", help="draw the picture of docs/paint-texture.md")
     parser.add_argument("--force", action="store_true", help="choose, draw or measure a set that has votes")
     options = parser.parse_args()
@@ -445,6 +471,8 @@ def main():
         add_reading(pairs, *options.read)
     elif options.table:
         write_table()
+    elif options.styles:
+        write_styles()
     elif options.failures:
         draw_failures(pairs)
     else:
