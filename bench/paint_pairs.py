@@ -408,7 +408,8 @@ def write_styles():
     tried = {}
     for name in ("tuned", "repainted", "retuned"):
         for pair in json.loads((ROOT / ("bench/%s_pairs.json" % name)).read_text(encoding="utf-8"))["pairs"]:
-            change = "`%s`" % "`, `".join(pair["new"]) if "new" in pair else "keys" if name == "tuned" else "28 November"
+            by_set = "keys" if name == "tuned" else "28 November"
+            change = "`%s`" % "`, `".join(pair["new"]) if "new" in pair else by_set
             votes = [reading["vote"] for reading in pair["readings"]]
             tally = tried.setdefault(pair["style"], {}).setdefault(change.replace("=", " = "), [0, 0, 0])
             for i, vote in enumerate(("new", "old", "=")):
