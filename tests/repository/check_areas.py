@@ -43,7 +43,7 @@ def main():
     for area in areas(source):
         tests = selected(source, build, area)
         if not tests:
-            faults.append(f"make check CHECK={area} " + ("finds no test" if tests is not None else "is green without one"))
+            faults.append(f"make check CHECK={area} {'is green without a test' if tests is None else 'finds no test'}")
             continue
         count += len(tests)
         built = needs(build, f"tests/check_{area}") or set()
