@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/core/io/true_camera.h"
+#include "tests/core/io/blender/true_camera.h"
 #include "tests/support/refusal.h"
 
 namespace scumble {

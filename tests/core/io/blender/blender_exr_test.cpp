@@ -19,7 +19,7 @@
 #include "core/io/file/atomic_file.h"
 #include "core/io/guide_file.h"
 #include "core/io/guides/cryptomatte.h"
-#include "tests/core/io/true_camera.h"
+#include "tests/core/io/blender/true_camera.h"
 #include "tests/support/refusal.h"
 #include "tests/support/temporary_folder.h"
 
