@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "tests/finish/outline_fixtures.h"
+#include "tests/finish/outline/outline_fixtures.h"
 
 namespace scumble {
 namespace {
