@@ -11,7 +11,7 @@
 #include <sstream>
 
 #include "measure/tradeoff/parts.h"
-#include "tests/measure/trade_report_fixtures.h"
+#include "tests/measure/tradeoff/trade_report_fixtures.h"
 
 namespace scumble {
 namespace {

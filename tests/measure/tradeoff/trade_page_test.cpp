@@ -6,7 +6,7 @@
 #include <map>
 #include <set>
 
-#include "tests/measure/trade_report_fixtures.h"
+#include "tests/measure/tradeoff/trade_report_fixtures.h"
 
 namespace scumble {
 namespace {

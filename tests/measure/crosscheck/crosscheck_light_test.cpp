@@ -7,7 +7,7 @@
 
 #include "core/image/hash.h"
 #include "measure/crosscheck/html.h"
-#include "tests/measure/crosscheck_fixtures.h"
+#include "tests/measure/crosscheck/crosscheck_fixtures.h"
 
 namespace scumble {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "measure/crosscheck/baseline.h"
-#include "tests/measure/crosscheck_fixtures.h"
+#include "tests/measure/crosscheck/crosscheck_fixtures.h"
 
 namespace scumble {
 namespace {
