@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "tests/apps/cli/painting/finish_harness.h"
+#include "tests/apps/cli/verbs/finish_harness.h"
 #include "tests/support/cli_harness.h"
 
 namespace scumble {

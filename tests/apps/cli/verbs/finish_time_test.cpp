@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/apps/cli/painting/finish_harness.h"
+#include "tests/apps/cli/verbs/finish_harness.h"
 #include "tests/support/cli_harness.h"
 #include "tests/support/gltf_builder.h"
 
