@@ -1,7 +1,7 @@
 // Files of the scene that other programs save.
 #include <gmock/gmock.h>
 
-#include "tests/apps/studio/session_fixture.h"
+#include "tests/apps/studio/session/session_fixture.h"
 #include "tests/support/gltf_builder.h"
 
 namespace scumble {

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "core/style/style_file.h"
-#include "tests/apps/studio/session_fixture.h"
+#include "tests/apps/studio/session/session_fixture.h"
 #include "tests/support/gltf_builder.h"
 
 namespace scumble {

@@ -7,7 +7,7 @@
 #include "core/io/file/zip_archive.h"
 #include "core/io/picture/open_raster.h"
 #include "core/style/style_file.h"
-#include "tests/apps/studio/session_fixture.h"
+#include "tests/apps/studio/session/session_fixture.h"
 
 namespace scumble {
 namespace {

@@ -13,7 +13,7 @@
 
 #include "apps/studio/http/event_stream.h"
 #include "apps/studio/http/message.h"
-#include "tests/apps/studio/raw_client.h"
+#include "tests/apps/studio/http/raw_client.h"
 
 namespace scumble {
 namespace {
