@@ -1,4 +1,6 @@
 // Comparison, with numbers worked out by hand.
+#include "measure/compare/compare.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,7 +10,6 @@
 #include <vector>
 
 #include "core/image/guides.h"
-#include "measure/compare/compare.h"
 #include "measure/compare/heat_map.h"
 #include "tests/support/numbers.h"
 

@@ -1,7 +1,7 @@
 """Makes the .blend files of cycles_matrix_test.cpp: every kind of light over diffuse, glossy and textured surfaces, and
 one scene for each other difficulty of a lighting pass.
 
-    blender -b -noaudio --factory-startup -P tests/blender/make_matrix.py -- --output FOLDER [--only NAME,NAME]
+    blender -b -noaudio --factory-startup -P tests/blender/matrix/make_matrix.py -- --output FOLDER [--only NAME,NAME]
 
 FOLDER gets NAME.blend for each scene, and matrix.json: for each NAME its layers, the picture's size, the samples that
 its noise needs, 0: light is not compared, and how often light is reflected after the first surface.
@@ -20,7 +20,8 @@ import numpy as np
 from mathutils import Euler, Vector
 
 sys.dont_write_bytecode = True
-sys.path.insert(0, str(Path(__file__).resolve().parent))
+for folder in Path(__file__).resolve().parents[:2]:
+    sys.path.insert(0, str(folder))
 import matrix_bends  # noqa: E402  (Blender does not put a script's own folder on the path)
 import matrix_hair  # noqa: E402
 import matrix_shapes  # noqa: E402

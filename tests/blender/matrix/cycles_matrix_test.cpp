@@ -1,5 +1,5 @@
 // Every kind of light over diffuse, glossy and textured surfaces, and other difficult light paths, against Cycles:
-// `scumble crosscheck` on the scenes of tests/blender/make_matrix.py, by its built-in limits.
+// `scumble crosscheck` on the scenes of tests/blender/matrix/make_matrix.py, by its built-in limits.
 #include <cstdlib>
 #include <map>
 #include <string>
@@ -19,7 +19,7 @@ class CyclesMatrixTest : public CliTest {
   std::map<Setup, std::vector<std::string>> Make(const std::string& only = "") {
     const std::string log = At("log").string();
     const std::string command = std::string("blender -b -noaudio --factory-startup -P ") + SCUMBLE_SOURCE_DIR +
-                                "/tests/blender/make_matrix.py -- --output " + Work().string() +
+                                "/tests/blender/matrix/make_matrix.py -- --output " + Work().string() +
                                 (only.empty() ? "" : " --only " + only) + " > " + log + " 2>&1";
     EXPECT_EQ(std::system(command.c_str()), 0) << Bytes("log");
     matrix_ = nlohmann::json::parse(std::ifstream(At("matrix.json")), nullptr, false);

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Renders the guides that the styles scene-* share: guides.exr of scenes/ball.glb, in this folder. Licence: CC0-1.0.
+"""Renders the guides that the styles scene-* share: exemplars/scene/guides.exr, of
+scenes/ball.glb. Licence: CC0-1.0.
 
-    python3 exemplars/scene/make_guides.py [--scumble build/scumble] [--rendered FILE]
+    python3 exemplars/paint/make_scene_guides.py [--scumble build/scumble] [--rendered FILE]
 
 Needs numpy and OpenImageIO's Python module. Rendering takes some minutes; `--rendered` takes a file of the same
 settings instead. The output of `scumble guidegen` is then made small enough for a repository: light that comes from
@@ -83,7 +84,7 @@ def main():
         if not arguments.rendered:
             subprocess.run([arguments.scumble, "guidegen", HERE.parents[1] / "scenes/ball.glb", "--size", str(SIDE),
                             "--layers", LAYERS, "--half", "--samples", str(SAMPLES), "-o", rendered], check=True)
-        finish(rendered, HERE / "guides.exr")
+        finish(rendered, HERE.parent / "scene/guides.exr")
 
 
 if __name__ == "__main__":
