@@ -10,11 +10,6 @@
 namespace scumble::internal {
 
 // `strength` and `only` as FinishPass and FinishStep have them. The frame's guides must hold the pass's layers.
-//
-// The pass's filter of Oklab colours (finish/smooth/smooth_filters.h), several times. Filters that weigh by difference
-// begin without pixels that are unlike all of their neighbours.
-void Smooth(const SmoothPass& pass, double strength, std::span<const std::uint8_t> only, const FinishFrame& frame,
-            Picture& picture);
 
 // By pixel how much of it is in shade, under a Gaussian of the pass's `soften` over pixels of the same object.
 // Background has no shade. O(pixels · soften).
@@ -35,14 +30,6 @@ FloatPlane ToonLight(const ToonPass& pass, const FinishFrame& frame);
 // Of guides, only the surface's share of a pixel has ink (SurfaceShares, with `of_guides`).
 // O(pixels · (width + flow)).
 void DrawEdges(const EdgesPass& pass, double strength, std::span<const std::uint8_t> only, bool of_guides,
-               const FinishFrame& frame, Picture& picture);
-
-// Strokes in patches of one direction. Patches are the cells of the nearest of the jittered grid points in 3 × 3 grid
-// cells, apart by object; a patch's direction is the main axis of its structure tensor of normals, J = Σ ∇n ∇nᵀ, which
-// has no sign, so that all directions there are occur. Strokes of a layer are as wide as the share of ink asks,
-// antialiased; layers fill one after the other, and where they cross ink counts once: the mean share of ink is 1 - tone
-// / from. Of light, only the surface's share of a pixel has ink (SurfaceShares, with `of_guides`).
-void DrawHatch(const HatchPass& pass, double strength, std::span<const std::uint8_t> only, bool of_guides,
                const FinishFrame& frame, Picture& picture);
 
 // The blur of DepthPass: a Gaussian with a sigma of blur · u, over the pixels that are on the same side of the focus

@@ -54,10 +54,10 @@ TEST(LookUpTable, IsWithinItsQuantisationOfTheTree) {
         const double off = Distance(*table, found, facing) - Distance(*tree, tree->NearestNeighbour(n), facing);
         worst = std::max(worst, off);
         ASSERT_GE(off, -1e-6) << "nothing is nearer than the exact one";
-        ASSERT_LE(off, LookUpTable::Quantisation(resolution) + 1e-6) << resolution;
+        ASSERT_LE(off, TableQuantisation(resolution) + 1e-6) << resolution;
       }
       if (resolution == 7) {
-        EXPECT_GT(worst, 0.05 * LookUpTable::Quantisation(7)) << "the bound is not far from the truth";
+        EXPECT_GT(worst, 0.05 * TableQuantisation(7)) << "the bound is not far from the truth";
       }
     }
   }
