@@ -279,7 +279,6 @@ class TileWork {
   template <bool kPoints>
   HWY_INLINE void Lanes(std::size_t pixel) {
     const Doubles d;
-    const Floats f;
     const Keys k;
     // Embree's id of a miss makes the upper half of the key all ones, which no object has.
     const auto keys = hn::Load(k, keys_ + pixel);

@@ -100,7 +100,7 @@ class GuideSpace {
     return test.Alike(normal_weight_ * normal, normal_weight_ * exemplar_->Normal(at.x, at.y), off, extra);
   }
   // Whether two pixels of exemplar k are alike in the extra dimensions.
-  bool AlikeRest(const GuideTest& test, int k, Source a, Source b) const {
+  bool AlikeInExtra(const GuideTest& test, int k, Source a, Source b) const {
     return test.Alike(glm::vec3(0.0f), glm::vec3(0.0f),
                       test.ExtraDistance(ExtraValuesAt(k, a), ExtraValuesAt(k, b), extra_dimensions_), 0.0f);
   }

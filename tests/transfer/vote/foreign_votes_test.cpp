@@ -94,7 +94,7 @@ VoteCount OfSupportRegions(const KnownSurfaces& known, const internal::EdgeRules
 class StraightLines {
  public:
   StraightLines(const KnownSurfaces& known, const internal::EdgeRules& edges)
-      : known_(known), slopes_(edges.slopes.Get()), cosine_(edges.CreaseCosine()), tolerance_(edges.Give()) {}
+      : known_(known), slopes_(edges.slopes.Get()), cosine_(edges.CreaseCosine()), tolerance_(edges.Tolerance()) {}
 
   VoteCount Count(int radius) const {
     VoteCount count;

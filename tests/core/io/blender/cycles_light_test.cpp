@@ -46,7 +46,7 @@ void WritePasses(const fs::path& path, const Passes& passes, int width = 3, cons
   ASSERT_TRUE(output->close());
 }
 
-struct Render {
+struct CyclesRender {
   TemporaryFolder folder;
   Passes all = kAll, ldde = kLdde, ld12e = kLd12e;
   Expected<CyclesLight> Read(int samples = 16) {
@@ -58,7 +58,7 @@ struct Render {
 };
 
 TEST(CyclesLight, LayersAreProductsOfPasses) {
-  Render render;
+  CyclesRender render;
   const auto light = render.Read();
   ASSERT_TRUE(light.ok()) << light.error().message;
   EXPECT_EQ(light->guides.width(), 3);
@@ -74,7 +74,7 @@ TEST(CyclesLight, LayersAreProductsOfPasses) {
 }
 
 TEST(CyclesLight, KnowsWhatShinesAndWhatIsDiffuse) {
-  Render render;
+  CyclesRender render;
   render.all["GlossCol"] = 0.0f;
   render.all["Emit"] = 1e-9f;
   const auto light = render.Read();
@@ -84,7 +84,7 @@ TEST(CyclesLight, KnowsWhatShinesAndWhatIsDiffuse) {
 }
 
 TEST(CyclesLight, NaNPasses) {
-  Render render;
+  CyclesRender render;
   render.all["DiffDir"] = std::nanf("");
   const auto light = render.Read();
   ASSERT_TRUE(light.ok()) << "what is wrong with it is the comparison's to say";
@@ -98,12 +98,12 @@ TEST(CyclesLight, ErrorsNameFileAndPass) {
     EXPECT_NE(refused.error().message.find(file), std::string::npos) << refused.error().message;
     EXPECT_NE(refused.error().message.find(part), std::string::npos) << refused.error().message;
   };
-  Render missing_pass;
+  CyclesRender missing_pass;
   missing_pass.ldde.erase("DiffInd");
   expect(missing_pass.Read(), "stem.x.ldde.16.exr", "no channel DiffInd.R");
-  Render other_count;
+  CyclesRender other_count;
   expect(other_count.Read(64), "stem.x.all.64.exr", "");
-  Render twice;
+  CyclesRender twice;
   ASSERT_TRUE(twice.Read().ok());
   WritePasses(twice.folder / "stem.x.all.16.exr", kAll, 3, "Other");
   expect(ReadCyclesLight(twice.folder / "stem.x", 16), "stem.x.all.16.exr", "twice");

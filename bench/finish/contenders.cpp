@@ -1,4 +1,4 @@
-#include "bench/finish/rivals.h"
+#include "bench/finish/contenders.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -42,13 +42,13 @@ void GuidedByBoxes(const cv::Mat& picture, int side, float flat, cv::Mat& out) {
 
 }  // namespace
 
-std::vector<Rival> OpenCvRivals(int width, int height, const std::vector<float>& rgb) {
+std::vector<Contender> OpenCvContenders(int width, int height, const std::vector<float>& rgb) {
   const cv::Mat picture = cv::Mat(height, width, CV_32FC3, const_cast<float*>(rgb.data())).clone();
   cv::Mat plane;
   cv::extractChannel(picture, plane, 0);
   const auto out = std::make_shared<cv::Mat>();
-  using Filter = Rival::Filter;
-  std::vector<Rival> rivals = {
+  using Filter = Contender::Filter;
+  std::vector<Contender> contenders = {
       {Filter::kBilateral, "cv::bilateralFilter, d 13", [=] { cv::bilateralFilter(picture, *out, 13, 0.08, 3.0); }},
       {Filter::kGuidedByBoxes, "guided, of cv::boxFilter", [=] { GuidedByBoxes(picture, 9, 0.0016f, *out); }},
       {Filter::kGaussians, "cv::GaussianBlur, two", [=] {
@@ -56,17 +56,17 @@ std::vector<Rival> OpenCvRivals(int width, int height, const std::vector<float>&
          cv::GaussianBlur(plane, *out, {}, 3.2 / 2.055);
        }}};
 #ifdef SCUMBLE_BENCH_XIMGPROC
-  rivals.push_back({Filter::kGuided, "cv::ximgproc::guidedFilter",
-                    [=] { cv::ximgproc::guidedFilter(picture, picture, *out, 4, 0.0016); }});
+  contenders.push_back({Filter::kGuided, "cv::ximgproc::guidedFilter",
+                        [=] { cv::ximgproc::guidedFilter(picture, picture, *out, 4, 0.0016); }});
 #endif
-  return rivals;
+  return contenders;
 }
 #else
-std::vector<Rival> OpenCvRivals(int, int, const std::vector<float>&) { return {}; }
+std::vector<Contender> OpenCvContenders(int, int, const std::vector<float>&) { return {}; }
 #endif
 
-Rival PlainKuwahara(int width, int height, const std::vector<float>& rgb, int every) {
-  return {Rival::Filter::kKuwahara, "kuwahara, radius 6, plain loop", [=] {
+Contender PlainKuwahara(int width, int height, const std::vector<float>& rgb, int every) {
+  return {Contender::Filter::kKuwahara, "kuwahara, radius 6, plain loop", [=] {
             constexpr int kRadius = 6, kSectors = 8;
             constexpr float kZeta = 1.0f / 3.0f, kEta = 3.774f;
             std::vector<float> out(rgb.size());

@@ -8,7 +8,7 @@
 
 namespace scumble::bench {
 
-struct Rival {
+struct Contender {
   enum class Filter { kBilateral, kGuided, kGuidedByBoxes, kGaussians, kKuwahara };
 
   Filter filter;  // whose work it does
@@ -17,10 +17,10 @@ struct Rival {
 };
 
 // Of a picture of that size. Those that OpenCV has on this system; ximgproc's guided filter is in its contrib part.
-std::vector<Rival> OpenCvRivals(int width, int height, const std::vector<float>& rgb);
+std::vector<Contender> OpenCvContenders(int width, int height, const std::vector<float>& rgb);
 
 // An anisotropic Kuwahara filter of radius 6 without borders, pixel by pixel and tap by tap, in floats, without the
 // structure tensor: every ellipse is a circle. Of one row in so many.
-Rival PlainKuwahara(int width, int height, const std::vector<float>& rgb, int every = 1);
+Contender PlainKuwahara(int width, int height, const std::vector<float>& rgb, int every = 1);
 
 }  // namespace scumble::bench
