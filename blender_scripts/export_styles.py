@@ -41,8 +41,9 @@ def is_catcher(thing):
 
 
 def style_of(thing, shown=None):
-    """What an object or material asks for, None without a request. `shown` is the object in the scene that shows it: an
-    Empty's request holds for its instances that have none of their own, and catchers instance catchers, as in Cycles."""
+    """What an object or material asks for, None without a request. `shown` is the object in the scene that shows it.
+    An Empty's request holds for its instances that have none of their own. Catchers instance catchers, as in
+    Cycles."""
     style = own_style(thing)
     if style is None and shown is not None and shown.type == "EMPTY":
         style = own_style(shown)

@@ -40,10 +40,10 @@ struct Fragments {
   // The first fragment of this pixel or a later one.
   std::size_t From(std::size_t pixel_index) const;
 
-  // Ok, or what makes the fragments unusable beside these guides: layers that are missing, pixels that are not in the
-  // picture or out of order, more than kMostInPixel in one, no coverage or more than the pixel's own, ids that the
-  // guides' names lack (where there are names), or values that GuideSet::Validate refuses. `name` stands for the guides
-  // in the message. O(fragments).
+  // Ok, or what makes the fragments unusable beside these guides. Layers are missing. Pixels are not in the picture or
+  // out of order, or one has more than kMostInPixel. A coverage is 0, or more than the pixel's own. An id is not among
+  // the guides' names, where there are names. GuideSet::Validate refuses a value. `name` stands for the guides in the
+  // message. O(fragments).
   Status Validate(const GuideSet& guides, const std::string& name) const;
 };
 

@@ -54,9 +54,9 @@ struct Formats {
   decltype(&formats::SetThreads) set_threads;
 };
 
-// Loads the module, once in the life of the process; it stays loaded. kUnavailable where it is missing or of another
-// version, kMemory where a limit leaves too little address space; the next call tries again then. `file` names, for the
-// message, the file that needs the module. Thread-safe.
+// Loads the module, once in the life of the process; it stays loaded. kUnavailable if the module is missing or of
+// another version. kMemory if a limit leaves too little address space. After an error the next call tries again. `file`
+// names, for the message, the file that needs the module. Thread-safe.
 Expected<const Formats*> LoadFormats(const std::string& file);
 // LoadFormats for reading a file. The file is checked first, so that its own error (kInput) comes before the module's.
 Expected<const Formats*> LoadFormatsToRead(const std::filesystem::path& path);

@@ -7,8 +7,8 @@
 //   180   all faces at a place share one normal, also those that share no edge
 // Edges are found by place, so vertices that a file repeats (for texture coordinates) make no border. All edges of a
 // place that belong to one triangle only count as one edge: where two surfaces meet with other vertices between, the
-// border is smooth, too. Triangles whose normal would be rounding noise, because they are slivers or have no area, have
-// no say: the faces at their sides are neighbours of each other, and the sliver takes a normal of theirs.
+// border is smooth, too. Slivers and triangles without area do not count, because their normal would be rounding noise.
+// The faces at their sides are neighbours of each other, and the sliver takes a normal of theirs.
 #pragma once
 
 #include <cstddef>

@@ -8,7 +8,7 @@
 // and one that is missing or damaged is a warning. Other elements and properties are skipped. A cloud of points without
 // faces is a scene without geometry. The object is named after the file. Its surface is Lambert, in the file's texture
 // or colours, or in Blender's grey of 0.8. Positions of type double that lie far from 0, as surveyors' do, keep their
-// digits: the object then stands at the middle of its shape instead of at 0, and its rest positions are relative to
+// digits. The object then stands at the middle of its shape instead of at 0, and its rest positions are relative to
 // that. The shape is that of the vertices in faces. Without normals, or with none that has a direction, it is smooth up
 // to kDefaultAutoSmooth, or as the user says.
 #pragma once

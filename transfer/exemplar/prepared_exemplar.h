@@ -117,7 +117,7 @@ class PreparedExemplar {
   }
 
   // The normal that is compared with those of the exemplar. A sphere shows none beyond its usable rim, and none that
-  // points away from the eye: that of the rim which is nearest stands for these, or no source would be within the
+  // points away from the eye. The nearest normal of the rim stands for these. Otherwise no source would be within the
   // threshold of a surface seen almost edge-on. Scenes: the normal as it is.
   glm::vec3 WithinRim(glm::vec3 normal) const {
     if (scene_ || (!(normal.x * normal.x + normal.y * normal.y > squared_rim()) && !(normal.z < 0.0f))) return normal;

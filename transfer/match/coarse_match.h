@@ -11,9 +11,9 @@
 
 namespace scumble::internal {
 
-// One active pixel for each block of step × step pixels, blocks counted from the picture's top left corner and cut off
-// at its right and lower edge: the active pixel nearest the block's centre, ties to the lowest (y, x). Blocks that lie
-// in the region as a whole or in part have one; a block without active pixels has none.
+// One active pixel for each block of step × step pixels: the one nearest the block's centre, ties to the lowest (y, x).
+// Blocks are counted from the picture's top left corner and cut off at its right and lower edge. Blocks that lie in the
+// region as a whole or in part have one; a block without active pixels has none.
 class CoarseGrid {
  public:
   CoarseGrid(std::span<const std::uint8_t> active, int width, int height, int step, const Region& region);

@@ -41,8 +41,8 @@ class ShadowPainter {
 // that no contour shows.
 //
 // The layer is sampled once a pixel, so its outlines have steps. The tone is that of the strongest shadow in the 5 × 5
-// pixels around, and alpha carries the ratio to their binomial mean: over some four pixels a hard outline fades evenly
-// in one paint, and the mean strength stays. Only pixels that catch count. False: cancelled.
+// pixels around, and alpha carries the ratio to their binomial mean. So over some four pixels a hard outline fades
+// evenly in one paint, and the mean strength stays. Only pixels that catch count. False: cancelled.
 bool PaintShadows(const ShadowInput& input, Picture& out, RowProgress& progress);
 
 }  // namespace scumble::internal

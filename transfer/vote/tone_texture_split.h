@@ -1,5 +1,5 @@
-// The hybrid of both methods, for exemplars with smooth tone and fine texture: a base layer laid as by the Lit Sphere,
-// without a seam, and a detail layer copied as by StyleBlit, unblurred (Sýkora et al. 2019 suggest it).
+// The hybrid of both methods, for exemplars with smooth tone and fine texture. The base layer is laid as by the Lit
+// Sphere, without a seam. The detail layer is copied as by StyleBlit, unblurred (Sýkora et al. 2019 suggest it).
 #pragma once
 
 #include <array>

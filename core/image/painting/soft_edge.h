@@ -10,9 +10,9 @@ namespace scumble {
 // which no smaller share of the pixels is opaque than in the rings between 0.75 and 0.9 of the radius. Opaque is what
 // has 99% of the median alpha of all paint.
 //
-// 0 too where the corners are not transparent, and where the edge has no such end within a tenth of the radius: then
-// the paint is see-through everywhere, and no edge is softer than the rest. `picture` is square. O(pixels), and
-// O(corners) where they are not transparent.
+// 0 too if the corners are not transparent, or if the edge has no such end within a tenth of the radius. Then the paint
+// is see-through everywhere, and no edge is softer than the rest. `picture` is square. O(pixels), and O(corners) where
+// they are not transparent.
 int SoftEdge(const Picture& picture);
 
 }  // namespace scumble

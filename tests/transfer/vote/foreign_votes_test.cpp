@@ -1,5 +1,5 @@
-// Votes from other surfaces, whose truth is known: each pixel's true surface is told apart by an id that voting does not
-// see, or by paint of its own.
+// Votes from other surfaces, whose truth is known: each pixel's true surface is told apart by an id that voting does
+// not see, or by paint of its own.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -89,8 +89,8 @@ VoteCount OfSupportRegions(const KnownSurfaces& known, const internal::EdgeRules
   return count;
 }
 
-// Each pair of pixels by itself: the two look like one surface over their distance, and so does each step of the digital
-// straight line between them.
+// Each pair of pixels by itself: the two look like one surface over their distance, and so does each step of the
+// digital straight line between them.
 class StraightLines {
  public:
   StraightLines(const KnownSurfaces& known, const internal::EdgeRules& edges)
