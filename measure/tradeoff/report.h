@@ -80,8 +80,8 @@ std::vector<std::size_t> ByAxis(const TradeReport& report);
 // A unique name for the picture of variants[i]: "03-levels-4.png". Letters, digits and hyphens alone.
 std::string TradePictureName(const TradeReport& report, std::size_t i);
 
-// For a terminal, at most 120 columns wide unless a figure is very long: a line a variant by axis, the front marked
-// with a star; the error of the variants' guides, where it was measured; notes.
+// For a terminal, at most 120 columns wide unless a figure is very long. It has a line for each variant, by axis, and
+// the front is marked with a star. Then come the error of the variants' guides, where it was measured, and notes.
 std::string TradeTable(const TradeReport& report);
 
 // RFC 4180 (lines end in CR LF): a line of column names with their units, then one a variant in the order given.
@@ -92,9 +92,9 @@ std::string TradeCsv(const TradeReport& report);
 // The figures as JSON; docs/tradeoff.md has the schema. Figures that were not measured are null.
 std::string TradeJson(const TradeReport& report);
 
-// A self-contained SVG on white: time (logarithmic) against `texture`, quartiles as bars, the front as a line with its
-// names, a colour and shape for each axis, and what halves of the exemplar differ by. Variants without a time or
-// without `texture` are not drawn.
+// A self-contained SVG on white: time (logarithmic) against `texture`, with quartiles as bars and the front as a line
+// with its names. Each axis has a colour and shape. It shows, too, what halves of the exemplar differ by. Variants
+// without a time or without `texture` are not drawn.
 std::string TradeChart(const TradeReport& report);
 
 // One HTML page that loads nothing: the charts, the table, and every picture, embedded. Without scripts it still has
