@@ -1,6 +1,6 @@
 // Fragments: the surfaces that share a pixel with the one at its centre, for smooth borders between objects.
 //
-// A surface is here an object with a material. Where the subsamples of a pixel's coverage see several surfaces, the
+// A surface is here an object with a material. The subsamples of a pixel's coverage may see several surfaces. Then the
 // layers of the guides hold the one at the centre, as they do everywhere, and a fragment holds each of the others. So
 // whoever does not know fragments loses nothing but smooth borders. Pixels that show one surface have no fragment:
 // memory is in proportion to the borders in the picture.
@@ -25,11 +25,11 @@ struct Fragments {
 
   // By fragment, the index of its pixel (GuideSet::Index), never falling. A pixel's fragments follow each other.
   std::vector<std::uint32_t> pixel;
-  // count() × 1 values: the layers of the guides, at the subsample of this surface that is nearest to the mean
-  // place of them all. Coverage is the share of the pixel that the surface fills. What is left of the pixel's own
-  // coverage belongs to the surface at its centre. Luminance, shadow and light paths are those of the nearest pixel,
-  // among the eight around and the fragment's own, whose centre shows the surface; without one, those of the fragment's
-  // own pixel.
+  // count() × 1 values: the layers of the guides, at the subsample of this surface that is nearest to the mean place of
+  // them all. Coverage is the share of the pixel that the surface fills. What is left of the pixel's own coverage
+  // belongs to the surface at its centre. Luminance, shadow and light paths are those of the nearest pixel, among the
+  // eight around and the fragment's own, whose centre shows the surface. If there is none, they are those of the
+  // fragment's own pixel.
   GuideSet values;
   // count() values, or none where it is not known: which of the pixel's 4 × 4 cells the surface shows in, bit
   // 4 · row + column, row 0 at the top. A cell without subsamples has no bit.

@@ -123,8 +123,8 @@ inline constexpr const char* kExactLight = "exact";
 // Whether luminance and shadow are known to be without noise.
 bool HasExactLight(const GuideSet& guides);
 
-// The attribute of guides whose pixels chose their samples of luminance and shadow: the estimated standard error, a
-// share of each pixel's light, that nine of ten pixels do not exceed.
+// The attribute of guides whose pixels chose their samples of luminance and shadow. It is the estimated standard error,
+// a share of each pixel's light, that nine of ten pixels do not exceed.
 inline constexpr const char* kLightErrorKey = "scumble:light_error";
 // Its value; 0 where it is unknown, or no number from 0 to 1.
 double LightErrorOf(const GuideSet& guides);

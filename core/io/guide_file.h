@@ -45,7 +45,7 @@ struct GuideReadOptions {
 
 // Reads only the channels that are asked for; matches them by name (ParseChannelName). Ids in channels that are called
 // "object" or "material" alone, which may be of any kind, are read where their layer is required. Fragments are read
-// from files that WriteGuides made, and with them always the ids by which their surfaces are told apart; fragments that
+// from files that WriteGuides made, and with them always the ids by which their surfaces are told apart. Fragments that
 // are damaged or do not fit their file are an error. Of guides that WriteGuides made, ids are always those of the
 // layers object and material; a Cryptomatte beside them is passed over. Where another program wrote no ids, object,
 // material and their names come from Cryptomatte, if they are wanted. A Cryptomatte that cannot be used is an error if

@@ -30,9 +30,9 @@ constexpr double kDepthTolerance = 0.002;
 struct StepTolerance {
   float share, slope, slope_at_end;
 };
-constexpr StepTolerance kFullStep{1.0f, 1.0f, 1.5f};
+constexpr StepTolerance kFullLimits{1.0f, 1.0f, 1.5f};
 // A line of full steps goes on where one is more than this: along a fold that fades it would be dashed otherwise.
-constexpr StepTolerance kWeakStep{0.25f, 0.5f, 0.75f};
+constexpr StepTolerance kWeakLimits{0.25f, 0.5f, 0.75f};
 // Of depths that were stored as half floats: their rounding alone makes steps of up to a half of the tolerance.
 constexpr float kWeakShareOfHalves = 0.6f;
 // From a line of no fewer borders, at the reference height.
@@ -49,9 +49,9 @@ constexpr int kLeastBeside = 1;  // pixels of the surface beside the two of a bo
 // by no more than the second.
 constexpr double kMostBeside = 0.25, kMostRound = 0.6;
 
-StepTolerance WeakStepLimits(std::span<const float> depth) {
+StepTolerance WeakLimits(std::span<const float> depth) {
   const auto has_more_bits = [](float one) { return (std::bit_cast<std::uint32_t>(one) & 0x1fffu) != 0; };
-  StepTolerance limits = kWeakStep;
+  StepTolerance limits = kWeakLimits;
   if (std::none_of(depth.begin(), depth.end(), has_more_bits)) limits.share = kWeakShareOfHalves;
   return limits;
 }
@@ -92,9 +92,9 @@ SCUMBLE_WIDE_LOOPS void FindUndecided(const PairPlanes& of, std::size_t first, s
                 weak = weak_share * tolerance;
     const float rise_before = depth[p] - depth_before[p], rise_after = depth_after[p] - depth[q];
     // Beside the background a slope is infinite, and less than infinity is needed.
-    const bool is_as_before = (std::fabs(rise - rise_before) < kWeakStep.slope * std::fabs(rise_before) + weak) &
+    const bool is_as_before = (std::fabs(rise - rise_before) < kWeakLimits.slope * std::fabs(rise_before) + weak) &
                               (object_before[p] == object[p]);
-    const bool is_as_after = (std::fabs(rise - rise_after) < kWeakStep.slope * std::fabs(rise_after) + weak) &
+    const bool is_as_after = (std::fabs(rise - rise_after) < kWeakLimits.slope * std::fabs(rise_after) + weak) &
                              (object_after[p] == object[p]);
     const bool goes_on = (std::fabs(rise) <= tolerance) & ((std::fabs(rise) <= weak) | is_as_before | is_as_after);
     const bool is_flat = x[p] * x[q] + y[p] * y[q] + z[p] * z[q] > crease;
@@ -115,7 +115,7 @@ class Classifier {
         only_(only),
         guides_(guides),
         tolerance_(guides, kDepthTolerance),
-        weak_(WeakStepLimits(guides.Plane(Layer::kDepth))),
+        weak_(WeakLimits(guides.Plane(Layer::kDepth))),
         crease_(pass.crease_angle < 180.0 ? glm::radians(pass.crease_angle) : std::numeric_limits<double>::infinity()),
         weak_crease_(crease_ * (IsOn(LineClass::kCrease) ? kCreaseGoesOn : 1.0)),
         owner_(guides),
@@ -175,7 +175,7 @@ class Classifier {
   // the tolerance, and by a little more where the surface ends. A step's two sides are flatter than the step. Or as the
   // farther pixel's surface does, which a bevel of a pixel or two shows at its rim: behind a step it is not that steep.
   bool DepthGoesOn(std::optional<std::size_t> before, std::size_t p, std::size_t q, std::optional<std::size_t> after,
-                   const StepTolerance& of = kFullStep) const {
+                   const StepTolerance& of = kFullLimits) const {
     const float step = depth_[q] - depth_[p], tolerance = of.share * tolerance_.At(std::min(depth_[p], depth_[q]));
     if (std::fabs(step) <= tolerance) return true;
     const auto goes_on = [&](std::optional<std::size_t> there, std::size_t here) {

@@ -26,9 +26,9 @@ namespace scumble::internal {
 inline constexpr float kNoOctave = -1e9f;
 
 // κ per pixel. kNoOctave where the pixel is inactive, where pref is not finite, or where the object has no two
-// neighbouring pixels at different places. log2 is linear between powers of two, so that it is equal on every machine.
-// Guides must hold pref, depth and object ids. Guides without a depth above 0, or of an orthographic camera, count as
-// all at one distance. O(active pixels), in the caller's oneTBB arena.
+// neighbouring pixels at different places. Here log2 is linear between powers of two, so that it is equal on every
+// machine. Guides must hold pref, depth and object ids. Guides without a depth above 0, or of an orthographic camera,
+// count as all at one distance. O(active pixels), in the caller's oneTBB arena.
 std::vector<float> SurfaceOctaves(const GuideSet& guides, std::span<const std::uint8_t> active);
 
 // The surface cell of a place.

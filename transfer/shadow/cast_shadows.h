@@ -27,7 +27,7 @@ class ShadowPainter {
   explicit ShadowPainter(const ShadowInput& input)
       : input_(input), seeds_(input.seeds, input.paint.level(), input.region) {}
 
-  // Writes the shadow paint of a pixel of the region, which itself need not catch shadows; where none of the catching
+  // Writes the shadow paint of a pixel of the region, which itself need not catch shadows. If none of the catching
   // pixels around is in shadow, the texel is left alone.
   void Paint(int x, int y, std::uint16_t* texel) const;
 

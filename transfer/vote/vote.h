@@ -24,8 +24,8 @@ struct VoteInput {
   int radius = 0;
   const EdgeRules* edges = nullptr;  // null: windows are not cut at edges
   Region region;
-  // Called from any thread for parts x0 … x1 - 1 of rows whose votes are counted, while they are in the caches: once
-  // for each active pixel of the region, and maybe for others. It may change those pixels of the picture.
+  // Called from any thread for parts x0 … x1 - 1 of rows whose votes are counted, while they are in the caches. It is
+  // called once for each active pixel of the region, and maybe for others. It may change those pixels of the picture.
   std::function<void(int y, int x0, int x1)> finished = {};
 };
 

@@ -8,10 +8,10 @@
 
 namespace scumble::internal {
 
-// By how many degrees the way in which depth grows is turned from the way in which normals point, in the picture: the
-// mean over pixels that are not seen from the front. Under any camera, perspective or orthographic, both are one way
-// where normals are in view space and face the eye; 0 to a few degrees as surfaces are smoothed or bumpy. -1 where too
-// few pixels tell. The guides hold normals and depths.
+// By how many degrees the direction in which depth grows is turned from the one in which normals point, in the picture.
+// It is the mean over pixels that are not seen from the front. Under any camera, perspective or orthographic, both are
+// one way where normals are in view space and face the eye; 0 to a few degrees as surfaces are smoothed or bumpy. -1
+// where too few pixels tell. The guides hold normals and depths.
 double NormalsAgainstDepth(const GuideSet& guides);
 
 // The share of pixels whose normal has z below 0, in [0, 1], among those where z must be above 0 under any camera.

@@ -7,6 +7,7 @@
 
 #include "guidegen/light/sampler.h"
 #include "tests/support/guidegen_scenes.h"
+#include "tests/support/numbers.h"
 
 namespace scumble::testing {
 namespace {
