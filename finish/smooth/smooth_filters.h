@@ -55,8 +55,8 @@ struct WaveletStops {
 // Edge-avoiding à-trous wavelets without their details (Dammertz, Sewtz, Hanika, Lensch 2010): 5 × 5 taps at distances
 // of 1, 2, 4 … pixels; the range is halved each time. A B3 spline in place, Tukey's biweight of colours, of normals
 // (half at a distance of 1/2) and of depths (half at 1/100 of the depth for each pixel). `range` holds at one pixel of
-// the reference height, and `scale` such pixels are one of the picture's, so that levels of equal length have equal
-// ranges in pictures of any size. O(pixels · log sigma).
+// the reference height, and `scale` such pixels are one of the picture's. So levels of equal length have equal ranges
+// in pictures of any size. O(pixels · log sigma).
 void WaveletsFilter(double sigma, double range, double scale, const WaveletStops& stops, SmoothPlanes& planes);
 
 // 1 / c² of Tukey's biweight (1 - d² / c²)² that is a half at `half`.

@@ -50,8 +50,8 @@ class CameraRays : public CameraPose {
 
   // The ray through a point of the picture, in pixels from the top left corner.
   ViewRay Through(double x, double y) const;
-  // The same with the width of a pixel's footprint, as Cycles 3.4 has it: the mean of the two sides of a pixel, in
-  // perspective measured on the unit sphere about the eye.
+  // The same with the width of a pixel's footprint, as Cycles 3.4 has it. That is the mean of the two sides of a pixel,
+  // in perspective measured on the unit sphere about the eye.
   ViewRay ThroughWithFootprint(double x, double y) const;
 
   // The pixels that are drawn: those of the camera's border, or all. Blender cuts the product of a border and the

@@ -16,7 +16,7 @@ namespace scumble {
 
 // The point on an emissive mesh that a shadow ray aims at. It does not shade itself. So the sampled triangle does not
 // count, wherever Embree's floats put it. Nor do emissive surfaces so near the ray's end that they may be the sampled
-// point: the next triangle, or the next part of a light that was cut into several meshes.
+// point. Such are the next triangle, and the next part of a light that was cut into several meshes.
 struct ShadowTarget {
   const PlacedObject* object = nullptr;
   std::uint32_t primitive = 0;

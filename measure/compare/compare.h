@@ -52,7 +52,7 @@ struct WorstValue {
 };
 
 // Statistics of |a − b| over one or more channels. The mean, RMS and PSNR leave out the incomparable values, which
-// `incomparable` counts: those with a NaN on either or both sides, or an infinity that the other does not equal.
+// `incomparable` counts. Those have a NaN on either or both sides, or an infinity that the other does not equal.
 struct DifferenceStats {
   std::size_t values = 0;
   std::size_t different = 0;  // a != b, at any distance

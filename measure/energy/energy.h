@@ -109,9 +109,9 @@ struct EnergyReport {
 Expected<EnergyReport> MeasureEnergy(const EnergyTarget& target, std::span<const EnergyExemplar> exemplars,
                                      const EnergyOptions& options = {});
 
-// The guide error of a method: the mean angle in degrees between each pixel's normal and that of its source, over all
-// covered pixels of `sources` that are measured by `least_coverage`. 0 where there is none. Errors as above, and
-// sources that lie outside their exemplar.
+// The guide error of a method is the mean angle in degrees between each pixel's normal and that of its source. The mean
+// is over all covered pixels of `sources` that are measured by `least_coverage`. 0 where there is none. Errors as
+// above, and sources that lie outside their exemplar.
 Expected<double> MeanSourceDegrees(const EnergyTarget& target, std::span<const EnergyExemplar> exemplars,
                                    const SourcePlanes& sources, float least_coverage = 0.999f);
 

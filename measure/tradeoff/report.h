@@ -67,11 +67,11 @@ inline constexpr const char* kRankedBy = "texture";
 // random seed. None where no other seed was measured.
 std::optional<double> ChanceOf(const TradeReport& report);
 
-// Places in `variants` of the Pareto front of median total time and `texture`, by rising time: what is slower is on it
-// only where it is nearer to the exemplar by more than chance. Left out are variants that were not measured, that
+// Places in `variants` of the Pareto front of median total time and `texture`, by rising time. A slower variant is on
+// it only if it is nearer to the exemplar by more than chance. Left out are variants that were not measured, that
 // differ from the style by their random seed alone, or that `stylize` has no options for. Of several with equal
-// pictures one represents them: the first, unless a later one is faster in total by more than the quartiles of both,
-// because otherwise timing noise would choose. One run has no quartiles.
+// pictures one represents them. It is the first, unless a later one is faster in total by more than the quartiles of
+// both: otherwise timing noise would choose. One run has no quartiles.
 std::vector<std::size_t> FrontOf(const TradeReport& report);
 
 // Places in `variants`, axes in the order of their first variants, variants of one axis in the order given.
@@ -98,8 +98,8 @@ std::string TradeJson(const TradeReport& report);
 std::string TradeChart(const TradeReport& report);
 
 // One HTML page that loads nothing: the charts, the table, and every picture, embedded. Without scripts it still has
-// all of that, with a link from each point to its picture; with them, figures show under the pointer, columns sort, and
-// pictures flip against the style's own. Equal pictures are embedded once.
+// all of that, with a link from each point to its picture. With scripts, figures show under the pointer, columns sort,
+// and pictures flip against the style's own. Equal pictures are embedded once.
 std::string TradeHtml(const TradeReport& report);
 
 }  // namespace scumble
