@@ -42,7 +42,7 @@ KnownSurfaces StillLifeSurfaces() {
   Expected<PreparedView> view = PrepareView(*scene, "", std::nullopt, 16.0 / 9.0, false);
   EXPECT_TRUE(view);
   GuidegenOptions options;
-  options.width = 256, options.height = 144;
+  options.width = 192, options.height = 108;
   return AsOneObject(std::move(RenderGuides(*scene, view->camera, options)->guides));
 }
 
