@@ -43,10 +43,10 @@ class RequiredTextures : public LoaderTest {
     return b;
   }
   std::filesystem::path WriteSquare(const GltfBuilder& b) {
-    nlohmann::json json = b.json;
+    nlohmann::json document = b.json;
     Write("geo.bin", b.bin);
-    json["buffers"] = {{{"byteLength", b.bin.size()}, {"uri", "geo.bin"}}};
-    return Write("square.gltf", json.dump());
+    document["buffers"] = {{{"byteLength", b.bin.size()}, {"uri", "geo.bin"}}};
+    return Write("square.gltf", document.dump());
   }
   void WriteRed(const std::string& name) {
     Picture red(1, 1);

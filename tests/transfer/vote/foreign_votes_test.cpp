@@ -185,19 +185,19 @@ GuideSet ScatteredObjects(int width, int height, int kind) {
 
 // Every object has paint of one value of its own, and a pixel that shows another value took a vote from another object.
 TEST(ForeignVotes, NoneComesFromAnotherObject) {
-  constexpr int kWidth = 90, kHeight = 60, kSide = 50, kSize = 300;  // stripes of paint wider than any window
+  constexpr int kColumns = 90, kRows = 60, kSide = 50, kSize = 300;  // stripes of paint wider than any window
   Picture paint(kSize, kSize);
   for (int i = 0; i < kSize * kSize; ++i) {
     std::uint16_t* texel = paint.At(i % kSize, i / kSize);
     texel[0] = static_cast<std::uint16_t>(1000 * (i % kSize / kSide)), texel[3] = 65535;
   }
   const PreparedExemplar exemplar(paint, 0.0, kSize);
-  const Region all{0, 0, kWidth, kHeight};
+  const Region all{0, 0, kColumns, kRows};
   for (const int kind : {0, 1, 2}) {
-    const GuideSet guides = ScatteredObjects(kWidth, kHeight, kind);
+    const GuideSet guides = ScatteredObjects(kColumns, kRows, kind);
     const auto object = guides.Plane(Layer::kObject), coverage = guides.Plane(Layer::kCoverage);
     SourceField field;
-    field.Reset(kWidth, kHeight);
+    field.Reset(kColumns, kRows);
     std::vector<std::uint8_t> active(guides.pixel_count());
     for (std::size_t i = 0; i < active.size(); ++i) {
       active[i] = coverage[i] > 0.0f;
@@ -208,9 +208,9 @@ TEST(ForeignVotes, NoneComesFromAnotherObject) {
       for (const double tolerance : {0.0, 0.002, 1e6}) {
         const internal::EdgeRules edges{guides, slopes, 180.0, tolerance};
         for (const auto vote : {internal::Vote, internal::VotePlainly}) {
-          Picture out(kWidth, kHeight);
+          Picture out(kColumns, kRows);
           const Progress unheard;
-          internal::RowProgress progress(unheard, 0.0, 1.0, kHeight);
+          internal::RowProgress progress(unheard, 0.0, 1.0, kRows);
           ASSERT_TRUE(vote({field, active, exemplar, radius, &edges, all}, out, progress));
           std::size_t foreign = 0;
           for (std::size_t i = 0; i < active.size(); ++i) {
