@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "core/image/check.h"
-#include "core/style/toml_keys.h"
+#include "core/style/toml/toml_keys.h"
 
 namespace scumble {
 namespace {

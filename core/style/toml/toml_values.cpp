@@ -1,8 +1,8 @@
-#include "core/style/toml_values.h"
+#include "core/style/toml/toml_values.h"
 
 #include <algorithm>
 
-#include "core/style/toml_keys.h"
+#include "core/style/toml/toml_keys.h"
 
 namespace scumble::internal {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/style/toml_keys.h"
+#include "core/style/toml/toml_keys.h"
 
 #include <algorithm>
 #include <optional>

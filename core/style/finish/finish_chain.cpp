@@ -9,7 +9,7 @@
 #include "core/image/check.h"
 #include "core/style/finish_keys.h"
 #include "core/style/style_keyframes.h"
-#include "core/style/toml_values.h"
+#include "core/style/toml/toml_values.h"
 
 namespace scumble {
 namespace {

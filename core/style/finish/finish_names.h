@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/style/toml_values.h"
+#include "core/style/toml/toml_values.h"
 
 namespace scumble::internal {
 
