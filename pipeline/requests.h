@@ -13,9 +13,9 @@
 #include "core/image/status.h"
 #include "core/style/style_file.h"
 #include "finish/finish.h"
+#include "guidegen/file_listener.h"
+#include "guidegen/framing.h"
 #include "guidegen/guidegen.h"
-#include "guidegen/load/file_listener.h"
-#include "guidegen/scene/framing.h"
 #include "measure/mosaic/explain.h"
 #include "pipeline/frame_rate.h"
 

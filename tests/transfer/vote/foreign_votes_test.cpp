@@ -7,9 +7,9 @@
 #include <limits>
 #include <map>
 
+#include "guidegen/framing.h"
 #include "guidegen/guidegen.h"
-#include "guidegen/load/load_scene.h"
-#include "guidegen/scene/framing.h"
+#include "guidegen/load_scene.h"
 #include "tests/support/transfer_fixtures.h"
 #include "transfer/vote/edge/support_regions.h"
 #include "transfer/vote/vote.h"
