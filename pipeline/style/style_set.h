@@ -12,7 +12,7 @@
 #include "guidegen/scene.h"
 #include "pipeline/requests.h"
 #include "pipeline/run_context.h"
-#include "transfer/frame/style_map.h"
+#include "transfer/style_map.h"
 
 namespace scumble {
 

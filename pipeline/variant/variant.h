@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/io/guide_precision.h"
-#include "transfer/nearest/lookup_table.h"
+#include "transfer/lookup_table.h"
 
 namespace scumble {
 
