@@ -1,5 +1,5 @@
 // Coherence, with numbers worked out by hand.
-#include "measure/mosaic/coherence.h"
+#include "measure/coherence.h"
 
 #include <gtest/gtest.h>
 

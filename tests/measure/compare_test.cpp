@@ -1,5 +1,5 @@
 // Comparison, with numbers worked out by hand.
-#include "measure/compare/compare.h"
+#include "measure/compare.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/image/guides.h"
-#include "measure/compare/heat_map.h"
+#include "measure/heat_map.h"
 #include "tests/support/numbers.h"
 
 namespace scumble {

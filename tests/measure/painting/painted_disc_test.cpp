@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "core/image/hash.h"
-#include "measure/painting/paint_traits.h"
+#include "measure/paint_traits.h"
 #include "tests/support/painted_spheres.h"
 
 namespace scumble {
