@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "pipeline/guide_layers.h"
+#include "pipeline/api/guide_layers.h"
 #include "pipeline/workspace.h"
 
 namespace scumble {
