@@ -99,7 +99,8 @@ void PrintFigures(const TradeReference& reference, const GuidedTexture& texture,
                                        {"missing", measure.missing.mean},
                                        {"texture", with_outlines},
                                        {"paint", with_outlines / (1.0 + kOutlinesInTexture * outlines)},
-                                       {"outlines", outlines}};
+                                       {"outlines", outlines},
+                                       {"halves", texture.floor().value_or(NAN)}};
   std::printf("%s\n", line.dump().c_str());
   std::fflush(stdout);
 }

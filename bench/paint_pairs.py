@@ -6,6 +6,9 @@
     /usr/bin/python3 bench/paint_pairs.py --draw later       # pictures, sheets without names, into out/paint-pairs/
     /usr/bin/python3 bench/paint_pairs.py --measure later    # figures of what is drawn (build/bench/paint_figures)
     /usr/bin/python3 bench/paint_pairs.py --read later FILE  # a reading: {"121": ["A", "why"], …}
+    /usr/bin/python3 bench/paint_pairs.py --table            # the table of docs/paint-texture.md, of today's styles
+    /usr/bin/python3 bench/paint_pairs.py --styles           # its table of votes for and against new keys
+    /usr/bin/python3 bench/paint_pairs.py --failures         # the picture of that page: where the measure is wrong
 
 Sets of pairs of ways to draw a painting on a scene, good ones and deliberately bad ones: 120 *open* pairs by which the
 measure was chosen, 80 *locked* ones that were kept away until it was, and *later* ones that were drawn and read long
@@ -18,6 +21,7 @@ of a part, if it shows a part. Styles have changed since the first two sets were
 import argparse
 import hashlib
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -26,6 +30,8 @@ sys.dont_write_bytecode = True
 
 import numpy as np
 import OpenImageIO as oiio
+
+from marked_pages import replaced
 
 ROOT = Path(__file__).resolve().parent.parent
 PAIRS = ROOT / "bench/paint_pairs.json"
@@ -65,10 +71,16 @@ WAYS = {  # options of `scumble transfer`; a name in capitals: what is done to t
     "flat fill": ["method=litsphere", "FLAT"],
     "blurred": ["BLUR"],
     "noise of the right spectrum": ["method=litsphere", "NOISE"],
-    "mosaic": ["threshold=0.6", "blend_radius=0"],
+    "mosaic": ["threshold=0.6", "blend_radius=0", "hybrid=0"],
     "repeats": ["method=litsphere", "REPEATS"],
 }
 GREY = 0.93
+TABLE = [("oil", "suzanne"), ("graphite", "toys"), ("watercolour", "snail")]
+TABLE_WAYS = ["as it is", "another seed", "Lit Sphere", "mosaic", "hybrid 8", "threshold 0.4", "threshold 0.03",
+              "blend_radius 8", "blend_radius 0", "strokes of half the size", "strokes of twice the size"]
+FAILURES = [193, 285, 263, 237, 219]
+KEYS_THEN = {"gouache": ["threshold=0.1", "blend_radius=1"],  # that changed after these pairs were read
+             "graphite": ["threshold=0.17", "hybrid=0"]}
 
 
 def lot(*parts):
@@ -185,15 +197,15 @@ def guides(style, scene, height):
     return file
 
 
-def picture_file(style, scene, way, height):
-    """Without paper."""
-    name = "%s-%s-%d-%s" % (style, scene, height, way.replace(" ", "_").replace(",", ""))
+def picture_file(style, scene, way, height, keys=()):
+    """Without paper. `keys`: of the style, before those of the way."""
+    name = "-".join([style, scene, str(height), way.replace(" ", "_").replace(",", ""), *keys])
     file = OUT / "pictures" / (name + ".png")
     if not file.exists():
         file.parent.mkdir(parents=True, exist_ok=True)
         marks = [part for part in WAYS[way] if part.isupper()]
         options = ["--set", "transfer.paper="]
-        for part in WAYS[way]:
+        for part in [*keys, *WAYS[way]]:
             if "=" in part:
                 options += ["--set", "transfer." + part]
             elif not part.isupper():
@@ -209,9 +221,9 @@ def picture_file(style, scene, way, height):
     return file
 
 
-def picture(style, scene, way, height):
+def picture(style, scene, way, height, keys=()):
     """On light grey: (height, width, 3)."""
-    pixels = read(picture_file(style, scene, way, height))
+    pixels = read(picture_file(style, scene, way, height, keys))
     alpha = pixels[..., 3:]
     return pixels[..., :3] * alpha + GREY * (1.0 - alpha)
 
@@ -236,13 +248,13 @@ def exemplar_part(style, height, size):
     return panel
 
 
-def draw_row(pair):
+def draw_row(pair, keys=()):
     if pair["crop"]:
         x, y = pair["crop"]
-        sides = [picture(pair["style"], pair["scene"], pair[s], 540)[y:y + CROP, x:x + CROP] for s in "AB"]
+        sides = [picture(pair["style"], pair["scene"], pair[s], 540, keys)[y:y + CROP, x:x + CROP] for s in "AB"]
         panels = [exemplar_part(pair["style"], 540, CROP)] + sides
     else:
-        sides = [picture(pair["style"], pair["scene"], pair[s], 360) for s in "AB"]
+        sides = [picture(pair["style"], pair["scene"], pair[s], 360, keys) for s in "AB"]
         panels = [exemplar_part(pair["style"], 360, 360)] + sides
     gap = np.full((panels[0].shape[0], 8, 3), 0.97)
     row = np.concatenate([panels[0], gap, panels[1], gap, panels[2]], 1)
@@ -302,6 +314,7 @@ def measure(pairs, of):
             sys.exit(done.stderr)
         for line in map(json.loads, done.stdout.splitlines()):
             way = files[line.pop("picture")]
+            del line["halves"]
             figures[key_of(style, scene, crop) + way] = {k: round(v, 4) for k, v in line.items()}
         print(style, scene, *crop, flush=True)
     rows = ",\n ".join("%s: %s" % (json.dumps(name), json.dumps(of)) for name, of in sorted(figures.items()))
@@ -354,12 +367,95 @@ def report(pairs, of):
         agreement(pairs, of)
 
 
+def table_column(style, scene):
+    """Figures of one column, at 960×540: halves of the exemplar, the ways, and what is done to the style's picture."""
+    files = [picture_file(style, scene, way, 540) for way in TABLE_WAYS]
+    own = read(files[0])
+    for name, pixels in (("blurred by 1 pixel", blurred(own.astype(np.float64), 1)),
+                         ("blurred by 3 pixels", blurred(own.astype(np.float64), 3)),
+                         ("grey noise, deviation 0.05", with_noise(own, 0.05))):
+        files.append(OUT / "pictures" / ("%s-%s-%s.png" % (style, scene, name.replace(" ", "_"))))
+        write(files[-1], pixels)
+    done = subprocess.run([str(ROOT / "build/bench/paint_figures"), str(ROOT / "exemplars" / style),
+                           str(guides(style, scene, 540)), *map(str, files)], capture_output=True, text=True)
+    if done.returncode != 0:
+        sys.exit(done.stderr)
+    figures = [json.loads(line) for line in done.stdout.splitlines()]
+    return [figures[0]["halves"]] + [figure["paint"] for figure in figures]
+
+
+def with_noise(pixels, deviation):
+    noise = np.random.default_rng(1).normal(0.0, deviation, pixels.shape[:2])[..., None]
+    return np.concatenate([np.clip(pixels[..., :3] + noise, 0.0, 1.0), pixels[..., 3:]], -1)
+
+
+def write_table():
+    columns = [table_column(style, scene) for style, scene in TABLE]
+    names = (["halves of the exemplar", "**the style**"]
+             + [re.sub(r"^([a-z_]+) ([0-9.]+)$", r"`\1 = \2`", way) for way in TABLE_WAYS[1:]]
+             + ["blurred by 1 pixel", "blurred by 3 pixels", "grey noise, deviation 0.05"])
+    rows = ["| | " + " | ".join("%s, %s" % column for column in TABLE) + " |", "|---" * (len(TABLE) + 1) + "|"]
+    for name, figures in zip(names, zip(*columns)):
+        cells = ["**%.3f**" % f if "**" in name else "%.3f" % f for f in figures]
+        rows.append("| %s | %s |" % (name, " | ".join(cells)))
+    page = ROOT / "docs/paint-texture.md"
+    page.write_text(replaced(page, page.read_text(encoding="utf-8"), "ways", "bench/paint_pairs.py --table",
+                             "\n".join(rows) + "\n"), encoding="utf-8")
+
+
+def write_styles():
+    """Votes for new keys or another painting of a style against the old, of all that were tried."""
+    tried = {}
+    for name in ("tuned", "repainted", "retuned"):
+        for pair in json.loads((ROOT / ("bench/%s_pairs.json" % name)).read_text(encoding="utf-8"))["pairs"]:
+            by_set = "keys" if name == "tuned" else "28 November"
+            change = "`%s`" % "`, `".join(pair["new"]) if "new" in pair else by_set
+            votes = [reading["vote"] for reading in pair["readings"]]
+            tally = tried.setdefault(pair["style"], {}).setdefault(change.replace("=", " = "), [0, 0, 0])
+            for i, vote in enumerate(("new", "old", "=")):
+                tally[i] += votes.count(vote)
+    rows = ["| style | what was new | new : old, even |", "|---|---|---|"]
+    for style, changes in sorted(tried.items()):
+        for change, (new, old, even) in changes.items():
+            taken = "**" if new >= 4 * old else ""
+            count = "%s%d : %d%s" % (taken, new, old, taken)
+            rows.append("| %s | %s | %s%s |" % (style, change, count, ", %d" % even if even else ""))
+    page = ROOT / "docs/paint-texture.md"
+    page.write_text(replaced(page, page.read_text(encoding="utf-8"), "styles", "bench/paint_pairs.py --styles",
+                             "\n".join(rows) + "\n"), encoding="utf-8")
+
+
+def draw_failures(pairs):
+    """Pairs in which all readers chose the picture with the larger figure: exemplar, their choice, the other."""
+    figures = json.loads(FIGURES.read_text(encoding="utf-8"))
+    rows, texts, top = [], [], 0
+    for number in FAILURES:
+        pair = dict(pairs[number - 1])
+        chosen = majority(pair)
+        pair["A"], pair["B"] = pair[chosen], pair["B" if chosen == "A" else "A"]
+        row, a, width = draw_row(pair, KEYS_THEN.get(pair["style"], ()))
+        key = key_of(pair["style"], pair["scene"], pair["crop"])
+        for words, x in (("%s, %s" % (pair["style"], pair["scene"]), 4),
+                         ("chosen: %s, %.3f" % (pair["A"], figures[key + pair["A"]]["texture"]), a),
+                         ("not: %s, %.3f" % (pair["B"], figures[key + pair["B"]]["texture"]), a + width)):
+            texts += ["--text:x=%d:y=%d:size=18:font=DejaVuSans:color=0.1,0.1,0.1" % (x + 4, top + 19), words]
+        rows.append(row)
+        top += row.shape[0]
+    write(OUT / "sheet.png", np.concatenate(rows, 0))
+    subprocess.run(["oiiotool", "--nosoftwareattrib", str(OUT / "sheet.png"), *texts, "--resize", "1240x0",
+                    "-d", "uint8", "--compression", "jpeg:66", "-o", str(ROOT / "docs/gallery/paint-failures.jpg")],
+                   check=True)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--choose", choices=SETS, help="pick the pairs of a set anew and forget their votes")
     parser.add_argument("--draw", choices=SETS, help="draw pictures and sheets of these pairs")
     parser.add_argument("--measure", choices=SETS, help="measure their pictures")
     parser.add_argument("--read", nargs=2, metavar=("SET", "FILE"), help="add one reading of a set")
+    parser.add_argument("--table", action="store_true", help="measure the first table of docs/paint-texture.md")
+    parser.add_argument("--styles", action="store_true", help="count the votes for and against new keys of styles")
+    parser.add_argument("--failures", action="store_true", help="draw the picture of docs/paint-texture.md")
     parser.add_argument("--force", action="store_true", help="choose, draw or measure a set that has votes")
     options = parser.parse_args()
     pairs = json.loads(PAIRS.read_text(encoding="utf-8"))
@@ -374,6 +470,12 @@ def main():
         measure(pairs, options.measure)
     elif options.read:
         add_reading(pairs, *options.read)
+    elif options.table:
+        write_table()
+    elif options.styles:
+        write_styles()
+    elif options.failures:
+        draw_failures(pairs)
     else:
         for of in SETS:
             report(pairs, of)

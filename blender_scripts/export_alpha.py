@@ -6,7 +6,8 @@ Guides know no half-transparent surfaces: what lies below one half is a hole, al
 import bpy
 import numpy as np
 
-from export_nodes import clear_links, constant, image_fault, one_texture, previous
+import export_images
+from export_nodes import clear_links, constant, one_texture, previous
 
 CUT = 0.5
 MOSTLY = (0.1, 0.9)  # between them an alpha is neither hole nor surface
@@ -63,12 +64,13 @@ def masked(tree, source, invert):
     return other.outputs["Alpha"]
 
 
-def inverted(tree, source):
+def inverted(tree, source, reader):
     """The output of an image's copy that is 1 where the image is 0; the image's own where that has a fault."""
-    return source if image_fault(source.node, "alpha") is not None else masked(tree, source, True)
+    fault = export_images.fault(source.node, "alpha", reader.unsupported)
+    return source if fault is not None else masked(tree, source, True)
 
 
-def without_transparent(tree, surface):
+def without_transparent(tree, surface, reader):
     """What a Mix Shader of Transparent and another shader shows: that shader's output, and its alpha, a number or an
     image's output. Transparent alone is nothing with an alpha of 0; any other surface is itself without an alpha."""
     if is_transparent(surface):
@@ -93,7 +95,7 @@ def without_transparent(tree, surface):
         if source.name == "Alpha" and source.node.image is not None and source.node.image.alpha_mode == "NONE":
             alpha = 1.0  # as in Cycles
         elif invert:
-            alpha = inverted(tree, source)
+            alpha = inverted(tree, source, reader)
     if alpha is None:
         return surface, None
     if isinstance(alpha, float) and invert:
@@ -137,8 +139,9 @@ def alphas_of(source):
     return np.empty((0, 0), np.float32) if is_large else values_of(source)
 
 
-def close_clipped(source, alphas, reader):
+def close_clipped(source, reader):
     """Beyond an image that is clipped all is hole, as it is if the picture's rim is a hole that goes on."""
+    alphas = alphas_of(source)
     rims = (alphas[0], alphas[-1], alphas[:, 0], alphas[:, -1]) if alphas.size else ()
     if any(rim.max() >= CUT for rim in rims):
         reader.complain(f"image '{source.node.image.name}' is its alpha and clipped: beyond it, its rim goes on")
@@ -147,7 +150,7 @@ def close_clipped(source, alphas, reader):
 
 def fault_of(source, color, reader):
     """The reason why the image cannot be the surface's alpha; None where it can."""
-    fault = image_fault(source.node, "alpha" if source.name == "Alpha" else "any")
+    fault = export_images.fault(source.node, "alpha" if source.name == "Alpha" else "any", reader.unsupported)
     if fault is None and color is not None and not one_texture(source.node, color.node, reader.shown_map):
         fault = f"node '{source.node.name}' at other places than the colour's image, with which it shares a texture,"
     return fault
@@ -173,13 +176,13 @@ def read(tree, node, color, reader):
         return set_constant(tree, socket, value)
     if source.name == "Alpha" and source.node.image is not None and source.node.image.alpha_mode == "NONE":
         return set_constant(tree, socket, 1.0)  # as in Cycles
-    alphas = alphas_of(source)
     if source.node.extension == "CLIP" and source.node.image is not None:
-        close_clipped(source, alphas, reader)
+        close_clipped(source, reader)
     fault = fault_of(source, color, reader)
     if fault is not None:
         reader.complain(f"{fault} feeds Alpha, which keeps its own value instead")
         return set_constant(tree, socket, socket.default_value)
+    alphas = alphas_of(source)
     soft = np.count_nonzero((alphas > MOSTLY[0]) & (alphas < MOSTLY[1]))
     if soft > SOFT_SHARE * alphas.size:
         reader.complain(f"image '{source.node.image.name}' is its alpha and half transparent in wide parts, which are "

@@ -11,8 +11,9 @@ from dataclasses import dataclass, field
 import bpy
 import numpy as np
 
+import export_images
 from export_flat import material_key
-from export_nodes import clear_links, constant, coordinates_of, image_fault, previous, principled_input
+from export_nodes import clear_links, constant, coordinates_of, previous, principled_input
 
 SPACES = {"TANGENT", "OBJECT", "BLENDER_OBJECT"}
 COAT = "KHR_materials_clearcoat"
@@ -62,7 +63,7 @@ def read_map(node, bends, reader):
             reader.complain(f"{where} has a constant colour; it is left out")
         return
     image = previous(node.inputs["Color"])
-    fault = fault_of(image, "data")
+    fault = fault_of(image, "data", reader)
     if fault is not None:
         reader.complain(f"{where}: {fault} cannot be expressed; it is left out")
         return
@@ -73,11 +74,11 @@ def read_map(node, bends, reader):
     bends.extras["normal"] = {"space": space, "strength": strength}
 
 
-def fault_of(source, spaces):
+def fault_of(source, use, reader):
     """The fault in an image's colour as input; None where there is none."""
     if source.node.type != "TEX_IMAGE" or source.name != "Color":
         return f"node '{source.node.name}' ({source.node.type}), its output {source.name},"
-    return image_fault(source.node, spaces)
+    return export_images.fault(source.node, use, reader.unsupported)
 
 
 def check_tangents(node, image, where, reader):
@@ -107,7 +108,7 @@ def read_bump(node, bends, reader):
     distance *= factor
     if image is None or strength == 0.0 or distance == 0.0:
         return
-    fault = fault_of(image, "any")
+    fault = fault_of(image, "height", reader)
     if fault is not None:
         reader.complain(f"{where}: {fault} as Height cannot be expressed; the bump is left out")
         return
@@ -116,8 +117,9 @@ def read_bump(node, bends, reader):
         return
     check_interpolation(image.node, where, reader)
     bends.height = image
-    bends.extras["bump"] = {"strength": strength, "distance": distance,
-                            "srgb": image.node.image.colorspace_settings.name == "sRGB"}
+    picture = image.node.image
+    bends.extras["bump"] = {"strength": strength, "distance": distance * picture.get(export_images.RANGE, 1.0),
+                            "srgb": picture.colorspace_settings.name == "sRGB"}
 
 
 def height_of(socket):

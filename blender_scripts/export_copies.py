@@ -1,7 +1,7 @@
 """Prepares the copy of a material's nodes, so that they say what Cycles does: part of export_scene.py.
 
 Muted nodes and links go, an image's own mapping becomes a node, mappings in a row become one, the UV of the instancer
-becomes a map, and images whose alpha is not read get Cycles' colours.
+becomes a map, and images whose alpha is not read get Cycles' colours. What reads an image gets a node of its own.
 """
 
 import math
@@ -10,8 +10,8 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
-from export_nodes import (INSTANCER_MAP, is_odd_panel, is_plain_mapping, is_used_panel, passed_through, previous,
-                          trace)
+from export_nodes import (INSTANCER_MAP, READS_ALPHA, is_odd_panel, is_plain_mapping, is_used_panel, passed_through,
+                          previous, trace)
 
 ASSOCIATED = "scumble_associated"  # property of an image: the one that stands for it
 
@@ -122,9 +122,37 @@ def associate_images(tree):
             node.image = associated(image)
 
 
+def give_each_its_own(tree):
+    """What reads an image's colour gets a node of its own, which may have another copy of the image than the others."""
+    readers = {}
+    for node in tree.nodes:
+        for socket in node.inputs if node.type != "REROUTE" else ():
+            source = previous(socket) if socket.is_linked else None
+            if source is not None and source.node.type == "TEX_IMAGE" and source.name == "Color":
+                readers.setdefault(source.node.name, []).append(socket)
+        if node.type == "TEX_IMAGE":
+            node[READS_ALPHA] = node.outputs["Alpha"].is_linked
+    for name, sockets in readers.items():
+        if not is_odd_panel(tree.nodes[name].texture_mapping):
+            for socket in sockets[1:]:
+                tree.links.new(twin_of(tree, tree.nodes[name]).outputs["Color"], socket)
+
+
+def twin_of(tree, node):
+    twin = tree.nodes.new("ShaderNodeTexImage")
+    for name in ("image", "interpolation", "extension", "projection"):
+        setattr(twin, name, getattr(node, name))
+    twin.name, twin[READS_ALPHA] = node.name, node[READS_ALPHA]
+    source = previous(node.inputs["Vector"])
+    if source is not None:
+        tree.links.new(source, twin.inputs["Vector"])
+    return twin
+
+
 def prepare(tree):
     bypass_muted(tree)
     name_instancer_map(tree)
     spread_panel(tree)
     merge_mappings(tree)
     associate_images(tree)
+    give_each_its_own(tree)

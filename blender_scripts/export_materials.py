@@ -10,8 +10,9 @@ import bpy
 import export_alpha
 import export_bends
 import export_copies
+import export_images
 import export_styles
-from export_nodes import clear_links, constant, image_fault, one_texture, previous, principled_input
+from export_nodes import clear_links, constant, one_texture, previous, principled_input
 
 PLAIN = {"BSDF_DIFFUSE": "DIFFUSE", "BSDF_GLOSSY": "GLOSSY", "EMISSION": "EMISSION", "BSDF_PRINCIPLED": "PRINCIPLED"}
 CYCLES_DEFAULT = (0.8, 0.8, 0.8)  # Cycles' material of faces without one
@@ -55,7 +56,7 @@ class Reader:
         source = previous(socket)
         node = source.node
         if node.type == "TEX_IMAGE" and source.name == "Color":
-            fault = image_fault(node, "colour")
+            fault = export_images.fault(node, "colour", self.unsupported)
             if fault is None:
                 return (1.0, 1.0, 1.0), source
             self.complain(f"{fault} feeds {socket.name}, which keeps its own colour instead")
@@ -115,7 +116,7 @@ def keep_or_cut(tree, reader, node, name, beside=None):
     """An input of numbers that only an image may feed. Returns its constant, or None for an image. `beside`: another
     input's image, which shares a texture with it."""
     image = number_image(node.inputs[name])
-    if image is not None and image_fault(image, "data") is None:
+    if image is not None and export_images.fault(image, "data", reader.unsupported) is None:
         if beside is None or one_texture(image, beside, reader.shown_map):
             return None
         reader.complain(f"node '{image.name}' at other places than the roughness' image, with which it shares a "
@@ -211,7 +212,7 @@ def shown_surface(copy, reader):
             reader.complain(f"its {name.lower()} is ignored")
     if surface is None:
         return output, None, None
-    shown, alpha = export_alpha.without_transparent(tree, surface)
+    shown, alpha = export_alpha.without_transparent(tree, surface, reader)
     if alpha is not None:
         tree.nodes.remove(surface.node)
     if shown is not None:

@@ -1,4 +1,4 @@
-"""What feeds the input of a node, and which images glTF can keep: shared by export_materials.py and export_bends.py."""
+"""What feeds the input of a node, and which images glTF can keep: shared by the parts that read materials."""
 
 
 # Inputs of the Principled node by their names up to Blender 3.6, and from 4.0 on.
@@ -8,6 +8,8 @@ PRINCIPLED_INPUTS = {"Subsurface": "Subsurface Weight", "Specular": "Specular IO
                      "Emission": "Emission Color"}
 
 INSTANCER_MAP = "scumble.instancer"  # the UV map that holds an instance's place in its instancer's map
+
+READS_ALPHA = "scumble_reads_alpha"  # property of a node: whether something reads its image's alpha
 
 LUMINANCE = (0.2126, 0.7152, 0.0722)  # of Blender's own colour space
 
@@ -94,25 +96,44 @@ def keeps_its_depth(image):
     return not image.is_float or (image.source == "FILE" and image.file_format == "PNG" and not image.is_dirty)
 
 
-def image_fault(node, spaces):
-    """The fault in an image texture; None where glTF has it. `spaces`: "colour", "data", or "any" of the two."""
-    if node.image is None:
-        return f"node '{node.name}' without an image"
+def is_raw(image):
+    """Whether Cycles takes the numbers in the file as they are."""
+    space = image.colorspace_settings
+    return space.is_data or space.name in {"Non-Color", "Raw", "Linear", "Linear Rec.709"}
+
+
+def holds_colours(image):
+    """Whether glTF can take it for a picture of colours."""
+    return image.colorspace_settings.name == "sRGB" and not image.is_float
+
+
+def holds_numbers(image):
+    return is_raw(image) and keeps_its_depth(image)
+
+
+def place_fault(node):
+    """The fault in how and where an image lies on a surface; None where glTF has it."""
     if node.projection != "FLAT" or node.extension == "CLIP":
         return f"node '{node.name}' with {node.projection} projection and extension {node.extension}"
     if is_odd_panel(node.texture_mapping):
         return f"node '{node.name}' with a projection or limits in its Texture Mapping panel"
-    if node.image.source not in {"FILE", "GENERATED"}:
-        return f"node '{node.name}' with an image of source {node.image.source}"
-    space, is_float = node.image.colorspace_settings.name, node.image.is_float
-    is_colour = space == "sRGB"
-    known = {"colour": is_colour and not is_float, "data": not is_colour and keeps_its_depth(node.image),
-             "alpha": True,  # is not managed
-             "any": (is_colour and not is_float) or
-                    (space in {"Non-Color", "Raw", "Linear", "Linear Rec.709"} and keeps_its_depth(node.image))}
-    if not known[spaces]:
-        return f"node '{node.name}' with an image in {space}{', of more than 8 bits' if is_float else ''}"
     return coordinates_of(node.inputs["Vector"])[1]
+
+
+def image_fault(node, use):
+    """The fault in an image texture; None where glTF has it. `use`: export_images.fault has them."""
+    image = node.image
+    if image is None:
+        return f"node '{node.name}' without an image"
+    fault = place_fault(node)
+    if fault is not None:
+        return fault
+    if image.source not in {"FILE", "GENERATED"}:
+        return f"node '{node.name}' with an image of source {image.source}"
+    if use == "alpha" or (use != "data" and holds_colours(image)) or (use != "colour" and holds_numbers(image)):
+        return None
+    bits = ", of more than 8 bits" if image.is_float else ""
+    return f"node '{node.name}' with an image in {image.colorspace_settings.name}{bits}"
 
 
 def placement_of(node, shown_map):

@@ -2,8 +2,8 @@
 
     blender -b -noaudio --factory-startup -P tests/blender/make_oddities.py -- --output FOLDER
 
-FOLDER gets odd.blend and, at frame 10, placed.blend, seen from above in cells of 1 m; layered.blend, whose second view
-layer moves; and limits.blend with lamps and instancers.
+FOLDER gets odd.blend, images.blend and, at frame 10, placed.blend, seen from above in cells of 1 m; layered.blend,
+whose second view layer moves; limits.blend with lamps and instancers; and lost.blend with images.
 """
 
 import argparse
@@ -19,6 +19,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 import odd_materials  # noqa: E402  (Blender does not put a script's own folder on the path)
 import odd_objects  # noqa: E402
 import odd_places  # noqa: E402
+from export_cases import images  # noqa: E402
 
 COLUMNS, ROWS = 8, 6
 
@@ -119,6 +120,13 @@ def make_limits(folder):
     save(folder, "limits")
 
 
+def make_images(folder):
+    for name, build in (("images", images.build), ("lost", images.build_lost)):
+        clear()
+        build(folder)
+        save(folder, name)
+
+
 def main():
     parser = argparse.ArgumentParser(prog="make_oddities.py", description="Makes the scenes of oddities_test.py.")
     parser.add_argument("--output", required=True, type=Path)
@@ -128,6 +136,7 @@ def main():
     make_layered(folder)
     make_placed(folder)
     make_limits(folder)
+    make_images(folder)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """What few files do is exported as Cycles renders it: odd materials, curves with geometry nodes, settings of the
 viewport, view layers other than the window's and their filters, alpha, subdivision and lamps that are said, animated
-nodes, cameras of one name, what is flat, and limits of instancers.
+nodes, cameras of one name, what is flat, limits of instancers, and images that glTF cannot hold.
 
     oddities_test.py PROGRAM [BLENDER]
 """
@@ -46,17 +46,29 @@ LIMITS = ["camera 'Flat': its scale leaves it no direction, left out",
 SHEARED = (0.447742, 0.554991, 0.701079)  # the third axis under the inverse of the scale
 
 
+LOST_IMAGES = ["image 'bright.exr': 81% of its pixels have colours above 1",
+               "image 'damaged' cannot be read from '//damaged.exr'",
+               "image 'gap': its tile 1002 cannot be read from '//gap.<UDIM>.png' and is white",
+               "image 'large': its tiles are shrunk to 8 x 8 pixels, because 2 x 1 of them",
+               "material 'boxed': node 'Image Texture' with BOX projection",
+               "material 'damaged': node 'Image Texture' with an image in Linear",
+               "material 'frames': node 'Image Texture' with an image of source SEQUENCE",
+               "material 'turned': node 'Image Texture' with 2 x 1 tiles at turned coordinates"]
+FEW_PIXELS = ("import sys; sys.dont_write_bytecode = True; sys.path.insert(0, {!r}); import export_images; "
+              "export_images.MOST_PIXELS = 128")
+
+
 def blender_run(blender, *arguments):
     done = run([blender, "-b", "-noaudio", "--factory-startup", "-Y", *arguments])
     expect(done.returncode == 0, arguments, done.stdout[-2000:], done.stderr)
     return done.stderr
 
 
-def exported(blender, folder, name, *arguments):
-    """The document of the exported scene; what is not expressed."""
+def exported(blender, folder, name, *arguments, before="0"):
+    """The document of the exported scene; what is not expressed. `before`: Python that Blender runs first."""
     output = folder / (name + ".glb")
-    blender_run(blender, folder / (name + ".blend"), "-P", SOURCE / "blender_scripts/export_scene.py", "--", "--output",
-                output, *arguments)
+    blender_run(blender, folder / (name + ".blend"), "--python-expr", before, "-P",
+                SOURCE / "blender_scripts/export_scene.py", "--", "--output", output, *arguments)
     data = output.read_bytes()
     document = json.loads(data[20:20 + struct.unpack_from("<I", data, 12)[0]])
     return document, document["scenes"][document["scene"]]["extras"]["scumble"]
@@ -92,7 +104,31 @@ def check_odd(document, extras):
     expect(not extras["unsupported"], extras["unsupported"])
 
 
-def check_against_cycles(program, blender, scene, *more):
+def check_images(document, extras):
+    """What they look like is compared with Cycles."""
+    def pictures(name, *path):
+        found = next(material for material in document["materials"] if material["name"] == name)
+        for key in path:
+            found = found[key]
+        return document["textures"][found["index"]]["source"]
+
+    color = ("pbrMetallicRoughness", "baseColorTexture")
+    shared = {pictures(name, *color) for name in ("image 0", "mapped", "extended", "twice", "glowing")}
+    expect(len(shared) == 1, "materials share a copy", shared)
+    height = pictures("twice", "extras", "scumble", "bump", "texture")
+    expect(height not in shared, "the height has a copy of its own", height)
+    expect(not extras["unsupported"], extras["unsupported"])
+
+
+def check_lost_images(document, extras):
+    textured = {material["name"] for material in document["materials"]
+                if "baseColorTexture" in material["pbrMetallicRoughness"]}
+    expect(textured == {"gap", "bright", "large"}, textured)
+    lost = sorted(extras["unsupported"])
+    expect(len(lost) == len(LOST_IMAGES) and all(start in line for start, line in zip(LOST_IMAGES, lost)), lost)
+
+
+def check_against_cycles(program, blender, scene, *more, albedo=0.002):
     done = run([program, "crosscheck", scene, "--blender", blender, "--size", "320x240", "--samples", "1", "-q",
                 "--json", *more])
     expect(done.stdout, done.stderr)
@@ -103,6 +139,7 @@ def check_against_cycles(program, blender, scene, *more):
     for figure in report["figures"]:
         if figure["layer"] in DATA:
             expect(figure["kept"], figure)
+    expect(figures["albedo"]["value"] < albedo, figures["albedo"])
 
 
 def check_layered(document, extras):
@@ -198,7 +235,11 @@ def main():
         check_filter(exported(blender, folder, "layered", "--view-layer", "Strands")[0], False, True)
         check_placed(*exported(blender, folder, "placed", "--frame", "10"))
         check_limits(*exported(blender, folder, "limits"))
+        check_images(*exported(blender, folder, "images"))
+        few = FEW_PIXELS.format(str(SOURCE / "blender_scripts"))
+        check_lost_images(*exported(blender, folder, "lost", before=few))
         check_against_cycles(program, blender, folder / "odd.blend")
+        check_against_cycles(program, blender, folder / "images.blend", albedo=0.0005)
         check_against_cycles(program, blender, folder / "placed.blend", "--frame", "10")
 
 

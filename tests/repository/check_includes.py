@@ -3,9 +3,10 @@
 
 Usage: check_includes.py [SOURCE_FOLDER]     Prints each offender as file:line; exit code 1 if there are any.
 
-Libraries include only the libraries that the table names. Inside a library a folder's subfolders are stages of the data
-flow, listed in order: a stage includes itself, its parent folders' headers and the stages before it. Files in the root
-of a library conduct, and may include every stage.
+Libraries include only the libraries that the table names, and of these only the headers in the root: they are public.
+Inside a library a folder's subfolders are stages of the data flow, listed in order: a stage includes itself, its parent
+folders' headers and the stages before it. A public header whose definitions lie in a stage counts as that stage's. The
+other files in the root of a library conduct, and may include every stage.
 """
 import pathlib
 import re
@@ -15,20 +16,22 @@ import sys
 # "parent/child".
 LIBRARIES = {
     "public": ("include/scumble", set(), []),
-    "image": ("core/image", {"public"}, ["painting"]),
+    "image": ("core/image", {"public"}, []),
+    "painting": ("core/painting", {"public", "image"}, []),
     "io": ("core/io", {"public", "image"}, ["file", "png", "exr", "picture", "guides", "blender", "oiio"]),
     "filter": ("core/filter", {"public", "image"}, []),
-    "style": ("core/style", {"public", "image", "io"}, ["kit", "scan"]),
+    "style": ("core/style", {"public", "image", "painting", "io"}, ["toml", "finish", "kit", "scan"]),
     "guidegen": ("guidegen", {"public", "image", "io", "filter"},
                  ["scene", "load", "load/gltf", "load/obj", "surface", "rays", "light", "cast"]),
-    "transfer": ("transfer", {"public", "image", "filter"},
-                 ["field", "nearest", "exemplar", "seeds", "match", "vote", "vote/edge", "vote/wide", "tint", "frame",
+    "transfer": ("transfer", {"public", "image", "painting", "filter"},
+                 ["nearest", "exemplar", "seeds", "match", "vote", "vote/edge", "vote/wide", "tint", "frame",
                   "outline", "shadow"]),
     "finish": ("finish", {"public", "image", "filter"}, ["tone", "area", "points", "smooth", "hatch", "outline"]),
-    "measure": ("measure", {"public", "image", "io", "filter"},
-                ["report", "compare", "mosaic", "energy", "texture", "painting", "crosscheck", "tradeoff"]),
-    "pipeline": ("pipeline", {"public", "image", "io", "filter", "guidegen", "style", "transfer", "finish", "measure"},
-                 ["style", "memory", "scene", "frame", "variant", "quality", "run", "tradeoff", "crosscheck"]),
+    "measure": ("measure", {"public", "image", "painting", "io", "filter"},
+                ["compare", "mosaic", "texture", "painting", "crosscheck", "tradeoff"]),
+    "pipeline": ("pipeline",
+                 {"public", "image", "painting", "io", "filter", "guidegen", "style", "transfer", "finish", "measure"},
+                 ["request", "style", "machine", "scene", "frame", "variant", "run", "tradeoff", "api"]),
     "cli": ("apps/cli",
             {"public", "image", "io", "filter", "guidegen", "style", "transfer", "finish", "measure", "pipeline",
              "studio"},
@@ -40,7 +43,8 @@ LIBRARIES = {
 
 # Third parties by the start of the included path, and the libraries that may name them.
 THIRD_PARTY = {
-    "glm/": {"filter", "image", "io", "guidegen", "style", "transfer", "finish", "measure", "cli", "pipeline"},
+    "glm/": {"filter", "image", "painting", "io", "guidegen", "style", "transfer", "finish", "measure", "cli",
+             "pipeline"},
     "OpenImageIO/": {"io"},
     "OpenEXR/": {"io"},
     "Imath/": {"io"},
@@ -85,15 +89,25 @@ def library_of(path):
     return None, path
 
 
-def stage_of(inside):
-    """The stage that a path inside its library lies in; "" for the root."""
-    return inside.rpartition("/")[0]
+def stage_of(path, inside, of_headers):
+    """The stage that a path belongs to; "" for the root."""
+    return inside.rpartition("/")[0] or of_headers.get(path, "")
 
 
 def rank(library, stage):
     """Where a stage stands in its library's order; the root conducts and stands above all."""
     stages = LIBRARIES[library][2]
     return stages.index(stage) if stage in stages else None
+
+
+def stages_of_headers(root):
+    """The stage that holds the definitions of each header in a library's root, by path."""
+    found = {}
+    for folder, _, stages in LIBRARIES.values():
+        for stage in stages:
+            for path in (root / folder / stage).glob("*.cpp"):
+                found[f"{folder}/{path.stem}.h"] = stage
+    return found
 
 
 def stage_offence(library, stage, included):
@@ -110,7 +124,7 @@ def stage_offence(library, stage, included):
     return None
 
 
-def offence(name, quoted, bracketed, root):
+def offence(name, quoted, bracketed, root, of_headers):
     """The fault of one #include line of the file `name`, or None."""
     library, inside = library_of(name)
     _, allowed, _ = LIBRARIES[library]
@@ -121,9 +135,12 @@ def offence(name, quoted, bracketed, root):
             return "is no file of this repository; third parties go into angle brackets"
         owner, rest = library_of(where(quoted))
         if owner == library:
-            return stage_offence(library, stage_of(inside), stage_of(rest))
+            return stage_offence(library, stage_of(name, inside, of_headers),
+                                 stage_of(quoted, rest, of_headers))
         if owner not in allowed:
             return f"is not for {library}, which may include {', '.join(sorted(allowed)) or 'nothing else'}"
+        if "/" in rest:
+            return f"is not public: headers for other libraries lie in the root of {LIBRARIES[owner][0]}/"
         return None
     if library_of(bracketed)[0]:
         return "is ours: write it in quotes"
@@ -137,12 +154,12 @@ def main():
     root = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else pathlib.Path(__file__).resolve().parents[2]
     files = [path for folder, _, _ in LIBRARIES.values() for path in sorted((root / folder).rglob("*"))
              if path.suffix in (".h", ".cpp")]
-    offences = []
+    offences, of_headers = [], stages_of_headers(root)
     for path in files:
         name = path.relative_to(root).as_posix()
         for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
             found = INCLUDE.match(line)
-            problem = offence(name, found[1], found[2], root) if found else None
+            problem = offence(name, found[1], found[2], root, of_headers) if found else None
             if problem:
                 offences.append(f"{name}:{number}: {found[1] or found[2]} {problem}")
     if not files:
