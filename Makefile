@@ -20,12 +20,12 @@ demo: build ## draw a dozen pictures and a contact sheet into out/demo/; ALL=1 d
 bare: ## run demo and test in a new Debian root that holds only git and make (as root); ONLY=demo runs one; DEBIAN=12
 	@exec env DEBIAN=$(or $(DEBIAN),12) .ci/bare $(foreach target,$(or $(ONLY),demo test),"make $(target)")
 
-check: ## the quick tests, for between edits: under a minute once built; one library's: CHECK=transfer
+check: ## the quick tests, for between edits: under a minute once built; one folder's: CHECK=transfer
 	@.ci/install test
 	@cmake --preset release -DSCUMBLE_TESTS=ON > build.log 2>&1 || { cat build.log; rm -f build.log; exit 1; }
 	@rm -f build.log
-	@cmake --build build --target $(if $(CHECK),$(CHECK)_test,check_programs) -j $(JOBS)
-	@ctest --test-dir build --output-on-failure -j $(JOBS) -L '^unit$$' $(if $(CHECK),-L '^$(CHECK)$$')
+	@cmake --build build --target check_$(or $(CHECK),programs) -j $(JOBS)
+	@ctest --test-dir build --output-on-failure --no-tests=error -j $(JOBS) -L '^$(if $(CHECK),check_$(CHECK),unit)$$'
 
 test: ## install what is missing (Blender too), build everything, run all tests
 	@.ci/install test

@@ -81,7 +81,7 @@ def camera_of(extras):
     return {"type": "perspective", "perspective": {"yfov": yfov, "aspectRatio": aspect, **planes}}
 
 
-def wish(placed):
+def style_request(placed):
     style = export_styles.style_of(placed.source, placed.shown)
     return {} if style is None else {"style": style}
 
@@ -123,7 +123,7 @@ def complete(document, binary, flat, materials, lamps, cameras, curves):
             continue
         document["meshes"][mesh]["name"] = placed.source.data.name if placed.source.data else placed.source.name
         nodes.append({"name": placed.name, "mesh": mesh, "matrix": matrix_numbers(placed.matrix, True),
-                      "extras": {"scumble": {"pass_index": placed.source.pass_index, **wish(placed)}}})
+                      "extras": {"scumble": {"pass_index": placed.source.pass_index, **style_request(placed)}}})
     for placed, extras in zip(flat.cameras, cameras):
         document.setdefault("cameras", []).append({"name": placed.source.data.name, **camera_of(extras)})
         nodes.append({"name": placed.name, "camera": len(document["cameras"]) - 1,

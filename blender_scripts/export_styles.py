@@ -41,8 +41,9 @@ def is_catcher(thing):
 
 
 def style_of(thing, shown=None):
-    """What an object or material asks for, None without a wish. `shown` is the object in the scene that shows it: an
-    Empty's wish holds for its instances that have none of their own, and catchers instance catchers, as in Cycles."""
+    """What an object or material asks for, None without a request. `shown` is the object in the scene that shows it.
+    An Empty's request holds for its instances that have none of their own. Catchers instance catchers, as in
+    Cycles."""
     style = own_style(thing)
     if style is None and shown is not None and shown.type == "EMPTY":
         style = own_style(shown)
@@ -53,9 +54,9 @@ def style_of(thing, shown=None):
 
 def note_nested(depsgraph, unsupported):
     """Blender says of an instance which object in the scene shows it, and not what is between the two."""
-    wishes = {thing for thing in bpy.data.objects
+    requested = {thing for thing in bpy.data.objects
               if thing.type == "EMPTY" and thing.instance_type == "COLLECTION" and own_style(thing) is not None}
-    for instance in depsgraph.object_instances if wishes else ():
-        if instance.is_instance and instance.object.original in wishes:
+    for instance in depsgraph.object_instances if requested else ():
+        if instance.is_instance and instance.object.original in requested:
             unsupported.add(f"object '{instance.object.original.name}': its style does not hold in the instances of "
                             f"'{instance.parent.original.name}': set it on an Empty in the scene itself")

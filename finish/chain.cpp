@@ -21,9 +21,11 @@
 #include "finish/area/ink.h"
 #include "finish/area/oklab_blocks.h"
 #include "finish/finish.h"
+#include "finish/hatch/hatch.h"
 #include "finish/jitter.h"
 #include "finish/outline/outline.h"
 #include "finish/points/point_loop.h"
+#include "finish/smooth/smooth.h"
 #include "finish/tone/point_effect.h"
 #include "finish/tone/toon_bands.h"
 

@@ -36,8 +36,8 @@ struct FinishMeasures {
 // Whether any of the passes looks at them.
 bool LooksAtMeasures(std::span<const FinishPass> passes);
 
-// The share of pixels with any coverage. Without one there is nothing to measure; a sequence is measured on the first
-// frame that has kEnoughToMeasure, as an object that slides into view begins with a few pixels.
+// The share of pixels with any coverage. Without one there is nothing to measure. An object that slides into view
+// begins with a few pixels, so a sequence is measured on the first frame that has kEnoughToMeasure.
 double CoveredShare(const GuideSet& guides);
 inline constexpr double kEnoughToMeasure = 0.005;
 
@@ -81,7 +81,7 @@ struct FinishFrame {
   // then change each surface of a pixel by its own paint, else by the pixel's.
   const FragmentColors* colors = nullptr;
   // Of the picture as it is given, pixels rising. Effects that treat each pixel by itself change a stroke by the guides
-  // of its owner, and the rest of its pixel by that pixel's; they change what is named, masked or of a style likewise.
+  // of its owner, and the rest of its pixel by that pixel's. What is named, masked or of a style is chosen likewise.
   std::span<const EdgeStroke> strokes = {};
   // Pixels of `guides` from one sample to the next.
   int Apart() const { return small_guides ? guides->width() / small_guides->width() : 1; }
@@ -90,9 +90,9 @@ struct FinishFrame {
 // kInput where a pass is to show a ramp of colours, and has none.
 Status CheckRamp(const FinishPass& pass);
 
-// kInput where the guides lack a layer that a step reads, or where a width is to follow the depth of an orthographic
-// view, which has no sizes, where near is not before far, or where a palette has no example and a ramp no colours. The
-// message names the pass.
+// kInput, in a message that names the pass, in these cases. The guides lack a layer that a step reads. A width is to
+// follow the depth of an orthographic view, which has no sizes. Near is not before far. A palette has no example, or a
+// ramp no colours.
 Status CheckFinish(std::span<const FinishStep> steps, const GuideSet* guides, const FinishMeasures& measures = {});
 
 // Whether any of the steps is of the stage kGuides.
@@ -127,14 +127,14 @@ struct FinishLayerOptions {
   std::string only = {};  // the layers of passes of this name alone, and no others; empty: all layers
 };
 
-// ApplyFinish of kPaint, put_ground and ApplyFinish of kSheet, to the same bytes; and the layers from the lowest up:
-// the ground unless there is none, the paint, and each pass of any strength. The visible ones, put over one another,
-// are the picture to a step of `bits`, as colours show. Outlines, edges in ink and hatching are layers of ink. A pass
-// that paints anew hides what is below it, but for the ground. Over a ground of partial alpha there may be no colours
-// that lead to the picture: a layer is then the picture with its ground and hides all below it, of ink, too. With
-// `only`: of ink, as it lies on the exact picture; the passes before it have no layers; of a pass of kGuides, the
-// paint. Errors as of ApplyFinish. O(pixels) for each layer, besides the steps, of which those that ApplyFinish joins
-// are repeated for each of their layers.
+// Does ApplyFinish of kPaint, put_ground and ApplyFinish of kSheet, to the same bytes. Returns the layers from the
+// lowest up: the ground unless there is none, the paint, and each pass of any strength. The visible ones, put over one
+// another, are the picture to a step of `bits`, as colours show. Outlines, edges in ink and hatching are layers of ink.
+// A pass that paints anew hides what is below it, but for the ground. Over a ground of partial alpha there may be no
+// colours that lead to the picture. Then a layer, of ink too, is the picture with its ground and hides all below it.
+// With `only`: of ink, as it lies on the exact picture; the passes before it have no layers; of a pass of kGuides, the
+// paint. Errors as of ApplyFinish. O(pixels) for each layer, besides the steps. Steps that ApplyFinish joins are
+// repeated for each of their layers.
 Expected<std::vector<FinishLayer>> FinishInLayers(std::span<const FinishStep> steps, const FinishFrame& frame,
                                                   const FinishLayerOptions& options, int threads,
                                                   const Progress& progress, Picture& picture);

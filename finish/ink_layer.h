@@ -31,7 +31,7 @@ struct InkLayer {
 // The layer that over or atop `below` shows `target`, and puts it there. Ink that raises no alpha, such as hatching
 // along a silhouette, is laid atop. Where a density or a colour alone does not lead to the target, the other follows:
 // what `below` has lost by rounding is made up for. Where alpha is partial below and raised, the target decides on the
-// density: then there may be no colour that leads to it, as pictures blend in linear light and layers do not. `most` is
+// density. Then there may be no colour that leads to it, as pictures blend in linear light and layers do not. `most` is
 // the largest value of a channel in the file, 255 or 65535: values of the layer are such steps. O(pixels), on the
 // caller's arena of threads.
 InkLayer InkBetween(const InkChange& change, int most, Picture& below);

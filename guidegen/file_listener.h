@@ -6,8 +6,8 @@
 
 namespace scumble {
 
-// Called with the scene's file, and with each file that it names and that is looked for, before it is: also where it is
-// missing, and where it is a texture, which is decoded later or not at all. Some are told of twice.
+// Called with the scene's file, and with each file that it names, before that is looked for. The file may be missing,
+// or a texture, which is decoded later or not at all. Some are told of twice.
 using FileListener = std::function<void(const std::filesystem::path&)>;
 
 }  // namespace scumble

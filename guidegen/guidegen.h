@@ -49,16 +49,17 @@ struct GuidegenOptions {
   // For light-path layers, and for luminance and shadow under lights with extent. Samples of a pixel, 1 … kMaxSamples.
   // They share the pixel's first surface, so no layer is averaged across a silhouette.
   int samples = 64;
-  // Luminance and shadow only. Above 0: each pixel samples each light with extent 4 times at least (8 at the border of
-  // a 16 × 16 tile; 16 where there are more than 8 such lights, and directions that look for a near one), and more
-  // often, up to `samples`, until the estimated standard error of its light is not larger than this share of the light
-  // that the lamps it sees would bring without occluders, together with what it has from lights without extent.
-  // Neighbours of a shadow's edge count as on it. 0: `samples` each.
+  // Luminance and shadow only. 0: `samples` for each light with extent. Above 0: fewer where the error is small. A
+  // pixel takes more samples, up to `samples`, until the estimated standard error of its light is at most this share of
+  // its full light. That is the light that the lamps it sees would bring without occluders, and its light from lamps
+  // without extent. Each light with extent has at least 4 samples, 8 at the border of a 16 × 16 tile. If there are more
+  // than 8 such lights, each has at least 16, and some directions look for a near one. Neighbours of a shadow's edge
+  // count as on it.
   double light_error = 0.0;
   // Reflections after the first surface's, 0 … kMaxBounces; 0 is direct light alone, as in Cycles.
   int max_bounces = 8;
-  // Light-path layers only. Above 0: samples are doubled, to 16 at least, until the estimated error, root mean square
-  // over mean, of each layer's luminance is not larger than this; `samples` does not count then.
+  // Light-path layers only. Above 0: `samples` does not count. Samples are doubled, to 16 at least, until the estimated
+  // error of each layer's luminance, root mean square over mean, is at most this.
   double noise = 0.0;
   // Light-path layers only. Above 0: samples are taken until this time is over, or `noise` is reached. At least one
   // sample is taken, whatever it costs. No pass begins that would last longer at the speed so far. The clock decides,
@@ -108,8 +109,9 @@ struct GuidegenResult {
   // guides.attributes["scumble:samples"].
   int samples = 0;
   double noise = 0.0;  // the estimated error, if `noise` or a time budget was given
-  // With options.light_error: nine of ten lit pixels have an estimated error of their light up to this one, which is
-  // larger where `samples` are too few. 0: there is no such light. Also in guides.attributes["scumble:light_error"].
+  // With options.light_error: nine of ten lit pixels have an estimated error of their light up to this one. Where
+  // `samples` are too few, it is larger than the option. 0: there is no such light. Also in
+  // guides.attributes["scumble:light_error"].
   double light_error = 0.0;
 };
 
@@ -136,13 +138,14 @@ struct NextFrame {
 Expected<GuidegenResult> RenderGuides(const Scene& scene, const Camera& camera, const NextFrame& next,
                                       const GuidegenOptions& options);
 
-// A scene before a camera, ready to be cast many times: names and ids, and the acceleration structure, which is built
-// by the first cast and kept. Casts may differ in every option. They build again only for another `isa` or `robust`,
-// and once more when light is first asked for.
+// A scene before a camera, ready to be cast many times. It keeps names and ids, and the acceleration structure, which
+// the first cast builds. Casts may differ in every option. They build again only for another `isa` or `robust`, and
+// once more when light is first asked for.
 //
 // The scene is borrowed, and must outlive this. Between casts lights, the world's radiance and styles may change, and
-// DecodeTextures may be called. If anything else of the scene changes, if the camera does, or if DecodeTextures leaves
-// a texture out, make a new RayScene: the structure depends on materials, and its triangles are relative to the camera.
+// DecodeTextures may be called. Make a new RayScene if anything else of the scene changes, if the camera changes, or if
+// DecodeTextures leaves a texture out. The structure depends on materials, and its triangles are relative to the
+// camera.
 //
 // Safe to use from several threads at once. A cast that is cancelled or fails leaves it as good as before.
 class RayScene {
@@ -178,9 +181,9 @@ struct SphereOptions {
   std::string isa;
 };
 
-// The exemplar's guides: the unit sphere that exactly fills an N × N orthographic picture, as an Embree sphere
-// primitive, lit by a sun of strength π. It is white and matt; lpe.LSE is what it would have with gloss. The object's
-// name is "sphere".
+// The exemplar's guides: the unit sphere that exactly fills an N × N orthographic picture, lit by a sun of strength π.
+// It is a sphere primitive of Embree, white and matt; lpe.LSE is what it would have with gloss. The object's name is
+// "sphere".
 Expected<GuidegenResult> RenderSphereGuides(const SphereOptions& options);
 
 }  // namespace scumble

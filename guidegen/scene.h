@@ -38,8 +38,8 @@ inline constexpr float kBlendCutoff = 0.5f;
 // Fresnel, whose colour is the base colour, and a black surface that only emits.
 enum class Bsdf { kMetallicRoughness, kDiffuse, kGlossy, kEmission };
 
-// How a normal map's value becomes a normal (surface/normal_map.h): by glTF's rule, or as Cycles' Normal Map node has
-// it in tangent space, in object space, and in the object space of Blender's old renderer.
+// How a normal map's value becomes a normal (surface/normal_map.h). It is by glTF's rule, or as Cycles' Normal Map node
+// has it in tangent space, in object space, and in the object space of Blender's old renderer.
 enum class NormalMapRule { kGltf, kTangent, kObject, kBlenderObject };
 
 // A height over the surface that bends the normal, as Cycles' Bump node. The height is the texel's luminance.
@@ -159,8 +159,8 @@ struct Light {
   double outer_cone_degrees = 45.0;
   glm::dmat4 world_from_light{1.0};  // shines down its −Z
   double radius = 0.0;  // point, spot: m; a disc that turns to face the point it lights, of radiance I / (π r²)
-  // Sun: full angular diameter. As in Cycles 3.4, its directions are spread evenly over a flat disc, so that a surface
-  // which faces a wide sun receives 2 (1/cos α − 1) / tan² α of its intensity, α half the angle: 0.998 at 10°.
+  // Sun: full angular diameter. As in Cycles 3.4, its directions are spread evenly over a flat disc. So a surface that
+  // faces a wide sun receives 2 (1/cos α − 1) / tan² α of its intensity, α half the angle: 0.998 at 10°.
   double angle_degrees = 0.0;
   bool cycles_spot = false;  // spot: Cycles' smoothstep falloff instead of KHR_lights_punctual's
   bool spot_cosine = true;   // with cycles_spot: times cosθ, as in Cycles 3.4

@@ -1,8 +1,8 @@
 // Compares two files channel by channel: the differences, their places, and whether they exceed thresholds.
 //
 // The options are those of OpenImageIO's idiff with the meaning that its documentation gives them. Where idiff 2.4
-// deviates we follow the documentation: every threshold is tested, whether or not another one was exceeded,
-// channels are matched by name, differing sizes are an error, and NaN is a difference.
+// deviates we follow the documentation. Every threshold is tested, whether or not another one was exceeded. Channels
+// are matched by name, differing sizes are an error, and NaN is a difference.
 #pragma once
 
 #include <cstddef>
@@ -52,7 +52,7 @@ struct WorstValue {
 };
 
 // Statistics of |a − b| over one or more channels. The mean, RMS and PSNR leave out the incomparable values, which
-// `incomparable` counts: those with a NaN on either or both sides, or an infinity that the other does not equal.
+// `incomparable` counts. Those have a NaN on either or both sides, or an infinity that the other does not equal.
 struct DifferenceStats {
   std::size_t values = 0;
   std::size_t different = 0;  // a != b, at any distance

@@ -5,10 +5,10 @@
 //   E(p, u) = Σ |C_T(p + o) − C_S(u + o)|²  +  λ · |G_T(p) − G_S(u)|²,    o in [−2, 2]²
 //   |G_T(p) − G_S(u)|² = max(0, |N_T(p) − N_S(u)| − free(p))² + Σ (other guides)²
 //
-// with C the colours as painted (R, G and B, sRGB-encoded, 0 … 1, straight: alpha does not matter) and G the guides:
-// unit normals N, of which the target may permit some distance, and any further planes. Patch-based synthesis minimises
-// it, as StyLit does [Fišer et al. 2016, eq. 1]. Guides are compared in the middle only: 5×5 normals of another form
-// never agree with any method, and that would dominate the figure. Three means of it:
+// with C the colours as painted (R, G and B, sRGB-encoded, 0 … 1, straight: alpha does not matter) and G the guides.
+// Guides are unit normals N, of which the target may permit some distance, and any further planes. Patch-based
+// synthesis minimises it, as StyLit does [Fišer et al. 2016, eq. 1]. Guides are compared in the middle only: 5×5
+// normals of another form never agree with any method, and that would dominate the figure. Three means of it:
 //
 //   energy   over the measured p of the target, of the least E(p, u) over all u: does the picture show only the
 //            exemplar's paint? With λ = 0, any straight copy scores 0, from any place; otherwise no more than λ times
@@ -24,9 +24,9 @@
 // Figures depend on the scene, the style and the size: compare those of one. With one random seed all methods are
 // measured in the same places, so their differences are more certain than each one's standard error.
 //
-// The patch is cut where p + o is outside or not measured, and for `missing` where u + o is not usable: the sum
-// of a patch with n places is multiplied by 25 / n, so that silhouettes have equal weight. A patch fits where all of
-// its places exist on the other side. If no position has room for 5×5, patches are 3×3, or single pixels.
+// The patch is cut where p + o is outside or not measured, and for `missing` where u + o is not usable. The sum of a
+// patch with n places is multiplied by 25 / n, so that silhouettes have equal weight. A patch fits where all of its
+// places exist on the other side. If no position has room for 5×5, patches are 3×3, or single pixels.
 #pragma once
 
 #include <array>
@@ -109,9 +109,9 @@ struct EnergyReport {
 Expected<EnergyReport> MeasureEnergy(const EnergyTarget& target, std::span<const EnergyExemplar> exemplars,
                                      const EnergyOptions& options = {});
 
-// The guide error of a method: the mean angle in degrees between each pixel's normal and that of its source, over all
-// covered pixels of `sources` that are measured by `least_coverage`. 0 where there is none. Errors as above, and
-// sources that lie outside their exemplar.
+// The guide error of a method is the mean angle in degrees between each pixel's normal and that of its source. The mean
+// is over all covered pixels of `sources` that are measured by `least_coverage`. 0 where there is none. Errors as
+// above, and sources that lie outside their exemplar.
 Expected<double> MeanSourceDegrees(const EnergyTarget& target, std::span<const EnergyExemplar> exemplars,
                                    const SourcePlanes& sources, float least_coverage = 0.999f);
 

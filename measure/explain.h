@@ -29,8 +29,6 @@ std::optional<Explanation> FindExplanation(std::string_view name);
 
 // Views of width × height values, rows from the top; they are not stored. Unused ones may be empty.
 struct ExplainPlanes {
-  static constexpr std::uint16_t kNoStyle = 0xffff;
-
   int width = 0;
   int height = 0;
   std::span<const float> coverage;         // 0 … 1, becomes the alpha
@@ -38,7 +36,7 @@ struct ExplainPlanes {
   std::span<const std::int16_t> source_y;
   std::span<const std::int8_t> level;  // below 0: not painted
   std::span<const std::uint8_t> exemplar;
-  std::span<const std::uint16_t> style;  // kNoStyle: unchanged; empty: there is one style, 0
+  std::span<const std::uint16_t> style;  // of painted pixels; empty: there is one style, 0
   std::span<const float> error;          // guide distance, 0 or more
   // By style.
   std::vector<int> exemplar_size;  // side of the resized exemplar, pixels

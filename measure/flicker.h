@@ -23,11 +23,11 @@ struct FlickerReport {
 };
 
 // `a` and `b` are a frame and the next one; `guides` are the first one's, with layer `motion`: pixels to the next
-// frame, +Y down. Transparent paint lies on white. A pixel p counts where the guides cover it fully, as they do its
-// eight neighbours with the same object; b is read at p + motion from the four pixels around, bilinearly. With the next
-// frame's guides, it counts only where those four are fully covered by the same object and show the same place: where
-// both guides hold `pref` it may not be farther off than p's neighbours are, otherwise depth may not change by more
-// than 5 %. Error: sizes differ, or no motion. Deterministic. O(pixels).
+// frame, +Y down. Transparent paint lies on white. A pixel p counts if the guides cover it and its eight neighbours
+// fully, with one object. b is read at p + motion from the four pixels around, bilinearly. With the next frame's
+// guides, it counts only where those four are fully covered by the same object and show the same place. If both guides
+// hold `pref`, it may not be farther off than p's neighbours are. Otherwise depth may not change by more than 5 %.
+// Error: sizes differ, or no motion. Deterministic. O(pixels).
 Expected<FlickerReport> MeasureFlicker(const Picture& a, const Picture& b, const GuideSet& guides,
                                        const GuideSet* next_guides = nullptr);
 

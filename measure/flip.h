@@ -3,10 +3,10 @@
 // P. Andersson, J. Nilsson, T. Akenine-Möller, M. Oskarsson, K. Åström, M. D. Fairchild: FLIP: A Difference Evaluator
 // for Alternating Images, HPG 2020. Its colour pipeline: both pictures are filtered by the eye's contrast sensitivity,
 // compared in Hunt-adjusted L*a*b* by the HyAB distance, and errors are spread over 0 … 1. Its feature pipeline raises
-// the error where one picture has an edge or a point that the other lacks. The constants are the
-// paper's: q_c 0.7, p_c 0.4, p_t 0.95, q_f 0.5, w 0.082°, its contrast sensitivity functions, primaries and white of
-// sRGB; luminance is divided by 116 as the authors' errata have it. Border pixels are repeated, as in
-// their code. Of a whole map they recommend the mean.
+// the error where one picture has an edge or a point that the other lacks. The constants are the paper's: q_c 0.7, p_c
+// 0.4, p_t 0.95, q_f 0.5, w 0.082°, its contrast sensitivity functions, primaries and white of sRGB. Luminance is
+// divided by 116, as the authors' errata have it. Border pixels are repeated, as in their code. Of a whole map they
+// recommend the mean.
 #pragma once
 
 #include <array>

@@ -3,8 +3,8 @@
 //
 // The disc of normals is cut into 52 cells of about equal area. In each, the distribution of local features
 // (paint_pyramid.h) over the picture's pixels is compared with that over the exemplar's by a sliced Wasserstein
-// distance (Rabin, Peyré, Delon, Bernot 2012): features are divided by their standard deviation over the exemplar,
-// projected on fixed directions, and sorted; the distance is the mean difference of 64 quantiles, over all slices, and
+// distance (Rabin, Peyré, Delon, Bernot 2012). Features are divided by their standard deviation over the exemplar,
+// projected on fixed directions, and sorted. The distance is the mean difference of 64 quantiles, over all slices, and
 // over all cells by the root of the picture's area in them. Cells of guide space take the place of the spatial tags of
 // Heitz, Vanhoey, Chambon, Belcour 2021.
 //

@@ -24,8 +24,8 @@ struct HeatMap {
 };
 
 // Per pixel the largest |a − b| of the channels that both files have: dark blue where equal, over grey, to yellow at
-// full scale and above; magenta where a NaN or a lone infinity makes the pixel incomparable. The ramp is straight in
-// Oklab with rising lightness, so it is readable in grey and by colour-blind viewers. Errors as those of Compare.
+// full scale and above. Magenta: a NaN or a lone infinity makes the pixel incomparable. The ramp is straight in Oklab
+// with rising lightness, so it is readable in grey and by colour-blind viewers. Errors as those of Compare.
 Expected<HeatMap> DifferenceHeatMap(const ChannelImage& a, const ChannelImage& b, const HeatMapOptions& options = {});
 
 // The same colours for other values, row by row: 0 is dark blue, full_scale (above 0) and more yellow; transparent

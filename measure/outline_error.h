@@ -14,9 +14,9 @@ struct OutlineReport {
   std::size_t pixels = 0;  // that were measured
 };
 
-// A pixel at an outline should have the colours of its surfaces, each by the share of the pixel that it fills: the
-// whole of one, or a mixture where the guides have fragments or a coverage below 1. Its error is by how much of the way
-// from one colour to the other it is off. `error` is the root of the mean of its square, weighed by the squared
+// A pixel at an outline should have the colours of its surfaces, each by the share of the pixel that it fills. That is
+// the whole of one, or a mixture where the guides have fragments or a coverage below 1. Its error is by how much of the
+// way from one colour to the other it is off. `error` is the root of the mean of its square, weighed by the squared
 // contrast, less what the colours on both sides vary by. So it sees steps, blur, halos and colours that leak.
 //
 // A surface is an object with a material, or the background; pictures are seen on white. The inside of a surface are

@@ -29,8 +29,8 @@ struct PaintTraits {
 };
 
 // `rim` is the style's, in pixels. `bare_template` is the unpainted sphere, the size of the exemplar's picture, or
-// null. A pixel is bare if the picture equals the template within 2 of 255 on 90% of the 9×9 pixels around it: paint
-// with an equal grey by chance does not count. `printed_template` is the pale sphere of the page, likewise or null; a
+// null. A pixel is bare if the picture equals the template within 2 of 255 on 90% of the 9×9 pixels around it. So paint
+// with an equal grey by chance does not count. `printed_template` is the pale sphere of the page, likewise or null. A
 // scan of it is bare within 6 of 255 where it is grey, and on white paper alone. The exemplar's picture must not be
 // empty. Deterministic; some 0.3 s at 1024².
 PaintTraits MeasurePaint(const Exemplar& exemplar, double rim, const Picture* bare_template,

@@ -67,11 +67,11 @@ inline constexpr const char* kRankedBy = "texture";
 // random seed. None where no other seed was measured.
 std::optional<double> ChanceOf(const TradeReport& report);
 
-// Places in `variants` of the Pareto front of median total time and `texture`, by rising time: what is slower is on it
-// only where it is nearer to the exemplar by more than chance. Left out are variants that were not measured, that
+// Places in `variants` of the Pareto front of median total time and `texture`, by rising time. A slower variant is on
+// it only if it is nearer to the exemplar by more than chance. Left out are variants that were not measured, that
 // differ from the style by their random seed alone, or that `stylize` has no options for. Of several with equal
-// pictures one represents them: the first, unless a later one is faster in total by more than the quartiles of both,
-// because otherwise timing noise would choose. One run has no quartiles.
+// pictures one represents them. It is the first, unless a later one is faster in total by more than the quartiles of
+// both: otherwise timing noise would choose. One run has no quartiles.
 std::vector<std::size_t> FrontOf(const TradeReport& report);
 
 // Places in `variants`, axes in the order of their first variants, variants of one axis in the order given.
@@ -80,8 +80,8 @@ std::vector<std::size_t> ByAxis(const TradeReport& report);
 // A unique name for the picture of variants[i]: "03-levels-4.png". Letters, digits and hyphens alone.
 std::string TradePictureName(const TradeReport& report, std::size_t i);
 
-// For a terminal, at most 120 columns wide unless a figure is very long: a line a variant by axis, the front marked
-// with a star; the error of the variants' guides, where it was measured; notes.
+// For a terminal, at most 120 columns wide unless a figure is very long. It has a line for each variant, by axis, and
+// the front is marked with a star. Then come the error of the variants' guides, where it was measured, and notes.
 std::string TradeTable(const TradeReport& report);
 
 // RFC 4180 (lines end in CR LF): a line of column names with their units, then one a variant in the order given.
@@ -92,14 +92,14 @@ std::string TradeCsv(const TradeReport& report);
 // The figures as JSON; docs/tradeoff.md has the schema. Figures that were not measured are null.
 std::string TradeJson(const TradeReport& report);
 
-// A self-contained SVG on white: time (logarithmic) against `texture`, quartiles as bars, the front as a line with its
-// names, a colour and shape for each axis, and what halves of the exemplar differ by. Variants without a time or
-// without `texture` are not drawn.
+// A self-contained SVG on white: time (logarithmic) against `texture`, with quartiles as bars and the front as a line
+// with its names. Each axis has a colour and shape. It shows, too, what halves of the exemplar differ by. Variants
+// without a time or without `texture` are not drawn.
 std::string TradeChart(const TradeReport& report);
 
 // One HTML page that loads nothing: the charts, the table, and every picture, embedded. Without scripts it still has
-// all of that, with a link from each point to its picture; with them, figures show under the pointer, columns sort, and
-// pictures flip against the style's own. Equal pictures are embedded once.
+// all of that, with a link from each point to its picture. With scripts, figures show under the pointer, columns sort,
+// and pictures flip against the style's own. Equal pictures are embedded once.
 std::string TradeHtml(const TradeReport& report);
 
 }  // namespace scumble

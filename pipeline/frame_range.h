@@ -24,8 +24,8 @@ Expected<std::vector<int>> ParseFrames(const std::string& text);
 // Short text that ParseFrames reads back as the same list.
 std::string FramesToText(std::span<const int> frames);
 
-// A file name with a place for the frame number: the last run of # in it, as in Blender (p.####.png: four digits or
-// more), or printf's %d and %04d. Folders are left alone.
+// A file name with a place for the frame number. That is the last run of # in it, as in Blender (p.####.png: four
+// digits or more), or printf's %d and %04d. Folders are left alone.
 class FrameName {
  public:
   // A usage error where there are two places.

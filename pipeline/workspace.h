@@ -87,9 +87,9 @@ class Workspace {
   // Paints one frame; no file is written. picture.seed, picture.fps and picture.frame replace the scene's. After an
   // error, kCancelled included, the next request starts from what is still valid. One call at a time.
   //
-  // With a quality or a budget the step of the ladder is chosen as `scumble stylize` does, and chosen again where the
-  // styles, the size or other settings change; one for a budget also where the scene's files do. It stays as the view
-  // and the frame change.
+  // With a quality or a budget the step of the ladder is chosen as by `scumble stylize`. It is chosen again if the
+  // styles, the size or other settings change; for a budget also if the scene's files change. It stays as the view and
+  // the frame change.
   Expected<PaintedFrame> Paint(const SceneRequest& scene, const StyleRequest& style, const PictureRequest& picture,
                                const BudgetRequest& budget = {});
 

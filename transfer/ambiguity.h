@@ -15,7 +15,7 @@ struct AmbiguityReport {
   double covered_percent = 0;  // nearer than kCoveredDegrees to the normal of the source that matching gives them
   double mean_error_degrees = 0;
   double largest_error_degrees = 0;
-  // The hemisphere in cells of equal area, each about kCellDegrees across:
+  // The hemisphere in cells of equal area, each about 2.5 degrees across:
   int cells = 0;
   int cells_shown = 0;  // that hold the normal of some usable pixel
   std::size_t usable_pixels = 0;
@@ -27,7 +27,6 @@ struct AmbiguityReport {
 };
 
 inline constexpr double kCoveredDegrees = 5.0;
-inline constexpr double kCellDegrees = 2.5;
 
 // The ambiguity in a style's GuideSpace: all of its guides together.
 struct SpaceAmbiguity {
@@ -43,7 +42,7 @@ struct SpaceAmbiguity {
 };
 
 inline constexpr int kLightSteps = 8;
-inline constexpr double kGuideCell = 0.0436;  // kCellDegrees, as a chord of the unit sphere
+inline constexpr double kGuideCell = 0.0436;  // 2.5 degrees, as a chord of the unit sphere
 
 // Measures exemplar k. Some 6000 searches and O(usable pixels · log).
 SpaceAmbiguity MeasureAmbiguity(const GuideSpace& space, const PreparedExemplar& exemplar, int k,

@@ -50,13 +50,10 @@ class LookUpTable {
 
   int resolution() const { return resolution_; }
 
-  // The source for a FacingDirection: at most Quantisation() farther from it, in Euclidean distance, than the nearest.
+  // The source for a FacingDirection: at most 4√2 / R farther from it, in Euclidean distance, than the nearest. Two
+  // directions whose projections are d apart are at most 2d apart, and a cell's corner is √2 / R from its centre. By
+  // the triangle inequality, the centre's nearest source exceeds a direction's own by at most twice that distance.
   Source Find(glm::vec3 direction) const { return cells_[CellOf(direction)]; }
-
-  // 4√2 / R. Two directions whose projections are d apart are at most 2d apart, and a cell's corner is √2 / R from its
-  // centre. By the triangle inequality, the centre's nearest source exceeds a direction's own by at most twice that
-  // distance.
-  static double Quantisation(int resolution);
 
   // For storage: 4 bytes a cell, x before y, little endian. Stored bytes are accepted only if their size fits the
   // resolution; the caller checks whether the sources are usable.

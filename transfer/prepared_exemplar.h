@@ -97,7 +97,7 @@ class PreparedExemplar {
   //   takes the usable pixel nearest to the point of the rim along its (x, y), and (0, 0, -1) that at +Y. (The exact
   //   argmin would jump along the rim's pixel steps there, by many at once, for no visible gain.)
   // - tree: exact for FacingDirection(normal), unless an error was allowed; ties to the lowest (y, x).
-  // - table: at most LookUpTable::Quantisation farther away than the tree's.
+  // - table: at most 4√2 / R farther away (LookUpTable) than the tree's.
   // Any finite or NaN input gives a usable pixel.
   Source NearestNeighbour(glm::vec3 normal) const { return search_ ? Searched(normal) : Analytic(normal); }
 
@@ -117,7 +117,7 @@ class PreparedExemplar {
   }
 
   // The normal that is compared with those of the exemplar. A sphere shows none beyond its usable rim, and none that
-  // points away from the eye: that of the rim which is nearest stands for these, or no source would be within the
+  // points away from the eye. The nearest normal of the rim stands for these. Otherwise no source would be within the
   // threshold of a surface seen almost edge-on. Scenes: the normal as it is.
   glm::vec3 WithinRim(glm::vec3 normal) const {
     if (scene_ || (!(normal.x * normal.x + normal.y * normal.y > squared_rim()) && !(normal.z < 0.0f))) return normal;

@@ -63,13 +63,13 @@ struct PrepareOptions {
 };
 
 // Resizes exemplars and paper for outputs of `output_height` pixels; several exemplars become one size, the first's.
-// Fails if an exemplar is empty; if a sphere's picture is not square; if guides do not fit their picture, or those of
-// one style's exemplars are not of one scene; if one lacks a layer that has a weight; if the rim takes more than half
-// of a sphere's radius; or if a setting is outside its range in core/image/style.h.
+// Fails in these cases. An exemplar is empty, or a sphere's picture is not square. Guides do not fit their picture, or
+// those of one style's exemplars are not of one scene, or one lacks a layer that has a weight. The rim takes more than
+// half of a sphere's radius. A setting is outside its range in core/image/style.h.
 Expected<PreparedStyle> Prepare(const Style& style, int output_height, const PrepareOptions& options = {});
 
-// The luminance of the light that an exemplar is painted for. The style's value, else the mean of the luminance layer
-// of its guides, else that of its paint; over the pixels that are usable with a rim of that many pixels.
+// The luminance of the light that an exemplar is painted for: the style's value, else the mean of the luminance layer
+// of its guides, else that of its paint. Means are over the pixels that are usable with a rim of that many pixels.
 double LuminanceOf(const Exemplar& exemplar, double rim);
 
 // The exposure that suits all of these styles, by MeasureExposure of illumination.h. For styles that weigh light, the

@@ -1,5 +1,5 @@
-// Larger pictures from small guides: guides are upsampled, so that the paint has full resolution where they have not,
-// or the picture that was painted at their size is scaled up, which is quicker and softer.
+// Larger pictures from small guides, in two ways. Guides are upsampled, so that the paint has full resolution where
+// they have not. Or the picture that was painted at their size is scaled up, which is quicker and softer.
 #pragma once
 
 #include "core/image/guides.h"
@@ -21,9 +21,9 @@ inline constexpr int kMaxUpsampling = 8;
 //     steps.
 // Blocks of background are background. Names, camera and attributes are kept.
 //
-// Fragments (core/image/fragments.h) stay smooth borders: in the block of a pixel that has some, each covers the part
-// that follows the bilinear coverage of its surface, as the silhouette does, so that its mean over the block is its
-// coverage; where several surfaces would cover more than a sample, all take less. Their values are the same on the
+// Fragments (core/image/fragments.h) stay smooth borders. In the block of a pixel that has some, each covers the part
+// that follows the bilinear coverage of its surface, as the silhouette does. So its mean over the block is its
+// coverage. Where several surfaces would cover more than a sample, all take less. Their values are the same on the
 // whole block, but for `motion`, as above. A kUsage error where a side would have more than kMaxImageSide pixels, or
 // all more than 2^28. `threads` 0: all; the bytes do not depend on it.
 Expected<GuideSet> UpsampleGuides(const GuideSet& guides, int factor, int threads = 0);

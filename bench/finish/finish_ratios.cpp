@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "bench/finish/contenders.h"
 #include "bench/finish/finish_reports.h"
-#include "bench/finish/rivals.h"
 #include "tests/support/finish_chains.h"
 
 namespace scumble::bench {
@@ -70,7 +70,7 @@ class Ratios {
 
 Status MeasureFinishRatios(const FinishWork& work, RepeatOptions repeats, Report& report) {
   Ratios ratios(work, repeats, report);
-  using Filter = Rival::Filter;
+  using Filter = Contender::Filter;
   Copies copies(work, FusedPasses());
   ratios.Against(
       "tones, shadows, depth, grade against copies", ratios.Applying(FusedPasses()), [&] { copies.Run(); }, 4.0);
@@ -79,11 +79,11 @@ Status MeasureFinishRatios(const FinishWork& work, RepeatOptions repeats, Report
 
   const std::vector<float> rgb = work.Colors();
   const int width = work.painted().width, height = work.painted().height;
-  const std::vector<Rival> rivals = OpenCvRivals(width, height, rgb);
+  const std::vector<Contender> contenders = OpenCvContenders(width, height, rgb);
   const auto against = [&](Filter filter, const std::string& what, std::vector<FinishPass> passes, double most) {
-    const auto has_it = [&](const Rival& rival) { return rival.filter == filter; };
-    const auto found = std::find_if(rivals.begin(), rivals.end(), has_it);
-    if (found == rivals.end()) return report.Note("not measured, OpenCV has it not on this system: " + what);
+    const auto has_it = [&](const Contender& contender) { return contender.filter == filter; };
+    const auto found = std::find_if(contenders.begin(), contenders.end(), has_it);
+    if (found == contenders.end()) return report.Note("not measured, OpenCV has it not on this system: " + what);
     ratios.Against(what, ratios.Applying(std::move(passes)), found->run, most);
   };
   against(Filter::kBilateral, "smooth bilateral, 4 passes, against OpenCV's, d 13",

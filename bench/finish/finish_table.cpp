@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "bench/finish/contenders.h"
 #include "bench/finish/finish_reports.h"
-#include "bench/finish/rivals.h"
 #include "core/image/stopwatch.h"
 #include "core/style/color_ramp.h"
 #include "core/style/finish_keys.h"
@@ -59,10 +59,10 @@ class Table {
   }
 
   // Another's time, and what part of it ours took, if that was measured. Beside a copy of the picture.
-  void Against(const Rival& rival, double ours, const char* name) {
+  void Against(const Contender& contender, double ours, const char* name) {
     if (!(ours > 0.0)) return;
-    const Spread spread = Timed(std::min(runs_, 5), rival.run);
-    Print(rival.name, spread, TimeOfCopies({}));
+    const Spread spread = Timed(std::min(runs_, 5), contender.run);
+    Print(contender.name, spread, TimeOfCopies({}));
     std::printf("  %s takes %.2f of that\n", name, ours / spread.median);
   }
 
@@ -144,16 +144,16 @@ void MeasureFilters(const FinishWork& work, Table& table) {
   const std::vector<float> rgb = work.Colors();
   const int width = work.painted().width, height = work.painted().height;
   table.Against(PlainKuwahara(width, height, rgb), kuwahara, "smooth kuwahara");
-  for (const Rival& rival : OpenCvRivals(width, height, rgb)) {
-    switch (rival.filter) {
-      case Rival::Filter::kBilateral:
-        table.Against(rival, bilateral, "smooth bilateral, 4 passes");
+  for (const Contender& contender : OpenCvContenders(width, height, rgb)) {
+    switch (contender.filter) {
+      case Contender::Filter::kBilateral:
+        table.Against(contender, bilateral, "smooth bilateral, 4 passes");
         break;
-      case Rival::Filter::kGaussians:
-        table.Against(rival, dog, "edges of light");
+      case Contender::Filter::kGaussians:
+        table.Against(contender, dog, "edges of light");
         break;
       default:
-        table.Against(rival, guided, "smooth guided");
+        table.Against(contender, guided, "smooth guided");
     }
   }
   internal::FloatPlane plane(rgb.size() / 3);
@@ -161,7 +161,7 @@ void MeasureFilters(const FinishWork& work, Table& table) {
   const auto pair = [&] {
     internal::ForEachGaussianPair(plane, width, height, 2.0 / 2.055, 21.0f, -20.0f, 1.0f, [](int, const float*) {});
   };
-  table.Against({Rival::Filter::kGaussians, "two Gaussians of edges alone", pair}, dog, "edges of light");
+  table.Against({Contender::Filter::kGaussians, "two Gaussians of edges alone", pair}, dog, "edges of light");
 }
 
 }  // namespace

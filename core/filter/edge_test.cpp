@@ -60,6 +60,6 @@ EdgeTest::EdgeTest(const GuideSet& guides, const DepthSlopes& slopes, double cre
       normal_y_(guides.Plane(Layer::kNormal, 1)),
       normal_z_(guides.Plane(Layer::kNormal, 2)),
       crease_cosine_(EdgeRules::CreaseCosine(crease_degrees)),
-      give_(guides, depth_tolerance) {}
+      tolerance_(guides, depth_tolerance) {}
 
 }  // namespace scumble::internal

@@ -54,7 +54,7 @@ struct EdgeRules {
   // -1.
   float CreaseCosine() const { return CreaseCosine(crease_degrees); }
   static float CreaseCosine(double degrees);
-  DepthTolerance Give() const { return {guides, depth_tolerance}; }
+  DepthTolerance Tolerance() const { return {guides, depth_tolerance}; }
 
   const GuideSet& guides;
   LazyDepthGradient& slopes;  // for callers that need the slopes of the whole picture
@@ -103,7 +103,7 @@ class EdgeTest {
       along += (p.slope_y + q.slope_y) * static_cast<float>(dy);
       slope_tolerance += std::min(std::fabs(p.slope_y), std::fabs(q.slope_y));
     }
-    const float tolerance = slope_tolerance + give_.At(std::min(p.depth, q.depth));
+    const float tolerance = slope_tolerance + tolerance_.At(std::min(p.depth, q.depth));
     return std::fabs(q.depth - p.depth - 0.5f * along) <= tolerance && NormalsAlike(p, q);
   }
   // Whether the normals are less than the crease apart.
@@ -115,7 +115,7 @@ class EdgeTest {
  private:
   std::span<const float> object_, depth_, slope_x_, slope_y_, normal_x_, normal_y_, normal_z_;
   float crease_cosine_;
-  DepthTolerance give_;
+  DepthTolerance tolerance_;
 };
 
 }  // namespace scumble::internal

@@ -4,7 +4,7 @@
 // Before a function: it is compiled for AVX2, too, and the processor that runs it decides which of the two is called.
 // Products and sums are not fused (-ffp-contract=off), so both give the same bits. For loops without branches over
 // arrays, where Highway would say no more. Such a function is not inlined: it should take a block of pixels.
-// tests/finish/clones compares pictures of both.
+// tests/finish/same_pictures.sh compares pictures of both.
 #if defined(__x86_64__) && defined(__gnu_linux__) && defined(__GNUC__) && !defined(__clang__) && \
     !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define SCUMBLE_WIDE_LOOPS __attribute__((target_clones("avx2", "default")))

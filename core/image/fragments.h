@@ -1,6 +1,6 @@
 // Fragments: the surfaces that share a pixel with the one at its centre, for smooth borders between objects.
 //
-// A surface is here an object with a material. Where the subsamples of a pixel's coverage see several surfaces, the
+// A surface is here an object with a material. The subsamples of a pixel's coverage may see several surfaces. Then the
 // layers of the guides hold the one at the centre, as they do everywhere, and a fragment holds each of the others. So
 // whoever does not know fragments loses nothing but smooth borders. Pixels that show one surface have no fragment:
 // memory is in proportion to the borders in the picture.
@@ -25,11 +25,11 @@ struct Fragments {
 
   // By fragment, the index of its pixel (GuideSet::Index), never falling. A pixel's fragments follow each other.
   std::vector<std::uint32_t> pixel;
-  // count() × 1 values: the layers of the guides, at the subsample of this surface that is nearest to the mean
-  // place of them all. Coverage is the share of the pixel that the surface fills. What is left of the pixel's own
-  // coverage belongs to the surface at its centre. Luminance, shadow and light paths are those of the nearest pixel,
-  // among the eight around and the fragment's own, whose centre shows the surface; without one, those of the fragment's
-  // own pixel.
+  // count() × 1 values: the layers of the guides, at the subsample of this surface that is nearest to the mean place of
+  // them all. Coverage is the share of the pixel that the surface fills. What is left of the pixel's own coverage
+  // belongs to the surface at its centre. Luminance, shadow and light paths are those of the nearest pixel, among the
+  // eight around and the fragment's own, whose centre shows the surface. If there is none, they are those of the
+  // fragment's own pixel.
   GuideSet values;
   // count() values, or none where it is not known: which of the pixel's 4 × 4 cells the surface shows in, bit
   // 4 · row + column, row 0 at the top. A cell without subsamples has no bit.
@@ -40,10 +40,10 @@ struct Fragments {
   // The first fragment of this pixel or a later one.
   std::size_t From(std::size_t pixel_index) const;
 
-  // Ok, or what makes the fragments unusable beside these guides: layers that are missing, pixels that are not in the
-  // picture or out of order, more than kMostInPixel in one, no coverage or more than the pixel's own, ids that the
-  // guides' names lack (where there are names), or values that GuideSet::Validate refuses. `name` stands for the guides
-  // in the message. O(fragments).
+  // Ok, or what makes the fragments unusable beside these guides. Layers are missing. Pixels are not in the picture or
+  // out of order, or one has more than kMostInPixel. A coverage is 0, or more than the pixel's own. An id is not among
+  // the guides' names, where there are names. GuideSet::Validate refuses a value. `name` stands for the guides in the
+  // message. O(fragments).
   Status Validate(const GuideSet& guides, const std::string& name) const;
 };
 

@@ -69,10 +69,10 @@ class GuideSet {
   std::size_t Index(int x, int y) const { return std::size_t(y) * width_ + x; }
   glm::vec3 Vec3(Layer layer, std::size_t index) const;
 
-  // Ok, or the first thing that makes the set unusable: impossible size, coverage outside [0, 1], and on covered
-  // pixels normals that are NaN or zero, depth that is NaN or negative, ids that are NaN, negative or above kMostId,
-  // non-finite colours. The message counts the bad pixels and names the first. O(pixels). `name` stands for the set in
-  // the message.
+  // Ok, or the first thing that makes the set unusable: an impossible size, or coverage outside [0, 1]. On covered
+  // pixels also: normals that are NaN or zero, depth that is NaN or negative, ids that are NaN, negative or above
+  // kMostId, and non-finite colours. The message counts the bad pixels and names the first. O(pixels). `name` stands
+  // for the set in the message.
   Status Validate(const std::string& name) const;
   // Validate without its limits of size.
   Status ValidateValues(const std::string& name) const;
@@ -123,8 +123,8 @@ inline constexpr const char* kExactLight = "exact";
 // Whether luminance and shadow are known to be without noise.
 bool HasExactLight(const GuideSet& guides);
 
-// The attribute of guides whose pixels chose their samples of luminance and shadow: the estimated standard error, a
-// share of each pixel's light, that nine of ten pixels do not exceed.
+// The attribute of guides whose pixels chose their samples of luminance and shadow. It is the estimated standard error,
+// a share of each pixel's light, that nine of ten pixels do not exceed.
 inline constexpr const char* kLightErrorKey = "scumble:light_error";
 // Its value; 0 where it is unknown, or no number from 0 to 1.
 double LightErrorOf(const GuideSet& guides);

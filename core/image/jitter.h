@@ -9,7 +9,7 @@ namespace scumble {
 inline constexpr double kMostJitterFps = 1000.0;
 
 // Which draw a frame has, of jitter_fps draws a second: floor(frame · jitter_fps / fps) in integers, fps = numerator /
-// denominator, so equal for a frame however a range is cut. 0 for jitter_fps 0 (frozen), the frame itself for -1.
+// denominator. It is equal for a frame however a range is cut. 0 for jitter_fps 0 (frozen), the frame itself for -1.
 // jitter_fps is rounded to thousandths.
 inline std::int64_t JitterStep(double jitter_fps, std::int64_t frame, std::int64_t fps_numerator,
                                std::int64_t fps_denominator) {

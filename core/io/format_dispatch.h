@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <initializer_list>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -17,6 +16,7 @@
 #include "core/image/hash.h"
 #include "core/image/status.h"
 #include "core/io/guide_file.h"
+#include "core/io/oiio/formats.h"
 #include "core/io/picture_file.h"
 #include "scumble/picture.h"
 
@@ -24,33 +24,6 @@ namespace scumble {
 
 // The attribute that holds the settings of a picture or guides.
 inline constexpr const char* kSettingsKey = "scumble:settings";
-
-// A picture file as it is stored.
-struct StoredPicture {
-  int width = 0, height = 0;  // of the display window
-  int channels = 0;
-  int bits = 0;          // a channel
-  std::string settings;  // of kSettingsKey
-};
-
-namespace formats {
-
-// The library's versions of the functions of these names outside of this namespace. The module writes no file itself:
-// it would have its own copy of WriteFileAtomically, whose temporary files no signal handler removes.
-Expected<Picture> ReadPicture(const std::filesystem::path& path, const std::string& view_layer, Profiles profiles,
-                              PictureLosses* losses);
-Expected<Picture> DecodePicture(std::span<const std::byte> bytes, const std::string& name, Profiles profiles);
-Expected<PictureHeader> InspectPicture(const std::filesystem::path& path);
-Expected<PictureHeader> InspectEncoded(std::span<const std::byte> bytes, const std::string& name);  // in memory
-Expected<StoredPicture> InspectStored(const std::filesystem::path& path);
-Expected<std::vector<std::byte>> EncodeJpeg(const std::filesystem::path& path, const Picture& picture,
-                                            const PictureWriteOptions& options);
-Expected<ChannelImage> ReadChannels(const std::filesystem::path& path);
-Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideReadOptions& options);
-Expected<GuideFileInfo> InspectGuides(const std::filesystem::path& path);
-void SetThreads(int threads);
-
-}  // namespace formats
 
 // The sizes of the types that cross the module's boundary, hashed to one number: two builds of one version may still
 // differ in them.
@@ -81,9 +54,9 @@ struct Formats {
   decltype(&formats::SetThreads) set_threads;
 };
 
-// Loads the module, once in the life of the process; it stays loaded. kUnavailable where it is missing or of another
-// version, kMemory where a limit leaves too little address space; the next call tries again then. `file` names, for the
-// message, the file that needs the module. Thread-safe.
+// Loads the module, once in the life of the process; it stays loaded. kUnavailable if the module is missing or of
+// another version. kMemory if a limit leaves too little address space. After an error the next call tries again. `file`
+// names, for the message, the file that needs the module. Thread-safe.
 Expected<const Formats*> LoadFormats(const std::string& file);
 // LoadFormats for reading a file. The file is checked first, so that its own error (kInput) comes before the module's.
 Expected<const Formats*> LoadFormatsToRead(const std::filesystem::path& path);

@@ -45,12 +45,12 @@ struct GuideReadOptions {
 
 // Reads only the channels that are asked for; matches them by name (ParseChannelName). Ids in channels that are called
 // "object" or "material" alone, which may be of any kind, are read where their layer is required. Fragments are read
-// from files that WriteGuides made, and with them always the ids by which their surfaces are told apart; fragments that
+// from files that WriteGuides made, and with them always the ids by which their surfaces are told apart. Fragments that
 // are damaged or do not fit their file are an error. Of guides that WriteGuides made, ids are always those of the
 // layers object and material; a Cryptomatte beside them is passed over. Where another program wrote no ids, object,
-// material and their names come from Cryptomatte, if they are wanted; one that cannot be used is an error where its
-// layer is required, else the layer is left out. The result is validated: coverage outside 0 to 1 by an eighth or less
-// is clamped, normals whose length is off by more than a half float's rounding are normalised, and what
+// material and their names come from Cryptomatte, if they are wanted. A Cryptomatte that cannot be used is an error if
+// its layer is required; else the layer is left out. The result is validated. Coverage outside 0 to 1 by an eighth or
+// less is clamped. Normals whose length is off by more than a half float's rounding are normalised. What
 // GuideSet::Validate refuses is an error. What Blender wrote is converted as core/io/blender/blender_passes.h says: its
 // camera comes from `blender_camera`, or from its Position and Depth passes; names from Cryptomatte; luminance and
 // shadow from its passes of light (core/io/blender/render_light.h).

@@ -48,8 +48,8 @@ Expected<MergedHeader> InspectMergedLayers(const std::filesystem::path& path);
 // nearest.
 void PutOver(Picture& below, const Picture& above);
 
-// The bytes of the file with strokes, of the merged picture's size, on a layer of this name on top; onto the layer of
-// that name that an earlier call made, if it is there. Everything else of the file is kept. Thread-safe.
+// The bytes of the file with strokes, of the merged picture's size, on a layer of this name on top. If an earlier call
+// made a layer of that name, the strokes go onto it. Everything else of the file is kept. Thread-safe.
 Expected<std::vector<std::byte>> WithStrokes(const std::filesystem::path& path, const std::string& layer,
                                              const Picture& strokes);
 

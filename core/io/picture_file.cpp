@@ -50,7 +50,7 @@ Expected<std::uint64_t> PixelsOf(std::int64_t width, std::int64_t height, const 
 // The pixels of a PNG of that many bytes.
 Expected<std::uint64_t> PixelsOf(const internal::PngHeader& header, std::uint64_t bytes, const std::string& name) {
   if (!internal::CanHold(bytes, header))
-    return InputError("cannot read " + name + ": it promises more than it can hold");
+    return InputError("cannot read " + name + ": it declares more than it can hold");
   return PixelsOf(header.width, header.height, name);
 }
 

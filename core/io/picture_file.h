@@ -26,11 +26,11 @@ struct PictureLosses {
 };
 
 // Reads any picture as 16-bit sRGB-encoded RGBA with straight alpha. 8-bit values v become v · 257, 16-bit values are
-// kept; float files (EXR, HDR) are taken as linear and associated, unpremultiplied, clamped to [0, 1] and encoded.
-// Grey is spread over the three colours; a missing alpha is opaque, a NaN one transparent. A photograph is
-// turned upright by its Exif orientation; RGB and grey with an ICC profile become sRGB. A file that ends early is
-// an error, JPEG included. Of a file of layers (.ora, Krita's .kra) the picture of all that are visible is read, of an
-// EXR of several parts the one that holds R, G and B, and of a render of several view layers that of `view_layer`.
+// kept; float files (EXR, HDR) are taken as linear and associated, unpremultiplied, clamped to [0, 1] and encoded. Grey
+// is spread over the three colours; a missing alpha is opaque, a NaN one transparent. A photograph is turned upright by
+// its Exif orientation; RGB and grey with an ICC profile become sRGB. A file that ends early is an error, JPEG
+// included. Of a file of layers (.ora, Krita's .kra) the picture of all visible ones is read. Of an EXR of several
+// parts it is the part that holds R, G and B. Of a render of several view layers it is the picture of `view_layer`.
 // `losses`, if given, is set. Thread-safe.
 Expected<Picture> ReadPicture(const std::filesystem::path& path, const std::string& view_layer = {},
                               Profiles profiles = Profiles::kApply, PictureLosses* losses = nullptr);

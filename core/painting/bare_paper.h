@@ -33,9 +33,9 @@ bool HasUnevenCorners(const Picture& picture);
 // Whether FindBarePaper finds the corners transparent. Takes no memory.
 bool HasClearCorners(const Picture& picture);
 
-// The paint alone: alpha becomes its opacity, and the colour what it must be so that the paint over the paper is again
-// what the picture shows, as far as colours reach. Paper as it is between strokes becomes transparent, its grain
-// included. Without a paper colour alpha is opacity already and the texel stays.
+// The paint alone. Alpha becomes its opacity. The colour becomes what makes the paint over the paper what the picture
+// shows, as far as colours reach. Paper as it is between strokes becomes transparent, its grain included. Without a
+// paper colour alpha is opacity already and the texel stays.
 void LiftPaint(const BarePaper& paper, std::uint16_t* texel);
 
 }  // namespace scumble

@@ -26,19 +26,18 @@ struct FoundSphere {
 // Looks at the outline of the paint against transparency or paper of one colour, which the corners show. A square whose
 // paint comes within 0.75% of all four sides is kFills.
 //
-// kInside needs a circle on which the outline lies in 80% of all directions from its centre; that lies within the
-// picture, with hardly any paint beyond it; and that, in a square, is smaller than 98.5% of the width, or more than 1%
-// off the middle without covering the square's own circle. In a picture that is no square, the sphere may reach the
-// sides: only directions count in which ground shows beyond it, a quarter of all at least. The tolerance is a quarter
-// of the largest distance between the two circles, at most 2.5% of the radius: the farther a sphere is from filling its
+// kInside needs a circle on which the outline lies in 80% of all directions from its centre. The circle lies within the
+// picture, with hardly any paint beyond it. In a square it is also smaller than 98.5% of the width, or more than 1% off
+// the middle without covering the square's own circle. In a picture that is no square, the sphere may reach the sides:
+// only directions count in which ground shows beyond it, a quarter of all at least. The tolerance is a quarter of the
+// largest distance between the two circles, at most 2.5% of the radius. The farther a sphere is from filling its
 // square, the more roughly it may be painted. The radius is the one that the paint reaches in 95% of those directions.
 // An outline is kEllipse if its shorter diameter is less than 97% of the longer: a circle that is cut out by hand stays
 // within that.
 //
-// In a square, kUnclear is said only where the paint leaves 3% free at three sides, or 10% at two opposite ones: paper
-// that was left for the lights reaches one or two sides. A picture that is no square is never kFills. A sphere has 30
-// pixels across or more. O(pixels); a picture that kFills takes some milliseconds. Memory: at most 8 bytes for each
-// pixel.
+// In a square, it is kUnclear only if the paint leaves 3% free at three sides, or 10% at two opposite ones. Paper that
+// was left for the lights reaches one or two sides. A picture that is no square is never kFills. A sphere has 30 pixels
+// across or more. O(pixels); a picture that kFills takes some milliseconds. Memory: at most 8 bytes for each pixel.
 FoundSphere FindSphere(const Picture& picture);
 
 }  // namespace scumble

@@ -37,8 +37,8 @@ Status SetFinishFrame(FinishChain& chain, std::int64_t frame);
 // A style's passes with their keys.
 FinishChain FinishOf(const Style& style);
 
-// The pass as it is now and at each of its key frames: enough to know what it reads and takes at any frame, because a
-// key that moves between two values is on only where one of them is.
+// The pass as it is now and at each of its key frames. They tell what it reads and takes at any frame: a key that moves
+// between two values is on only if one of them is.
 std::vector<FinishPass> MomentsOf(const FinishChain& chain, std::size_t pass);
 
 // The layers that the passes read at one frame or another.

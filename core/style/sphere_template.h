@@ -32,17 +32,17 @@ std::optional<int> SphereMargin(const GuideSet& guides);
 // The attribute that it is recorded in.
 inline constexpr const char* kMarginAttribute = "scumble:sphereMargin";
 
-// The plain marks of the margin besides the fiducials (core/style/fiducials.h), in pixels of the template: ticks
-// where the square's sides begin, and crosses in the corners of a template that is too small for fiducials. Pixels [x0,
-// x1) × [y0, y1).
+// The plain marks of the margin besides the fiducials (core/style/fiducials.h), in pixels of the template. They are
+// ticks where the square's sides begin, and crosses in the corners of a template that is too small for fiducials.
+// Pixels [x0, x1) × [y0, y1).
 struct TemplateMark {
   int x0, y0, x1, y1;
   std::uint16_t grey;  // sRGB-encoded
 };
 std::vector<TemplateMark> PlainMarks(int size);
 
-// The parts of the template, each of its whole size and transparent where it shows nothing: the lit sphere, opaque up
-// to the last pixel of its edge, which is mixed with white paper; and the marks.
+// The parts of the template, each of its whole size and transparent where it shows nothing: the lit sphere, and the
+// marks. The sphere is opaque up to the last pixel of its edge, which is mixed with white paper.
 Picture DrawLitSphere(const KitLight& light);
 Picture DrawMarks(int size);
 
@@ -52,9 +52,9 @@ double PaleGrey(const std::uint16_t* lit);
 // The picture to paint over: white paper, the lit sphere filling the inner square, and the marks in the margin.
 Picture DrawTemplate(const KitLight& light);
 
-// Whether a picture still shows the template's marks, margin included: most of its fiducials, also of a template that
-// was scaled or mirrored as a whole, or the four crosses of small templates and of those that were drawn before there
-// were fiducials. Templates of spheres smaller than 63 pixels are not recognised.
+// Whether a picture still shows the template's marks, margin included. Marks are most of its fiducials, also of a
+// template that was scaled or mirrored as a whole. Or they are the four crosses of small templates and of those that
+// have no fiducials. Templates of spheres smaller than 63 pixels are not recognised.
 bool LooksLikeTemplate(const Picture& picture);
 
 // The template with crosses instead of fiducials, of earlier versions: a picture equal to it holds no paint.

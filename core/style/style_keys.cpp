@@ -178,7 +178,7 @@ void AddGuideWeights(std::vector<StyleKey>& keys) {
     const bool normal = info.layer == Layer::kNormal;
     keys.push_back({GuideWeight(info.layer), kGuideWeights + std::string(info.name), normal ? "1.0" : "0.0",
                     normal ? "how much normals count where paint is looked for and chunks end, 0 to 1000"
-                           : "the same of " + std::string(info.meaning),
+                           : "weight of this layer beside that of normals, 0 to 1000: " + std::string(info.meaning),
                     "Guide weights", true});
   }
 }

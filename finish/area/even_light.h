@@ -23,15 +23,15 @@ struct LitSurface {
 };
 
 // Where light is cut into steps, its noise becomes specks and torn borders. Each pixel takes the mean of itself and of
-// those pairs of pixels that lie opposite each other beside it, are of its object and turned alike, to about 14
-// degrees, and whose mean is nearer to its light than `range`: so slopes keep their values up to the object's border,
-// and creases and steps of more than twice `range` stay sharp (after the symmetric neighbours of Harwood, Subbarao,
-// Hakalahti, Davis, "A new class of edge-preserving smoothing filters", 1987). Five times, with pairs at 1, 2, 4, 8 and
-// 16 pixels, the last two with an eighth and a sixteenth of the range, as little noise is left and light bends: noise
-// falls to less than a hundredth. A binomial's weights, 4 for the pixel, 2 and 1 beside it, leave no pattern of single
-// pixels. Before that, what stands out by a quarter of `range` from three or more around it, all that are of its
-// surface, takes the nearest of their values. What is no number stays. `apart`: pixels from one sample to the next,
-// where planes were made larger. O(pixels).
+// pairs of pixels that lie opposite each other beside it. Pairs count if they are of its object and turned alike, to
+// about 14 degrees, and if their mean is nearer to its light than `range`. So slopes keep their values up to the
+// object's border, and creases and steps of more than twice `range` stay sharp (after the symmetric neighbours of
+// Harwood, Subbarao, Hakalahti, Davis, "A new class of edge-preserving smoothing filters", 1987). Five times, with
+// pairs at 1, 2, 4, 8 and 16 pixels. The last two have an eighth and a sixteenth of the range, as little noise is left
+// and light bends. Noise falls to less than a hundredth. A binomial's weights, 4 for the pixel, 2 and 1 beside it,
+// leave no pattern of single pixels. Before that, what stands out by a quarter of `range` from three or more around it,
+// all that are of its surface, takes the nearest of their values. What is no number stays. `apart`: pixels from one
+// sample to the next, where planes were made larger. O(pixels).
 FloatPlane EvenedLight(std::span<const float> light, const LitSurface& surface, int width, int height, float range,
                        int apart = 1);
 

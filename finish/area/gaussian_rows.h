@@ -19,8 +19,8 @@ void SumSymmetric(std::span<const float> weights, const float* const* rows, std:
 // Rows, then columns. Beyond its edges the plane goes on with its last values. `sigma` is above 0. O(pixels · sigma).
 FloatPlane Blurred(const FloatPlane& plane, int width, int height, double sigma);
 
-// The mean of places of equal keys alone, by Gaussian weights: a place's window is its column as far as three sigma
-// reach, and of each place of that with its key the row likewise. Nothing lies beyond the plane's edges. NaN is equal
+// The mean of places of equal keys alone, by Gaussian weights. A place's window is its column as far as three sigma
+// reach, and, of each place there with its key, the row likewise. Nothing lies beyond the plane's edges. NaN is equal
 // to no key: such a place keeps its value. O(pixels · sigma), however many keys there are.
 FloatPlane BlurredWithin(const FloatPlane& plane, std::span<const float> keys, int width, int height, double sigma);
 

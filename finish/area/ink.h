@@ -6,7 +6,7 @@
 
 namespace scumble::internal {
 
-// Porter and Duff's "over" with straight alpha, on sRGB codes, as drawing programs do it: a line between two pixels
+// Porter and Duff's "over" with straight alpha, on sRGB codes, as drawing programs do it. A line between two pixels
 // then looks as dark as one that lies on a pixel.
 inline void LayInk(const std::uint16_t* ink, std::uint16_t* pixel) {
   if (ink[3] == 65535) return static_cast<void>(std::copy_n(ink, 4, pixel));

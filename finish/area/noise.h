@@ -15,7 +15,7 @@ float Noise(std::uint64_t seed, glm::vec2 at);
 // The same in space. Places beyond a thousand million cells, and those that are no numbers, are 0.
 float Noise(std::uint64_t seed, glm::vec3 at);
 
-// How far a pixel of the picture reaches on the surface that it shows, in units of the layer pref: one number an
+// How far a pixel of the picture reaches on the surface that it shows, in units of the layer pref. It is one number an
 // object, the median of |∂pref/∂x| / depth, times the pixel's depth.
 class SurfaceScale {
  public:

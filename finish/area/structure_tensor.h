@@ -12,9 +12,9 @@ struct StructureTensor {
   FloatPlane xx, xy, yy;
 };
 
-// By pixel: the direction of the smaller eigenvalue, of length 1, in pixels to the right and down, with a sign of no
-// meaning; and (l1 - l2) / (l1 + l2) of the eigenvalues, 0 where all directions are alike.
-// Behind the last pixel are kFlowSpare more values, of no meaning, so that vectors may read beyond it.
+// By pixel: the direction of the smaller eigenvalue, of length 1, in pixels to the right and down; its sign has no
+// meaning. And (l1 - l2) / (l1 + l2) of the eigenvalues, 0 where all directions are alike. Behind the last pixel are
+// kFlowSpare more values, of no meaning, so that vectors may read beyond it.
 inline constexpr std::size_t kFlowSpare = 16;
 struct EdgeFlow {
   FloatPlane x, y, anisotropy;

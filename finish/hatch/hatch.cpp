@@ -12,7 +12,6 @@
 
 #include "core/image/exact_math.h"
 #include "core/image/hash.h"
-#include "finish/area/area_effects.h"
 #include "finish/area/ink.h"
 #include "finish/area/noise.h"
 #include "finish/area/oklab_blocks.h"

@@ -27,7 +27,7 @@ void JoinCreases(std::span<const float> object, BorderMap& map);
 
 // To be called last. Makes steps of the weak ones on which a line goes on that has at least `shortest` steps; the
 // others are what they were. Along a fold that fades a pixel may lie so near the rim that neither of its borders is a
-// step: the line goes on over up to two borders to the next one, if depth changes there by more than `least`. `only`:
+// step. The line goes on over up to two borders to the next one, if depth changes there by more than `least`. `only`:
 // as FindBorders has it.
 void JoinSteps(const GuideSet& guides, std::span<const std::uint8_t> only, double shortest, const DepthTolerance& least,
                BorderMap& map);

@@ -27,12 +27,12 @@ constexpr double kDepthTolerance = 0.002;
 // How much the depth may change without a step: by that share of the tolerance, and beyond the slope beside by that
 // share of it. A ball's depth falls like the root of the distance to its rim: to its last pixel it changes up to 1 + √2
 // times as much as before.
-struct StepGive {
+struct StepTolerance {
   float share, slope, slope_at_end;
 };
-constexpr StepGive kFullStepGive{1.0f, 1.0f, 1.5f};
+constexpr StepTolerance kFullLimits{1.0f, 1.0f, 1.5f};
 // A line of full steps goes on where one is more than this: along a fold that fades it would be dashed otherwise.
-constexpr StepGive kWeakStepGive{0.25f, 0.5f, 0.75f};
+constexpr StepTolerance kWeakLimits{0.25f, 0.5f, 0.75f};
 // Of depths that were stored as half floats: their rounding alone makes steps of up to a half of the tolerance.
 constexpr float kWeakShareOfHalves = 0.6f;
 // From a line of no fewer borders, at the reference height.
@@ -49,11 +49,11 @@ constexpr int kLeastBeside = 1;  // pixels of the surface beside the two of a bo
 // by no more than the second.
 constexpr double kMostBeside = 0.25, kMostRound = 0.6;
 
-StepGive WeakStepGive(std::span<const float> depth) {
+StepTolerance WeakLimits(std::span<const float> depth) {
   const auto has_more_bits = [](float one) { return (std::bit_cast<std::uint32_t>(one) & 0x1fffu) != 0; };
-  StepGive give = kWeakStepGive;
-  if (std::none_of(depth.begin(), depth.end(), has_more_bits)) give.share = kWeakShareOfHalves;
-  return give;
+  StepTolerance limits = kWeakLimits;
+  if (std::none_of(depth.begin(), depth.end(), has_more_bits)) limits.share = kWeakShareOfHalves;
+  return limits;
 }
 
 std::vector<glm::vec3> OklabOf(const GuideSet& guides) {
@@ -68,16 +68,17 @@ std::vector<glm::vec3> OklabOf(const GuideSet& guides) {
 // What decides most pairs of neighbours.
 struct PairPlanes {
   const float *coverage, *depth, *object, *material, *shadow, *normal_x, *normal_y, *normal_z;
-  float give_share, give_fixed, crease;
-  float weak_give;  // of both parts of the give; 1: there are no weak steps
+  float tolerance_share, tolerance_fixed, crease;
+  float weak_share;  // of both parts of the tolerance; 1: there are no weak steps
 };
 
 // For `count` pairs of pixels from (first, first + step) on: 0 where neither is covered, and where both are and
 // depth, normal, object, material and shadow go on; 1 where Classifier::Between has to decide. `before`, `after`: how
 // far away the pixels beyond the two are; 0 at the picture's edge.
-SCUMBLE_WIDE_LOOPS void FindDoubts(const PairPlanes& of, std::size_t first, std::size_t step, std::size_t before,
-                                   std::size_t after, std::size_t count, std::uint32_t* doubts) {
-  const float give_share = of.give_share, give_fixed = of.give_fixed, crease = of.crease, weak_give = of.weak_give;
+SCUMBLE_WIDE_LOOPS void FindUndecided(const PairPlanes& of, std::size_t first, std::size_t step, std::size_t before,
+                                      std::size_t after, std::size_t count, std::uint32_t* undecided) {
+  const float tolerance_share = of.tolerance_share, tolerance_fixed = of.tolerance_fixed, crease = of.crease,
+              weak_share = of.weak_share;
   const float *const coverage = of.coverage + first, *const depth = of.depth + first, *const object = of.object + first,
                      *const material = of.material + first, *const shadow = of.shadow + first;
   const float *const x = of.normal_x + first, *const y = of.normal_y + first, *const z = of.normal_z + first;
@@ -87,19 +88,20 @@ SCUMBLE_WIDE_LOOPS void FindDoubts(const PairPlanes& of, std::size_t first, std:
     const std::size_t q = p + step;
     const bool covers_p = coverage[p] > 0.0f, covers_q = coverage[q] > 0.0f;
     const float nearer = depth[q] < depth[p] ? depth[q] : depth[p];
-    const float rise = depth[q] - depth[p], give = give_fixed + give_share * nearer, weak = weak_give * give;
+    const float rise = depth[q] - depth[p], tolerance = tolerance_fixed + tolerance_share * nearer,
+                weak = weak_share * tolerance;
     const float rise_before = depth[p] - depth_before[p], rise_after = depth_after[p] - depth[q];
     // Beside the background a slope is infinite, and less than infinity is needed.
-    const bool is_as_before = (std::fabs(rise - rise_before) < kWeakStepGive.slope * std::fabs(rise_before) + weak) &
+    const bool is_as_before = (std::fabs(rise - rise_before) < kWeakLimits.slope * std::fabs(rise_before) + weak) &
                               (object_before[p] == object[p]);
-    const bool is_as_after = (std::fabs(rise - rise_after) < kWeakStepGive.slope * std::fabs(rise_after) + weak) &
+    const bool is_as_after = (std::fabs(rise - rise_after) < kWeakLimits.slope * std::fabs(rise_after) + weak) &
                              (object_after[p] == object[p]);
-    const bool goes_on = (std::fabs(rise) <= give) & ((std::fabs(rise) <= weak) | is_as_before | is_as_after);
+    const bool goes_on = (std::fabs(rise) <= tolerance) & ((std::fabs(rise) <= weak) | is_as_before | is_as_after);
     const bool is_flat = x[p] * x[q] + y[p] * y[q] + z[p] * z[q] > crease;
     const bool is_same = (object[p] == object[q]) & (material[p] == material[q]);
     const bool is_lit_alike = (shadow[p] >= 0.5f) == (shadow[q] >= 0.5f);
-    const bool is_calm = covers_p & covers_q & goes_on & is_flat & is_same & is_lit_alike;
-    doubts[p] = (covers_p | covers_q) & !is_calm ? 1u : 0u;
+    const bool goes_on_in_all = covers_p & covers_q & goes_on & is_flat & is_same & is_lit_alike;
+    undecided[p] = (covers_p | covers_q) & !goes_on_in_all ? 1u : 0u;
   }
 }
 
@@ -112,8 +114,8 @@ class Classifier {
       : pass_(pass),
         only_(only),
         guides_(guides),
-        give_(guides, kDepthTolerance),
-        weak_(WeakStepGive(guides.Plane(Layer::kDepth))),
+        tolerance_(guides, kDepthTolerance),
+        weak_(WeakLimits(guides.Plane(Layer::kDepth))),
         crease_(pass.crease_angle < 180.0 ? glm::radians(pass.crease_angle) : std::numeric_limits<double>::infinity()),
         weak_crease_(crease_ * (IsOn(LineClass::kCrease) ? kCreaseGoesOn : 1.0)),
         owner_(guides),
@@ -131,18 +133,18 @@ class Classifier {
   // Of the tolerance, beyond which steps are weak ones.
   double WeakShare() const { return double(weak_.share); }
 
-  // Of `count` pairs from (first, first + step) on: 0 where Between gives 0 for sure. The rest as FindDoubts has it.
-  void Doubts(std::size_t first, std::size_t step, std::size_t before, std::size_t after, std::size_t count,
-              std::uint32_t* doubts) const {
-    if (!colors_.empty() || valleys_) return static_cast<void>(std::fill_n(doubts, count, 1u));
+  // Of `count` pairs from (first, first + step) on: 0 where Between gives 0 for sure. The rest as FindUndecided has it.
+  void MarkUndecided(std::size_t first, std::size_t step, std::size_t before, std::size_t after, std::size_t count,
+                     std::uint32_t* undecided) const {
+    if (!colors_.empty() || valleys_) return static_cast<void>(std::fill_n(undecided, count, 1u));
     const auto normal = [&](int c) { return guides_.Plane(Layer::kNormal, c).data(); };
     // Where a layer is not looked at, the object's values stand in, which are compared anyway.
     const auto or_object = [&](std::span<const float> plane) { return (plane.empty() ? object_ : plane).data(); };
-    FindDoubts({coverage_.data(), depth_.data(), object_.data(), or_object(material_), or_object(shadow_), normal(0),
-                normal(1), normal(2), give_.share, give_.fixed,
-                static_cast<float>(std::cos(std::min(weak_crease_, std::numbers::pi))),
-                IsOn(LineClass::kOcclusion) ? weak_.share : 1.0f},
-               first, step, before, after, count, doubts);
+    FindUndecided({coverage_.data(), depth_.data(), object_.data(), or_object(material_), or_object(shadow_), normal(0),
+                   normal(1), normal(2), tolerance_.share, tolerance_.fixed,
+                   static_cast<float>(std::cos(std::min(weak_crease_, std::numbers::pi))),
+                   IsOn(LineClass::kOcclusion) ? weak_.share : 1.0f},
+                  first, step, before, after, count, undecided);
   }
 
   // Of the border between pixels p and q, the next one of a row or a column. `before` and `after`: the pixels beyond
@@ -173,27 +175,27 @@ class Classifier {
   // the tolerance, and by a little more where the surface ends. A step's two sides are flatter than the step. Or as the
   // farther pixel's surface does, which a bevel of a pixel or two shows at its rim: behind a step it is not that steep.
   bool DepthGoesOn(std::optional<std::size_t> before, std::size_t p, std::size_t q, std::optional<std::size_t> after,
-                   const StepGive& of = kFullStepGive) const {
-    const float step = depth_[q] - depth_[p], give = of.share * give_.At(std::min(depth_[p], depth_[q]));
-    if (std::fabs(step) <= give) return true;
+                   const StepTolerance& of = kFullLimits) const {
+    const float step = depth_[q] - depth_[p], tolerance = of.share * tolerance_.At(std::min(depth_[p], depth_[q]));
+    if (std::fabs(step) <= tolerance) return true;
     const auto goes_on = [&](std::optional<std::size_t> there, std::size_t here) {
       return there && coverage_[*there] > 0.0f && object_[*there] == object_[here];
     };
     const bool has_before = goes_on(before, p), has_after = goes_on(after, q);
     const auto fits = [&](float slope, bool is_end) {
-      return std::fabs(step - slope) <= (is_end ? of.slope_at_end : of.slope) * std::fabs(slope) + give;
+      return std::fabs(step - slope) <= (is_end ? of.slope_at_end : of.slope) * std::fabs(slope) + tolerance;
     };
     return (has_before && fits(depth_[p] - depth_[*before], !has_after)) ||
-           (has_after && fits(depth_[*after] - depth_[q], !has_before)) || IsSteepBehind(p, q, give);
+           (has_after && fits(depth_[*after] - depth_[q], !has_before)) || IsSteepBehind(p, q, tolerance);
   }
 
   // Whether the farther pixel's surface rises to the depth of the nearer one, or beyond, within a pixel.
-  bool IsSteepBehind(std::size_t p, std::size_t q, float give) const {
+  bool IsSteepBehind(std::size_t p, std::size_t q, float tolerance) const {
     const std::size_t nearer = depth_[p] < depth_[q] ? p : q, farther = nearer == p ? q : p;
     const std::size_t width = static_cast<std::size_t>(guides_.width());
     const bool is_below = std::max(p, q) - std::min(p, q) == width;
     const float slope = planes_.StepAt(farther, is_below) * (farther > nearer ? 1.0f : -1.0f);
-    return depth_[farther] - depth_[nearer] - kTangentShare * slope <= give;
+    return depth_[farther] - depth_[nearer] - kTangentShare * slope <= tolerance;
   }
 
   double AngleBetween(std::size_t p, std::size_t q) const {
@@ -266,8 +268,8 @@ class Classifier {
   const OutlinePass& pass_;
   std::span<const std::uint8_t> only_;
   const GuideSet& guides_;
-  DepthTolerance give_;
-  StepGive weak_;
+  DepthTolerance tolerance_;
+  StepTolerance weak_;
   double crease_, weak_crease_;  // radians
   BorderOwner owner_;
   TangentPlanes planes_;
@@ -285,7 +287,7 @@ BorderOwner::BorderOwner(const GuideSet& guides)
       object_(guides.Plane(Layer::kObject)),
       facing_(guides.Plane(Layer::kNormal, 2)),
       width_(static_cast<std::size_t>(guides.width())),
-      give_(guides, kDepthTolerance) {}
+      tolerance_(guides, kDepthTolerance) {}
 
 float BorderOwner::SlopeTowards(std::size_t pixel, std::optional<std::size_t> before) const {
   const bool goes_on = before && coverage_[*before] > 0.0f && object_[*before] == object_[pixel];
@@ -304,7 +306,7 @@ bool BorderOwner::Meet(std::size_t p, std::size_t q) const {
   const float in_p = depth_[q] + SlopeTowards(q, after) - depth_[p],
               in_q = depth_[q] - depth_[p] - SlopeTowards(p, before);
   const float least = (in_p < 0.0f) == (in_q < 0.0f) ? std::min(std::fabs(in_p), std::fabs(in_q)) : 0.0f;
-  return least <= give_.At(std::min(depth_[p], depth_[q]));
+  return least <= tolerance_.At(std::min(depth_[p], depth_[q]));
 }
 
 bool BorderOwner::IsSecond(std::size_t p, std::size_t q) const {
@@ -321,21 +323,21 @@ BorderMap FindBorders(const OutlinePass& pass, const GuideSet& guides, double sc
   map.right.assign(guides.pixel_count(), 0), map.below.assign(guides.pixel_count(), 0);
   const auto width = static_cast<std::size_t>(map.width), height = static_cast<std::size_t>(map.height);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, height, 16), [&](const auto& rows) {
-    std::vector<std::uint32_t> doubts(width);
+    std::vector<std::uint32_t> undecided(width);
     const auto at = [&](bool is_inside, std::size_t pixel) { return is_inside ? std::optional(pixel) : std::nullopt; };
     for (std::size_t y = rows.begin(); y != rows.end(); ++y) {
       const std::size_t row = y * width;
-      std::fill(doubts.begin(), doubts.end(), 1u);  // also of the pairs beside the picture's edge
-      if (width > 3) classifier.Doubts(row + 1, 1, 1, 1, width - 3, doubts.data() + 1);
+      std::fill(undecided.begin(), undecided.end(), 1u);  // also of the pairs beside the picture's edge
+      if (width > 3) classifier.MarkUndecided(row + 1, 1, 1, 1, width - 3, undecided.data() + 1);
       for (std::size_t x = 0; x + 1 < width; ++x) {
         const std::size_t p = row + x;
-        if (doubts[x]) map.right[p] = classifier.Between(at(x > 0, p - 1), p, p + 1, at(x + 2 < width, p + 2));
+        if (undecided[x]) map.right[p] = classifier.Between(at(x > 0, p - 1), p, p + 1, at(x + 2 < width, p + 2));
       }
       if (y + 1 == height) continue;
-      classifier.Doubts(row, width, y > 0 ? width : 0, y + 2 < height ? width : 0, width, doubts.data());
+      classifier.MarkUndecided(row, width, y > 0 ? width : 0, y + 2 < height ? width : 0, width, undecided.data());
       for (std::size_t x = 0; x < width; ++x) {
         const std::size_t p = row + x;
-        if (!doubts[x]) continue;
+        if (!undecided[x]) continue;
         map.below[p] = classifier.Between(at(y > 0, p - width), p, p + width, at(y + 2 < height, p + 2 * width));
       }
     }

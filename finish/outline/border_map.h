@@ -37,7 +37,7 @@ class BorderOwner {
 
   std::span<const float> coverage_, depth_, object_, facing_;
   std::size_t width_;
-  DepthTolerance give_;
+  DepthTolerance tolerance_;
 };
 
 // A border counts where its class has a width. The guides must hold the pass's layers. `only`: by pixel; borders whose

@@ -7,8 +7,8 @@
 namespace scumble::internal {
 
 // Gives each stretch of a line between two objects to one of them. Border by border the owner may change from pixel to
-// pixel where they touch: paint of one, then of the other. The nearer one counts, over a stretch of the line; where the
-// objects meet, the rest of the line decides, and if they meet all along, the one that most borders say.
+// pixel where they touch: paint of one, then of the other. The nearer one counts, over a stretch of the line. Where the
+// objects meet, the rest of the line decides. If they meet all along, the owner of most borders decides.
 void SettleOwners(const GuideSet& guides, LineChain& chain);
 
 }  // namespace scumble::internal

@@ -19,9 +19,9 @@ struct PieceAtRow {
 // A multiple of the floats in any machine's vector: counts that are multiples of it are quickest.
 inline constexpr std::size_t kCoverBlock = 16;
 
-// Raises the shares of `count` pixels, 0 … 1, to what the piece covers of them: antialiased, round at both ends, and
-// where it is thinner than a pixel as faint as it is thin. `owners`: becomes the piece's where it does so; or null. The
-// same bits on every machine.
+// Raises the shares of `count` pixels, 0 … 1, to what the piece covers of them. The piece is antialiased and round at
+// both ends. If it is thinner than a pixel, it is as faint as it is thin. `owners`: becomes the piece's where it does
+// so; or null. The same bits on every machine.
 void CoverRow(const PieceAtRow& at, std::size_t count, float* shares, std::uint32_t* owners);
 
 }  // namespace scumble::internal

@@ -59,7 +59,7 @@ StrokeCover CoverOf(std::span<const StrokePiece> pieces, int width, int height, 
 // Added to what a border is: it belongs to the pixel to the right or below.
 constexpr std::uint8_t kSecondOwns = 0x40;
 
-// Lines without strokes: a pixel whose nearest pixel beside a border is d pixels away lies d + 1/2 from that line, and
+// Lines without strokes. A pixel whose nearest pixel beside a border is d pixels away lies d + 1/2 from that line. It
 // is covered as far as the line is wide. Of a pixel with several borders the widest line counts. `borders`: with
 // kSecondOwns. O(pixels), whatever the width.
 StrokeCover CoverByDistance(const OutlinePass& pass, const FinishFrame& frame, const NoiseField* gaps,

@@ -11,7 +11,7 @@
 namespace scumble::internal {
 
 // Valleys of c, the cosine between the normal and the direction to the viewer: DeCarlo, Finkelstein, Rusinkiewicz,
-// Santella, "Suggestive Contours for Conveying Shape", 2003, section 2, where c has a minimum along w, the viewer's
+// Santella, "Suggestive Contours for Conveying Shape", 2003, section 2. There c has a minimum along w, the viewer's
 // direction laid on the surface. w is seen in the picture as the normal's part across the view. With r the pass's
 // reach:
 //   slope = c(p + r/2 · w) - c(p - r/2 · w), which changes its sign in the middle of a valley;

@@ -7,7 +7,6 @@
 #include <glm/glm.hpp>
 #include <limits>
 
-#include "finish/area/area_effects.h"
 #include "finish/area/oklab_blocks.h"
 #include "finish/smooth/smooth_filters.h"
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "core/image/exact_math.h"
@@ -13,7 +14,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "core/filter/vector_lane-inl.h"
+#include "finish/smooth/color_sums-inl.h"
 
 #ifndef SCUMBLE_FINISH_SMOOTH_BILATERAL_ONCE_
 #define SCUMBLE_FINISH_SMOOTH_BILATERAL_ONCE_
@@ -34,36 +35,26 @@ HWY_BEFORE_NAMESPACE();
 namespace scumble::internal {
 namespace HWY_NAMESPACE {
 
-// Sums differences to the pixel itself, so that an even colour stays as it is to the bit.
 void BilateralHere(const BilateralRun& run, std::size_t first, std::size_t count) {
   const Floats d;
   const auto one = hn::Set(d, 1.0f), zero = hn::Zero(d), per_square = hn::Set(d, run.per_square);
   for (std::size_t p = first; p < first + count; p += hn::Lanes(d)) {
-    const auto l = hn::LoadU(d, run.lightness + p), a = hn::LoadU(d, run.a + p), b = hn::LoadU(d, run.b + p),
-               key = hn::LoadU(d, run.key + p);
-    auto sum = hn::Set(d, run.weight[0]), sum_l = zero, sum_a = zero, sum_b = zero;
+    const ColorLanes own = LoadColors(run.lightness, run.a, run.b, p);
+    const auto key = hn::LoadU(d, run.key + p);
+    ColorSums sums(run.weight[0]);
     const auto add = [&](std::ptrdiff_t offset, hn::Vec<Floats> of_place) HWY_ATTR {
       const std::size_t q = std::size_t(std::ptrdiff_t(p) + offset);
-      const auto dl = hn::Sub(hn::LoadU(d, run.lightness + q), l), da = hn::Sub(hn::LoadU(d, run.a + q), a),
-                 db = hn::Sub(hn::LoadU(d, run.b + q), b);
-      const auto square = hn::Add(hn::Add(hn::Mul(dl, dl), hn::Mul(da, da)), hn::Mul(db, db));
-      const auto room = hn::Max(zero, hn::Sub(one, hn::Mul(square, per_square)));
-      const auto weight =
-          hn::IfThenElseZero(hn::Eq(key, hn::LoadU(d, run.key + q)), hn::Mul(of_place, hn::Mul(room, room)));
-      sum = hn::Add(sum, weight);
-      sum_l = hn::Add(sum_l, hn::Mul(weight, dl));
-      sum_a = hn::Add(sum_a, hn::Mul(weight, da));
-      sum_b = hn::Add(sum_b, hn::Mul(weight, db));
+      const ColorLanes difference = Difference(LoadColors(run.lightness, run.a, run.b, q), own);
+      const auto room = hn::Max(zero, hn::Sub(one, hn::Mul(SquaredLength(difference), per_square)));
+      const auto same = hn::Eq(key, hn::LoadU(d, run.key + q));
+      sums.Add(hn::IfThenElseZero(same, hn::Mul(of_place, hn::Mul(room, room))), difference);
     };
     for (std::size_t k = 1; k < run.weight.size(); ++k) {
       const auto of_place = hn::Set(d, run.weight[k]);
       add(-std::ptrdiff_t(k) * run.step, of_place);
       add(std::ptrdiff_t(k) * run.step, of_place);
     }
-    const auto per_sum = hn::Div(one, sum);
-    hn::StoreU(hn::Add(l, hn::Mul(sum_l, per_sum)), d, run.out_lightness + p);
-    hn::StoreU(hn::Add(a, hn::Mul(sum_a, per_sum)), d, run.out_a + p);
-    hn::StoreU(hn::Add(b, hn::Mul(sum_b, per_sum)), d, run.out_b + p);
+    sums.StoreMean(own, run.out_lightness, run.out_a, run.out_b, p);
   }
 }
 

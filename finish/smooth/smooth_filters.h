@@ -37,13 +37,13 @@ std::size_t WaveletsPad(double sigma, std::size_t longer_side);
 void BilateralFilter(double sigma, double range, SmoothPlanes& planes);
 
 // The anisotropic Kuwahara filter (Kyprianidis, Kang, Döllner 2009) with polynomial weights (Kyprianidis, Semmo, Kang,
-// Döllner 2010): eight sectors of an ellipse along the edge, of axes sigma · (1 + A) and sigma / (1 + A), A being the
-// anisotropy of the structure tensor; the even ones count. O(pixels · sigma²).
+// Döllner 2010). It has eight sectors of an ellipse along the edge, of axes sigma · (1 + A) and sigma / (1 + A), and
+// the even ones count. A is the anisotropy of the structure tensor. O(pixels · sigma²).
 void KuwaharaFilter(double sigma, double tensor_sigma, SmoothPlanes& planes);
 
-// The guided filter (He, Sun, Tang 2010) with the picture as its own guide, and one gain for all three channels:
-// gain = v / (v + range² / 4), v the variance of colours in the window. The window of a pixel is its column as far as
-// keys are equal and `sigma` reaches, and of each pixel of that its row likewise: a square where nothing is in the way.
+// The guided filter (He, Sun, Tang 2010) with the picture as its own guide. All three channels have one gain, v / (v +
+// range² / 4), v being the variance of colours in the window. The window of a pixel is its column as far as keys are
+// equal and `sigma` reaches, and of each pixel there its row likewise. Where nothing is in the way it is a square.
 // O(pixels), whatever sigma is.
 void GuidedFilter(double sigma, double range, SmoothPlanes& planes);
 
@@ -55,8 +55,8 @@ struct WaveletStops {
 // Edge-avoiding à-trous wavelets without their details (Dammertz, Sewtz, Hanika, Lensch 2010): 5 × 5 taps at distances
 // of 1, 2, 4 … pixels; the range is halved each time. A B3 spline in place, Tukey's biweight of colours, of normals
 // (half at a distance of 1/2) and of depths (half at 1/100 of the depth for each pixel). `range` holds at one pixel of
-// the reference height, and `scale` such pixels are one of the picture's, so that levels of equal length have equal
-// ranges in pictures of any size. O(pixels · log sigma).
+// the reference height, and `scale` such pixels are one of the picture's. So levels of equal length have equal ranges
+// in pictures of any size. O(pixels · log sigma).
 void WaveletsFilter(double sigma, double range, double scale, const WaveletStops& stops, SmoothPlanes& planes);
 
 // 1 / c² of Tukey's biweight (1 - d² / c²)² that is a half at `half`.

@@ -77,7 +77,7 @@ HWY_INLINE void AddTo(KuwaharaSector& sector, Vector weight, Vector l, Vector a,
 
 // The mean of the sectors' means, each by 1 / (1 + deviation^6), deviations being 0 … 255. One that lies outside of
 // what is looked at for the most part has too little in it to be called even.
-HWY_INLINE void Judge(const KuwaharaSector* sectors, const KuwaharaRun& run, std::size_t p) {
+HWY_INLINE void StoreMeanOfSectors(const KuwaharaSector* sectors, const KuwaharaRun& run, std::size_t p) {
   const Floats d;
   Lane most = 0.0f, sum = 0.0f, l = 0.0f, a = 0.0f, b = 0.0f;
   for (int k = 0; k < 2 * kHalf; ++k) most = Max(most, sectors[k].weight);
@@ -145,7 +145,7 @@ void KuwaharaHere(const KuwaharaRun& run, std::size_t first, std::size_t count) 
         }
       }
     }
-    Judge(sectors, run, p);
+    StoreMeanOfSectors(sectors, run, p);
   }
 }
 

@@ -12,7 +12,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "core/filter/vector_lane-inl.h"
+#include "finish/smooth/color_sums-inl.h"
 
 #ifndef SCUMBLE_FINISH_SMOOTH_WAVELETS_ONCE_
 #define SCUMBLE_FINISH_SMOOTH_WAVELETS_ONCE_
@@ -43,8 +43,9 @@ void WaveletsHere(const WaveletRun& run, std::size_t first, std::size_t count) {
   };
   for (std::size_t p = first; p < first + count; p += hn::Lanes(d)) {
     const auto at = [&](const float* plane, std::size_t q) HWY_ATTR { return hn::LoadU(d, plane + q); };
-    const auto l = at(run.lightness, p), a = at(run.a, p), b = at(run.b, p), key = at(run.key, p);
-    auto sum = hn::Set(d, kSpline[0] * kSpline[0]), sum_l = zero, sum_a = zero, sum_b = zero;
+    const ColorLanes own = LoadColors(run.lightness, run.a, run.b, p);
+    const auto key = at(run.key, p);
+    ColorSums sums(kSpline[0] * kSpline[0]);
     for (int v = -2; v <= 2; ++v) {
       for (int u = -2; u <= 2; ++u) {
         if (u == 0 && v == 0) continue;
@@ -53,10 +54,9 @@ void WaveletsHere(const WaveletRun& run, std::size_t first, std::size_t count) {
           const auto off = hn::Sub(at(plane, q), at(plane, p));
           return hn::Mul(off, off);
         };
-        const auto dl = hn::Sub(at(run.lightness, q), l), da = hn::Sub(at(run.a, q), a), db = hn::Sub(at(run.b, q), b);
-        const auto colors = hn::Add(hn::Add(hn::Mul(dl, dl), hn::Mul(da, da)), hn::Mul(db, db));
-        auto weight =
-            hn::Mul(hn::Set(d, kSpline[u < 0 ? -u : u] * kSpline[v < 0 ? -v : v]), biweight(colors, run.per_color));
+        const ColorLanes difference = Difference(LoadColors(run.lightness, run.a, run.b, q), own);
+        auto weight = hn::Mul(hn::Set(d, kSpline[u < 0 ? -u : u] * kSpline[v < 0 ? -v : v]),
+                              biweight(SquaredLength(difference), run.per_color));
         if (run.depth) {
           const auto normals = hn::Add(hn::Add(square(run.normal_x), square(run.normal_y)), square(run.normal_z));
           weight = hn::Mul(weight, biweight(normals, run.per_normal));
@@ -64,17 +64,10 @@ void WaveletsHere(const WaveletRun& run, std::size_t first, std::size_t count) {
           const auto depths = hn::Max(hn::Mul(at(run.depth, q), at(run.depth, p)), hn::Set(d, 1e-20f));
           weight = hn::Mul(weight, biweight(hn::Div(square(run.depth), depths), run.per_depth));
         }
-        weight = hn::IfThenElseZero(hn::Eq(key, at(run.key, q)), weight);
-        sum = hn::Add(sum, weight);
-        sum_l = hn::Add(sum_l, hn::Mul(weight, dl));
-        sum_a = hn::Add(sum_a, hn::Mul(weight, da));
-        sum_b = hn::Add(sum_b, hn::Mul(weight, db));
+        sums.Add(hn::IfThenElseZero(hn::Eq(key, at(run.key, q)), weight), difference);
       }
     }
-    const auto per_sum = hn::Div(one, sum);
-    hn::StoreU(hn::Add(l, hn::Mul(sum_l, per_sum)), d, run.out_lightness + p);
-    hn::StoreU(hn::Add(a, hn::Mul(sum_a, per_sum)), d, run.out_a + p);
-    hn::StoreU(hn::Add(b, hn::Mul(sum_b, per_sum)), d, run.out_b + p);
+    sums.StoreMean(own, run.out_lightness, run.out_a, run.out_b, p);
   }
 }
 

@@ -21,7 +21,7 @@ struct Tile {
 // Tiles that are cast together, side by side: their rows of a plane are written at once.
 inline constexpr int kStripTiles = 4;
 
-// Squares of 4 × 4 pixels one after the other, row by row inside and out: a square is a packet of rays, and its halves
+// Squares of 4 × 4 pixels one after the other, row by row inside and out. A square is a packet of rays, and its halves
 // fill vectors without a shuffle.
 inline constexpr int kSquareSide = 4;
 inline constexpr int kSquarePixels = kSquareSide * kSquareSide;

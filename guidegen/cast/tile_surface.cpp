@@ -195,10 +195,90 @@ class TileWork {
     for (auto& plane : guides_.normal) hn::Store(hn::Zero(f), f, plane.data() + pixel);
   }
 
+  // Where rays meet the planes of their triangles.
+  struct Meeting {
+    D along;      // the ray's direction times the triangle's area
+    D v, w;       // barycentric
+    Mask missed;  // outside of the triangle, or edge-on
+    HWY_INLINE D Mix(D corner, D first, D second) const {
+      return hn::Add(hn::Sub(corner, hn::Mul(first, v)), hn::Mul(second, w));
+    }
+  };
+
+  // Shading normals in view space, before they are unit vectors.
+  struct ViewNormal {
+    D3 shading;
+    D squared;      // its squared length
+    Mask ordinary;  // neither too short nor at the ends of the format
+  };
+
+  // MeetTriangle. A product with −1 only changes the sign.
+  HWY_INLINE Meeting Meet(const D3& origin, const D3& direction, const LaneTriangles& triangles) const {
+    const Doubles d;
+    const D zero = hn::Zero(d);
+    const D3 from = {hn::Sub(origin.x, triangles.corner.x), hn::Sub(origin.y, triangles.corner.y),
+                     hn::Sub(origin.z, triangles.corner.z)};
+    const D3 moment = {hn::Sub(hn::Neg(from.y), hn::Mul(direction.y, from.z)),
+                       hn::Add(hn::Mul(from.z, direction.x), from.x),
+                       hn::Sub(hn::Mul(from.x, direction.y), hn::Mul(direction.x, from.y))};
+    const D along = hn::Sub(hn::Add(hn::Mul(triangles.area.x, direction.x), hn::Mul(triangles.area.y, direction.y)),
+                            triangles.area.z);
+    const D scale = hn::Div(hn::Set(d, -1.0), along);
+    const D v = hn::Mul(Dot(triangles.second_edge, moment), scale);
+    const D w = hn::Mul(Dot(triangles.first_edge, moment), scale);
+    const auto inside = hn::And(hn::And(hn::Ge(v, zero), hn::Ge(w, zero)), hn::Le(hn::Add(v, w), hn::Set(d, 1.0)));
+    const auto steady = hn::Gt(hn::Abs(along), hn::Mul(triangles.edge_on, hn::Set(d, longest_ray_)));
+    return {along, v, w, hn::Not(hn::And(inside, steady))};
+  }
+
+  // ObjectNormal, and its transform into view space. `side`: −0 where the back is seen, else 0.
+  HWY_INLINE ViewNormal NormalAt(const Meeting& meeting, const LaneTriangles& triangles, const LaneObjects& objects,
+                                 D side) const {
+    const Doubles d;
+    const Floats f;
+    const F fv = hn::DemoteTo(f, meeting.v);
+    const F fw = hn::DemoteTo(f, meeting.w);
+    const F fu = hn::Sub(hn::Sub(hn::Set(f, 1.0f), fv), fw);
+    const auto interpolate = [&](int axis) {
+      const F sum_of_two = hn::Add(hn::Mul(triangles.normal[axis], fu), hn::Mul(triangles.normal[3 + axis], fv));
+      return hn::PromoteTo(d, hn::Add(sum_of_two, hn::Mul(triangles.normal[6 + axis], fw)));
+    };
+    const D3 normal = {interpolate(0), interpolate(1), interpolate(2)};
+    const auto usable = hn::Gt(Dot(normal, normal), hn::Set(d, kShortestNormal * kShortestNormal));
+    const auto turn = [&](D a, D b, D c) {
+      const D turned = hn::Add(hn::Add(hn::Mul(a, normal.x), hn::Mul(b, normal.y)), hn::Mul(c, normal.z));
+      return hn::Xor(turned, side);
+    };
+    const D3 shading = {turn(objects.column[0].x, objects.column[1].x, objects.column[2].x),
+                        turn(objects.column[0].y, objects.column[1].y, objects.column[2].y),
+                        turn(objects.column[0].z, objects.column[1].z, objects.column[2].z)};
+    const D squared = Dot(shading, shading);
+    const auto ordinary =
+        hn::And(hn::Gt(squared, hn::Set(d, kLeastPlainSquare)), hn::Lt(squared, hn::Set(d, kLargestPlainSquare)));
+    return {shading, squared, hn::And(usable, ordinary)};
+  }
+
+  // Stores what MakeUnits reads, and the guides that are ready. `met`: a surface is there.
+  HWY_INLINE void StoreSurface(std::size_t pixel, Mask met, D z, const ViewNormal& normal, const LaneObjects& objects) {
+    const Doubles d;
+    const Floats f;
+    const D infinity = hn::Set(d, std::numeric_limits<double>::infinity());
+    const D depth = hn::IfThenElse(met, ZeroAtLeast(hn::Neg(z)), infinity);
+    hn::Store(hn::DemoteTo(f, depth), f, guides_.depth.data() + pixel);
+    // The square root and its division depend on each other only, so they are done in a loop of their own.
+    hn::Store(hn::IfThenElseZero(met, normal.shading.x), d, shading_[0] + pixel);
+    hn::Store(hn::IfThenElseZero(met, normal.shading.y), d, shading_[1] + pixel);
+    hn::Store(hn::IfThenElseZero(met, normal.shading.z), d, shading_[2] + pixel);
+    hn::Store(hn::IfThenElse(met, normal.squared, hn::Set(d, 1.0)), d, squared_ + pixel);
+    work_[work_count_++] = std::uint8_t(pixel);
+    const auto empty = SameObject(pixel, TileHits::kNothing);
+    hn::Store(hn::IfThenZeroElse(empty, objects.object_id), f, guides_.object.data() + pixel);
+    hn::Store(hn::IfThenZeroElse(empty, objects.material_id), f, guides_.material.data() + pixel);
+  }
+
   template <bool kPoints>
   HWY_INLINE void Lanes(std::size_t pixel) {
     const Doubles d;
-    const Floats f;
     const Keys k;
     // Embree's id of a miss makes the upper half of the key all ones, which no object has.
     const auto keys = hn::Load(k, keys_ + pixel);
@@ -219,79 +299,31 @@ class TileWork {
     const D3 origin = rays_.orthographic ? D3{across, up, zero} : D3{zero, zero, zero};
     const D3 direction = rays_.orthographic ? D3{zero, zero, hn::Set(d, -1.0)} : D3{across, up, hn::Set(d, -1.0)};
 
-    // MeetTriangle. A product with −1 only changes the sign.
-    const D3 from = {hn::Sub(origin.x, triangles.corner.x), hn::Sub(origin.y, triangles.corner.y),
-                     hn::Sub(origin.z, triangles.corner.z)};
-    const D3 moment = {hn::Sub(hn::Neg(from.y), hn::Mul(direction.y, from.z)),
-                       hn::Add(hn::Mul(from.z, direction.x), from.x),
-                       hn::Sub(hn::Mul(from.x, direction.y), hn::Mul(direction.x, from.y))};
-    const D along = hn::Sub(hn::Add(hn::Mul(triangles.area.x, direction.x), hn::Mul(triangles.area.y, direction.y)),
-                            triangles.area.z);
-    const D scale = hn::Div(hn::Set(d, -1.0), along);
-    const D v = hn::Mul(Dot(triangles.second_edge, moment), scale);
-    const D w = hn::Mul(Dot(triangles.first_edge, moment), scale);
-    const auto inside = hn::And(hn::And(hn::Ge(v, zero), hn::Ge(w, zero)), hn::Le(hn::Add(v, w), hn::Set(d, 1.0)));
-    const auto steady = hn::Gt(hn::Abs(along), hn::Mul(triangles.edge_on, hn::Set(d, longest_ray_)));
-    const auto missed = hn::Not(hn::And(inside, steady));
-    const auto mix = [&](D corner, D first, D second) {
-      return hn::Add(hn::Sub(corner, hn::Mul(first, v)), hn::Mul(second, w));
-    };
-    const D z = mix(triangles.corner.z, triangles.first_edge.z, triangles.second_edge.z);
+    const Meeting meeting = Meet(origin, direction, triangles);
+    const D z = meeting.Mix(triangles.corner.z, triangles.first_edge.z, triangles.second_edge.z);
     // A product with 1 or −1 is done as a change of sign, which is cheaper.
     const D minus = hn::Set(d, -0.0);
-    const auto back = hn::Gt(hn::Xor(along, hn::And(objects.winding, minus)), zero);
+    const auto back = hn::Gt(hn::Xor(meeting.along, hn::And(objects.winding, minus)), zero);
     const D side = hn::IfThenElseZero(back, minus);
-
-    // ObjectNormal, and its transform into view space.
-    const F fv = hn::DemoteTo(f, v);
-    const F fw = hn::DemoteTo(f, w);
-    const F fu = hn::Sub(hn::Sub(hn::Set(f, 1.0f), fv), fw);
-    const auto interpolate = [&](int axis) {
-      const F sum_of_two = hn::Add(hn::Mul(triangles.normal[axis], fu), hn::Mul(triangles.normal[3 + axis], fv));
-      return hn::PromoteTo(d, hn::Add(sum_of_two, hn::Mul(triangles.normal[6 + axis], fw)));
-    };
-    const D3 normal = {interpolate(0), interpolate(1), interpolate(2)};
-    const auto usable = hn::Gt(Dot(normal, normal), hn::Set(d, kShortestNormal * kShortestNormal));
-    const auto turn = [&](D a, D b, D c) {
-      const D turned = hn::Add(hn::Add(hn::Mul(a, normal.x), hn::Mul(b, normal.y)), hn::Mul(c, normal.z));
-      return hn::Xor(turned, side);
-    };
-    const D3 shading = {turn(objects.column[0].x, objects.column[1].x, objects.column[2].x),
-                        turn(objects.column[0].y, objects.column[1].y, objects.column[2].y),
-                        turn(objects.column[0].z, objects.column[1].z, objects.column[2].z)};
-    const D squared = Dot(shading, shading);
-    const auto ordinary =
-        hn::And(hn::Gt(squared, hn::Set(d, kLeastPlainSquare)), hn::Lt(squared, hn::Set(d, kLargestPlainSquare)));
+    const ViewNormal normal = NormalAt(meeting, triangles, objects, side);
 
     const auto met_double = hn::RebindMask(d, met);
-    auto plain = hn::Or(hn::Or(irregular, missed), hn::Not(hn::And(usable, ordinary)));
+    auto plain = hn::Or(hn::Or(irregular, meeting.missed), hn::Not(normal.ordinary));
     if (bends_normals_) {
-      const D to_eye = hn::Neg(Dot(shading, direction));
-      const D to_facing = hn::Xor(Dot(shading, triangles.area), hn::Xor(hn::And(objects.winding, minus), side));
-      const D eye_height = hn::Mul(hn::Abs(along), squared);
-      const auto above = MirrorsAbove(to_eye, to_facing, eye_height, hn::Mul(triangles.area_length, squared));
+      const D to_eye = hn::Neg(Dot(normal.shading, direction));
+      const D to_facing = hn::Xor(Dot(normal.shading, triangles.area), hn::Xor(hn::And(objects.winding, minus), side));
+      const D eye_height = hn::Mul(hn::Abs(meeting.along), normal.squared);
+      const auto above = MirrorsAbove(to_eye, to_facing, eye_height, hn::Mul(triangles.area_length, normal.squared));
       plain = hn::Or(plain, hn::Not(above));
     }
     const auto left_over = hn::And(plain, met_double);
     if (HWY_UNLIKELY(!hn::AllFalse(d, left_over))) LeaveOver(pixel, left_over);
 
-    const D infinity = hn::Set(d, std::numeric_limits<double>::infinity());
-    const D depth = hn::IfThenElse(met_double, ZeroAtLeast(hn::Neg(z)), infinity);
-    hn::Store(hn::DemoteTo(f, depth), f, guides_.depth.data() + pixel);
-    // The square root and its division depend on each other only, so they are done in a loop of their own.
-    hn::Store(hn::IfThenElseZero(met_double, shading.x), d, shading_[0] + pixel);
-    hn::Store(hn::IfThenElseZero(met_double, shading.y), d, shading_[1] + pixel);
-    hn::Store(hn::IfThenElseZero(met_double, shading.z), d, shading_[2] + pixel);
-    hn::Store(hn::IfThenElse(met_double, squared, hn::Set(d, 1.0)), d, squared_ + pixel);
-    work_[work_count_++] = std::uint8_t(pixel);
-    const auto empty = SameObject(pixel, TileHits::kNothing);
-    hn::Store(hn::IfThenZeroElse(empty, objects.object_id), f, guides_.object.data() + pixel);
-    hn::Store(hn::IfThenZeroElse(empty, objects.material_id), f, guides_.material.data() + pixel);
-
+    StoreSurface(pixel, met_double, z, normal, objects);
     if constexpr (kPoints) {
-      const D3 position = {mix(triangles.corner.x, triangles.first_edge.x, triangles.second_edge.x),
-                           mix(triangles.corner.y, triangles.first_edge.y, triangles.second_edge.y), z};
-      StorePoints(pixel, v, w, position, hn::Xor(objects.winding, side), triangles);
+      const D3 position = {meeting.Mix(triangles.corner.x, triangles.first_edge.x, triangles.second_edge.x),
+                           meeting.Mix(triangles.corner.y, triangles.first_edge.y, triangles.second_edge.y), z};
+      StorePoints(pixel, meeting.v, meeting.w, position, hn::Xor(objects.winding, side), triangles);
     }
   }
 

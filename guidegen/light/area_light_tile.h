@@ -2,13 +2,13 @@
 //
 // Without an allowed error every pixel takes the same number. With one, each term of a pixel's light (area_light.h)
 // begins with kLeastLightSamples and doubles them until its estimated error is small enough. A pixel's decisions depend
-// on its own samples and on the first samples of the pixels around it in the same tile of the picture's fixed grid: so
-// neither threads nor the order of work change a bit.
+// on its own samples and on the first samples of the pixels around it. These are in one tile of the picture's fixed
+// grid, so neither threads nor the order of work change a bit.
 //
 // Few samples are wrong where a lamp is partly hidden, by an object or by the surface's own horizon. A pixel there may
-// see all of its first samples lit by chance, so the neighbours' samples count too: where the window around a pixel has
-// both lit and blocked samples of a lamp, the pixel is taken to be in the penumbra, and samples that are all equal are
-// no proof. Pixels at a tile's border, which know fewer neighbours, begin with twice as many.
+// see all of its first samples lit by chance, so the neighbours' samples count too. If the window around a pixel has
+// both lit and blocked samples of a lamp, the pixel counts as in the penumbra. Then samples that are all equal are no
+// proof. Pixels at a tile's border, which know fewer neighbours, begin with twice as many.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// A mesh that emits, in pieces of few triangles, so that a point takes its light from the piece that lights it most: a
+// A mesh that emits, in pieces of few triangles. A point takes its light from the piece that lights it most, because a
 // row of lanterns may be one mesh.
 //
 // The pieces are the leaves of a binary tree. Going down, the side is taken more often that is larger, nearer, and

@@ -17,10 +17,10 @@ struct KeyLamp {
   glm::dvec3 Towards(const glm::dvec3& point) const;
 };
 
-// The lamp of the largest irradiance at the centre of the sphere around the scene, if nothing blocked its light and all
-// lamps shone to all sides: suns E, points and spots I/d², area lights and each instance of a mesh that emits radiance
-// · area / d². Luminances count, textures of emission do not. Of equal ones the first, lights before meshes. None where
-// nothing but the world shines. The lights have passed PlaceLights. O(vertices).
+// The lamp of the largest irradiance at the centre of the sphere around the scene, as if nothing blocked its light and
+// all lamps shone to all sides. Suns have E, points and spots I/d². Area lights, and each instance of a mesh that
+// emits, have radiance · area / d². Luminances count, textures of emission do not. Of equal ones the first, lights
+// before meshes. None where nothing but the world shines. The lights have passed PlaceLights. O(vertices).
 std::optional<KeyLamp> FindKeyLamp(const Scene& scene);
 
 }  // namespace scumble

@@ -1,7 +1,7 @@
 // Lights in a binary tree, so that choosing one of many costs their number's logarithm.
 //
 // After Conty Estevez & Kulla, "Importance Sampling of Many Lights with Adaptive Tree Splitting", HPG 2018, without its
-// splitting: going down, the side that may light the receiver more is taken more often. The few lights of a leaf are
+// splitting. Going down, the side that may light the receiver more is taken more often. The few lights of a leaf are
 // weighted individually, and a scene with few lights is a single leaf.
 #pragma once
 

@@ -160,14 +160,4 @@ void PathExpression::DropHopeless() {
   }
 }
 
-bool PathExpression::Matches(std::string_view path) const {
-  State state = start_;
-  for (std::size_t i = path.size(); i-- > 0;) {
-    const std::size_t event = kLetters.find(path[i]);
-    if (event == std::string_view::npos) return false;
-    state = Step(state, PathEvent(event));
-  }
-  return Accepts(state);
-}
-
 }  // namespace scumble

@@ -35,9 +35,6 @@ class PathExpression {
   // Whether a light hit here completes a path that matches.
   bool EndsWithLight(State state) const { return Accepts(Step(state, PathEvent::kLight)); }
 
-  // Whether a whole path, written from the light to the eye as above, matches; false for other letters.
-  bool Matches(std::string_view path) const;
-
  private:
   struct Node {
     std::array<State, kPathEvents> next{kDead, kDead, kDead, kDead};

@@ -1,7 +1,7 @@
 // Random numbers for light paths: Owen-scrambled Sobol points, hashed for each pixel.
 //
 // Burley, "Practical Hash-based Owen Scrambling", JCGT 2020; direction numbers: Joe & Kuo 2008. Each set of four
-// dimensions is a Sobol sequence of its own, shuffled and scrambled by its number (padding): the first 2^k samples of
+// dimensions is a Sobol sequence of its own, shuffled and scrambled by its number (padding). The first 2^k samples of
 // any set are a (0, k, 2)-net in its first two dimensions.
 #pragma once
 

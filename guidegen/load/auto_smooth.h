@@ -1,14 +1,14 @@
 // Normals that a file lacks: flat, or smooth up to an angle between faces, as Blender's Auto Smooth.
 //
-// Two faces that share an edge are smooth there if their normals are at most the limit apart; an angle that is the
-// limit but for rounding (0.01°) is smooth. The faces about a place fall into groups that such edges join, and each
-// group has one normal there: the sum of its faces' normals, each weighted by its angle at the place (mesh_normals.h).
+// Two faces that share an edge are smooth there if their normals are at most the limit apart. An angle that is the
+// limit but for rounding (0.01°) is smooth. The faces about a place fall into groups that such edges join. Each group
+// has one normal there, the sum of its faces' normals, each weighted by its angle at the place (mesh_normals.h).
 //   0     flat: each face has its own normal, also beside a face in its plane
 //   180   all faces at a place share one normal, also those that share no edge
 // Edges are found by place, so vertices that a file repeats (for texture coordinates) make no border. All edges of a
 // place that belong to one triangle only count as one edge: where two surfaces meet with other vertices between, the
-// border is smooth, too. Triangles whose normal would be rounding noise, because they are slivers or have no area, have
-// no say: the faces at their sides are neighbours of each other, and the sliver takes a normal of theirs.
+// border is smooth, too. Slivers and triangles without area do not count, because their normal would be rounding noise.
+// The faces at their sides are neighbours of each other, and the sliver takes a normal of theirs.
 #pragma once
 
 #include <cstddef>

@@ -16,8 +16,8 @@ struct DoubledFace {
 };
 
 // By face, which of them have the same corners in any order. `triangles` are corners as numbers of places, where equal
-// positions are one place; those of a face follow each other, and `faces` has the face of each, counted from 0. Empty
-// if no face lies on another.
+// positions are one place. Triangles of a face follow each other, and `faces` has the face of each, counted from 0.
+// Empty if no face lies on another.
 std::vector<DoubledFace> FindDoubledFaces(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles,
                                           std::span<const std::uint32_t> faces);
 

@@ -74,7 +74,7 @@ auto WithinMemory(const std::filesystem::path& path, Load load) -> decltype(load
     return MemoryError(path.string() + " asks for more memory than there is: simplify the scene");
   } catch (const std::length_error&) {
     return InputError(path.string() +
-                      " promises more of something than any file can hold: one of its sizes is wrong, export it again");
+                      " declares more of something than any file can hold: one of its sizes is wrong, export it again");
   }
 }
 

@@ -19,15 +19,15 @@
 namespace scumble {
 
 // Reads a file of a scene completely. Only regular files are read, and at most as many bytes as the system reports. A
-// scene is untrusted data: it may name a pipe or a device that never ends, or one of the system's files under /proc,
-// which report size 0 and need not end either.
+// scene is untrusted data. It may name a pipe or a device that never ends. It may name one of the system's files under
+// /proc, which report size 0 and need not end either.
 Expected<std::vector<std::byte>> ReadRegularFile(const std::filesystem::path& path);
 
 std::span<const unsigned char> AsChars(std::span<const std::byte> bytes);
 std::string AsText(std::span<const std::byte> bytes);
 
-// Fails for text in UTF-16 or UTF-32, with a byte order mark or without, and names the encoding: a reader of bytes
-// finds nothing in it, or an error that misleads. Only for formats that are text.
+// Fails for text in UTF-16 or UTF-32, with a byte order mark or without, and names the encoding. A reader of bytes
+// would find nothing in it, or an error that misleads. Only for formats that are text.
 Status CheckTextEncoding(const std::string& file, std::span<const std::byte> bytes);
 // AsText without the byte order mark of UTF-8.
 std::string AsTextWithoutMark(std::span<const std::byte> bytes);

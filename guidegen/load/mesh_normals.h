@@ -2,8 +2,8 @@
 //
 // Normals here are smooth; guidegen/load/auto_smooth.h limits that by an angle. They are the sum of the adjoining
 // triangles' normals, each weighted by its angle at the vertex (Thürmer & Wüthrich, "Computing vertex normals from
-// polygonal facets", 1998), so they do not depend on the triangulation.
-// Sums are in double and in the order of the triangles: the same bits every time.
+// polygonal facets", 1998). So they do not depend on the triangulation. Sums are in double and in the order of the
+// triangles: the same bits every time.
 #pragma once
 
 #include <cstddef>

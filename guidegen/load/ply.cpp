@@ -112,7 +112,7 @@ class PlyLoader {
     }
     // The last word of a text needs no space after it.
     if (element.count > (values.remaining() + 1) / least) {
-      return Bad("it promises " + std::to_string(element.count) + " of '" + Excerpt(element.name, 40) +
+      return Bad("it declares " + std::to_string(element.count) + " of '" + Excerpt(element.name, 40) +
                  "', more than its " + std::to_string(values.remaining()) + " bytes can hold; the file was cut short");
     }
     if (element.name == "vertex") return budget_.Take(file_, element.count, 0);

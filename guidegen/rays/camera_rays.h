@@ -16,8 +16,8 @@ namespace scumble {
 class CameraPose {
  public:
   // Only the direction of the camera matrix's axes counts: scale is dropped and shear is removed, keeping the viewing
-  // direction. Fails with kInput, naming the camera, on a matrix that has no direction, an angle outside (0, 180), a
-  // height that is not positive, a shift that is not finite, or a far plane before the near one.
+  // direction. Fails with kInput and names the camera in these cases: a matrix without a direction, an angle outside
+  // (0, 180), a height that is not positive, a shift that is not finite, a far plane before the near one.
   static Expected<CameraPose> Make(const Camera& camera);
 
   // The camera's position is subtracted before anything is rotated: two places 1e7 m from the origin and one metre
@@ -50,8 +50,8 @@ class CameraRays : public CameraPose {
 
   // The ray through a point of the picture, in pixels from the top left corner.
   ViewRay Through(double x, double y) const;
-  // The same with the width of a pixel's footprint, as Cycles 3.4 has it: the mean of the two sides of a pixel, in
-  // perspective measured on the unit sphere about the eye.
+  // The same with the width of a pixel's footprint, as Cycles 3.4 has it. That is the mean of the two sides of a pixel,
+  // in perspective measured on the unit sphere about the eye.
   ViewRay ThroughWithFootprint(double x, double y) const;
 
   // The pixels that are drawn: those of the camera's border, or all. Blender cuts the product of a border and the

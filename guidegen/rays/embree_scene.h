@@ -16,7 +16,7 @@ namespace scumble {
 
 // The point on an emissive mesh that a shadow ray aims at. It does not shade itself. So the sampled triangle does not
 // count, wherever Embree's floats put it. Nor do emissive surfaces so near the ray's end that they may be the sampled
-// point: the next triangle, or the next part of a light that was cut into several meshes.
+// point. Such are the next triangle, and the next part of a light that was cut into several meshes.
 struct ShadowTarget {
   const PlacedObject* object = nullptr;
   std::uint32_t primitive = 0;
@@ -47,9 +47,9 @@ class EmbreeScene {
   // `isa` as in GuidegenOptions; an unknown one, or one that this machine or this build of Embree lacks, is a kUsage
   // error. Builds in the calling thread's oneTBB arena, whose size is the only limit: Embree's own "threads=" would
   // throttle oneTBB for the whole process. The hierarchy is the same at any thread count. Triangles with corners that
-  // are not finite are left out.
-  // Each frame builds its own: a refit hierarchy costs a tenth, but picks other triangles at edges and coincident
-  // surfaces (57 of 99,849 pixels on a bent sheet of 80,000 triangles), so a frame would depend on those before it.
+  // are not finite are left out. Each frame builds its own. A refit hierarchy costs a tenth, but picks other triangles
+  // at edges and coincident surfaces: 57 of 99,849 pixels on a bent sheet of 80,000 triangles. A frame would then
+  // depend on those before it.
   struct Needs {
     bool light_rays = false;  // rays to lights will be cast, as ShadowTarget describes, not only camera rays
     bool emitters = false;    // emitters() will be called

@@ -4,11 +4,11 @@
 // improvement of Oren-Nayar reflectance model", 2012, as in Cycles 3.4: color · (a + b·t), where
 //   a = 1 / (π + (π/2 − 2/3) σ),  b = σ·a,  s = l·v − (n·l)(n·v),  t = s for s ≤ 0, else s / max(n·l, n·v).
 // White returns πa of the light to an eye that faces it (0.78 at σ = 1), and all of it to a grazing eye, never more.
-// Cycles 4 adds what bounces on between the facets, as OpenPBR has it: c²/π · Ē/(1 − Ē) / (1 − c(1 − Ē)) times
-// (1 − E(n·l)) (1 − E(n·v)), where c is the colour, at most 1, E(x) = πa + b·G(x) the share that one bounce returns, Ē
-// = πa + b(2π − 5.6)/3 its mean, and G(cos θ) = sin θ (θ − 2/3 − sin θ cos θ) + 2/3 tan θ (1 − sin³ θ). White then
-// returns all of the light.
-// Shading normals that differ from the interpolated ones take some of it away: ShadingNormalShadow.
+// Cycles 4 adds what bounces on between the facets, as OpenPBR has it: c²/π · Ē/(1 − Ē) / (1 − c(1 − Ē)) times (1 −
+// E(n·l)) (1 − E(n·v)). There c is the colour, at most 1. E(x) = πa + b·G(x) is the share that one bounce returns, and
+// Ē = πa + b(2π − 5.6)/3 its mean. G(cos θ) is sin θ (θ − 2/3 − sin θ cos θ) + 2/3 tan θ (1 − sin³ θ). White then
+// returns all of the light. Shading normals that differ from the interpolated ones take some of it away:
+// ShadingNormalShadow.
 //
 // Walter et al., "Microfacet models for refraction", EGSR 2007; Heitz, "Sampling the GGX distribution of visible
 // normals", JCGT 2018. Masking and shadowing are Smith's: separable in Cycles 3, G1(eye)·G1(light), and correlated by

@@ -1,15 +1,9 @@
 // Shading normals as Cycles shades with them: bent where they would reflect the eye's ray into the surface.
 //
-// On a coarse mesh the interpolated normal may turn so far from a triangle that the mirrored ray would go below it, or
-// face away from the eye. Cycles 3.4 (ensure_valid_reflection, which every surface closure applies) turns
-// such a normal N towards the triangle's own normal G until the mirrored ray is as high above the triangle as
-//   t = min(0.9 I·G, 0.01),  I the unit direction to the eye.
-// N stays where (2 (N·I) N − I)·G ≥ t. With x the unit direction of N's part across G, and the turned normal
-// x·sin θ + G·cos θ, the height is Ix·sin 2θ + Iz·cos 2θ, where Ix = I·x and Iz = I·G. It equals t at
-//   cos 2θ = (Iz t − Ix √(a² − t²)) / a²,  a² = Ix² + Iz².
-// The other sign of the root belongs to a normal on the other side of G. Cycles does not tell the two apart; if the
-// wrong one leaves the mirrored ray at a height between 1e-5 and t, it is taken, and so it is here. This happens where
-// I is nearly at right angles to x, and turns the normal up to 2° further.
+// On a coarse mesh the interpolated normal N may turn far from the triangle's own normal G. The mirrored ray would go
+// below the triangle, or N would face away from the eye. Such a normal is turned towards G until the mirrored ray is as
+// high above the triangle as t = min(0.9 I·G, 0.01), I the unit direction to the eye. N stays where (2 (N·I) N − I)·G ≥
+// t. Cycles 3.4 does so for every surface closure (docs/numerics.md, "The bend of a shading normal").
 //
 // Only surfaces that reflect have closures: a black one, and one that emits only, keep their normals. The Normal pass
 // is the mean of the closures' normals, and so the turned one. All this was measured with Blender 3.4.1, closure by
@@ -34,9 +28,9 @@ glm::dvec3 BentNormal(const glm::dvec3& facing, const glm::dvec3& to_eye, const 
 void BendShadingNormal(const PlacedObject& object, const ViewRay& ray, SurfacePoint& point);
 
 // The share that a diffuse surface reflects in one direction, because its shading normal N is not the interpolated S:
-// by a normal map, or bent. With g = (S·l) / ((N·l) (S·N)) it is 1 for g ≥ 1, 0 for g ≤ 0, and g + g² − g³ between, so
-// that light fades out where it sinks below S (Chiang, Li & Burley, "Taming the shadow terminator", SIGGRAPH 2019
-// Talks), as in Cycles 3.4. `smooth_normal` is SurfacePoint's: 0 means that S is N.
+// by a normal map, or bent. With g = (S·l) / ((N·l) (S·N)) it is 1 for g ≥ 1, 0 for g ≤ 0, and g + g² − g³ between. So
+// light fades out where it sinks below S, as in Cycles 3.4 (Chiang, Li & Burley, "Taming the shadow terminator",
+// SIGGRAPH 2019 Talks). `smooth_normal` is SurfacePoint's: 0 means that S is N.
 double ShadingNormalShadow(const glm::dvec3& normal, const glm::dvec3& smooth_normal, const glm::dvec3& to_light);
 
 }  // namespace scumble

@@ -54,7 +54,7 @@ inline Triangle ViewTriangle(const PlacedObject& object, std::uint32_t primitive
 inline constexpr double kEdgeOn = 0x1p-24;
 double LongestEdgeSquared(const Triangle& triangle);
 
-// The height of a ray's start above a surface, for each metre of the largest coordinate C: more than the error of
+// The height of a ray's start above a surface, for each metre of the largest coordinate C. It is more than the error of
 // Embree's floats, for triangles up to a length of 1.39 C. Measured, it is enough for larger ones and for slivers too.
 // docs/numerics.md has the derivation ("Light, and where its rays start").
 inline constexpr double kRoundingPerCoordinate = 0x1.0p-20;

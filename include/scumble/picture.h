@@ -31,8 +31,8 @@ struct Picture {
 Expected<Picture> LoadPicture(const std::string& file);
 
 // Writes .png, .tif, .exr or .jpg; `bits` a channel: 8 or 16, of JPEG 8, of EXR 16 (as for 8) or 32. The file appears
-// whole under its name, or not at all: a kOutput error leaves an older file as it was. kUsage where the name's ending
-// or the bits cannot be, or where width, height and rgba of the picture do not fit.
+// whole under its name, or not at all: a kOutput error leaves an older file as it was. kUsage if the ending or the bits
+// are not known, or if width, height and rgba of the picture do not fit.
 Status SavePicture(const std::string& file, const Picture& picture, int bits = 8);
 
 }  // namespace scumble

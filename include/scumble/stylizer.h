@@ -1,4 +1,4 @@
-// Scene and style to picture. A Stylizer keeps what it has loaded, cast and prepared, and makes again only what a
+// Scene and style to picture. A Stylizer keeps what it has loaded, cast and prepared. It makes again only what a
 // changed request makes stale: a changed key of the style casts no ray, a changed camera loads no file.
 #pragma once
 

@@ -18,7 +18,7 @@ struct Patches {
 // row order. O(pixels).
 Patches FindPatches(const std::vector<std::uint8_t>& mask, int width, int height, std::size_t least = 1);
 
-// 1 where at least `share` (0 … 1) of the pixels in the square of side 2 · reach + 1 around a pixel are not 0; those
+// 1 where at least `share` (0 … 1) of the pixels in the square of side 2 · reach + 1 around a pixel are not 0. Pixels
 // outside the picture count as 0. O(pixels).
 std::vector<std::uint8_t> MostlySet(const std::vector<std::uint8_t>& mask, int width, int height, int reach,
                                     double share);

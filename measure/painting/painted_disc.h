@@ -41,12 +41,12 @@ struct PaintedDisc {
 PaintedDisc FindPaintedDisc(const PaintOnGround& paint);
 
 // Share of the rim, 0 … 1, with a fringe of ground inside the usable disc although the paint beside it has a clearly
-// different colour: up to a tenth of the radius wide, at least 5 degrees long. Light paper in the light, wide bare
-// places and gaps between strokes are no fringe. 0 if the ground is unknown.
+// different colour. A fringe is up to a tenth of the radius wide and at least 5 degrees long. Light paper in the light,
+// wide bare places and gaps between strokes are no fringe. 0 if the ground is unknown.
 double FringeOfRim(const PaintOnGround& paint);
 
-// Regions of bare ground in the shade, at least 3% of the diameter across, in the inner nine tenths of the disc:
-// painters leave paper for lights, not for shades. `light` points to the light, unit length. Transparent regions do not
+// Regions of bare ground in the shade, at least 3% of the diameter across, in the inner nine tenths of the disc.
+// Painters leave paper for lights, not for shades. `light` points to the light, unit length. Transparent regions do not
 // count. Empty if the ground is not lighter than three quarters of the paint. Only pixels this far from paint are
 // counted, fewer than are bare.
 Patches BareShade(const PaintOnGround& paint, const glm::vec3& light);

@@ -17,11 +17,11 @@ struct PictureRegion {
 
 struct RegularityReport {
   int windows = 0;  // measured windows: those with texture
-  // Highest peak (0 … 1) of the autocorrelation of the windows' average: a pattern that is regular all over the picture
-  // in one direction adds up, random texture averages out.
+  // Highest peak (0 … 1) of the autocorrelation of the windows' average. A pattern that is regular all over the picture
+  // in one direction adds up; random texture averages out.
   double peak = 0.0;
-  // The highest peak that is at least two periods, and 5/8 of the largest shift, away: a machine-made pattern is as
-  // strong there as after one period, a hand-made one is not.
+  // The highest peak that is at least two periods, and 5/8 of the largest shift, away. A machine-made pattern is as
+  // strong there as after one period; a hand-made one is not.
   double echo = 0.0;
   // The echo of each window by itself, its upper quartile: patterns that follow the form have another direction in
   // each.

@@ -18,8 +18,8 @@ struct TradePoint {
 // given. So the errors along the front fall strictly from each time to the next longer one. A point with a NaN was not
 // measured: it is never on the front and beats no point. Infinities are numbers like others. O(n log n).
 //
-// `chance` (0 or more): errors that differ by no more are taken for equal, so a slower point is on the front only where
-// its error is less by more than that than those of all quicker points on it.
+// `chance` (0 or more): errors that differ by no more are taken for equal. So a slower point is on the front only if
+// its error is less than those of all quicker points on it, by more than `chance`.
 std::vector<std::size_t> ParetoFront(std::span<const TradePoint> points, double chance = 0.0);
 
 }  // namespace scumble

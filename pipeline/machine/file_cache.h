@@ -12,9 +12,8 @@
 
 namespace scumble {
 
-// One file a key, written whole or not at all, with a checksum. A file that is missing, cut short or altered is as if
-// it were not there; a folder that cannot be written keeps nothing, and neither is an error. Beyond kMostFiles the
-// oldest files are removed.
+// One file a key, written whole or not at all, with a checksum. A file that is cut short or altered counts as missing.
+// A folder that cannot be written keeps nothing. Neither is an error. Beyond kMostFiles the oldest files are removed.
 class FileCache : public TableCache {
  public:
   static constexpr std::size_t kMostFiles = 256;

@@ -28,7 +28,7 @@ struct Mosaic {
         y.push_back(static_cast<std::int16_t>(u < 6 ? 20 + v : 5));
         level.push_back(static_cast<std::int8_t>(u < 6 ? 4 : u == 6 ? 0 : -1));
         exemplar.push_back(u < 3 ? 0 : 1);
-        style.push_back(u < 3 ? 0 : u < 7 ? 1 : ExplainPlanes::kNoStyle);
+        style.push_back(u < 3 ? 0 : u < 7 ? 1 : 0xffff);
         coverage.push_back(u < 6 ? 1.0f : 0.5f);
         error.push_back(u < 3 ? 0.0f : 0.2f);
       }

@@ -122,6 +122,9 @@ inline Transferred MustTransfer(const Style& style, const GuideSet& guides, Tran
   return result;
 }
 
+// How much farther away than the nearest source the source of a look-up table may be: LookUpTable::Find.
+inline double TableQuantisation(int resolution) { return 4.0 * std::sqrt(2.0) / resolution; }
+
 inline bool SameField(const SourceField& a, const SourceField& b) {
   return a.x == b.x && a.y == b.y && a.level == b.level;
 }

@@ -53,10 +53,10 @@ class GuideSpace {
   int dimensions() const { return extra_dimensions_ + (normal_weight_ > 0.0f ? 3 : 0); }
   std::span<const Layer> layers() const { return layers_; }  // those of the extra dimensions, in the enum's order
 
-  // Radiance: whether it has a weight; whether a tenth of an exemplar is lit in such a layer; the layer that measures
-  // its exposure (the first of luminance, lpe.LDE, lpe.LD12E, lpe.full, lpe.LDDE and lpe.LSE with a weight that is so
-  // lit, else the first with a weight); and that layer's 90th percentile in the brightest of the exemplars, above 0: 1
-  // if none is lit.
+  // Radiance. has_radiance: whether it has a weight. is_lit: whether a tenth of an exemplar is lit in a layer with a
+  // weight. radiance: the layer that measures its exposure. That is the first of luminance, lpe.LDE, lpe.LD12E,
+  // lpe.full, lpe.LDDE and lpe.LSE that has a weight and is so lit, else the first with a weight. white: that layer's
+  // 90th percentile in the brightest of the exemplars, above 0; 1 if none is lit.
   bool has_radiance() const { return has_radiance_; }
   bool is_lit() const { return is_lit_; }
   Layer radiance() const { return radiance_; }
@@ -100,7 +100,7 @@ class GuideSpace {
     return test.Alike(normal_weight_ * normal, normal_weight_ * exemplar_->Normal(at.x, at.y), off, extra);
   }
   // Whether two pixels of exemplar k are alike in the extra dimensions.
-  bool AlikeRest(const GuideTest& test, int k, Source a, Source b) const {
+  bool AlikeInExtra(const GuideTest& test, int k, Source a, Source b) const {
     return test.Alike(glm::vec3(0.0f), glm::vec3(0.0f),
                       test.ExtraDistance(ExtraValuesAt(k, a), ExtraValuesAt(k, b), extra_dimensions_), 0.0f);
   }

@@ -118,13 +118,13 @@ SourceVariation::Tone SourceVariation::ToneAt(Source source, int picture) const 
 }
 
 // The mean squared distance of the quarters' tones from `tone`.
-std::int64_t SourceVariation::Unlikeness(Source source, const Wanted& wish, const Tone& tone) const {
-  const int half = std::max(wish.half_width, cell_);
+std::int64_t SourceVariation::Unlikeness(Source source, const Wanted& wanted, const Tone& tone) const {
+  const int half = std::max(wanted.half_width, cell_);
   std::int64_t sum = 0, quarters = 0;
   for (const int dx : {-half, 0}) {
     for (const int dy : {-half, 0}) {
       const auto quarter =
-          ToneOf(wish.picture, source.x + dx, source.y + dy, source.x + dx + half, source.y + dy + half);
+          ToneOf(wanted.picture, source.x + dx, source.y + dy, source.x + dx + half, source.y + dy + half);
       if (!quarter) continue;
       for (int i = 0; i < 4; ++i) {
         const std::int64_t difference = (*quarter)[i] - tone[i];
@@ -172,19 +172,19 @@ std::optional<Source> SourceVariation::Draw(const PreparedExemplar& exemplar, So
   return source;
 }
 
-Source SourceVariation::Choose(const PreparedExemplar& exemplar, const Wanted& wish) const {
-  const std::optional<Tone> tone = ToneAround(wish.own, wish.picture, wish.half_width);
-  if (!tone) return wish.own;
+Source SourceVariation::Choose(const PreparedExemplar& exemplar, const Wanted& wanted) const {
+  const std::optional<Tone> tone = ToneAround(wanted.own, wanted.picture, wanted.half_width);
+  if (!tone) return wanted.own;
   constexpr auto kMost = static_cast<std::int64_t>(kTolerance * 65535 * kTolerance * 65535);
-  const double chord = 2.0 * SinDegrees(0.5 * wish.degrees);
-  const float cosine = static_cast<float>(CosDegrees(wish.degrees));
-  Source best = wish.own;
+  const double chord = 2.0 * SinDegrees(0.5 * wanted.degrees);
+  const float cosine = static_cast<float>(CosDegrees(wanted.degrees));
+  Source best = wanted.own;
   std::int64_t least = std::numeric_limits<std::int64_t>::max();
   for (int attempt = 0; attempt < kTries; ++attempt) {
-    const std::uint64_t a = Mix64(wish.hash + 2 * attempt), b = Mix64(wish.hash + 2 * attempt + 1);
-    const std::optional<Source> source = Draw(exemplar, wish.own, chord, cosine, a, b);
+    const std::uint64_t a = Mix64(wanted.hash + 2 * attempt), b = Mix64(wanted.hash + 2 * attempt + 1);
+    const std::optional<Source> source = Draw(exemplar, wanted.own, chord, cosine, a, b);
     if (!source) continue;
-    const std::int64_t unlike = Unlikeness(*source, wish, *tone);
+    const std::int64_t unlike = Unlikeness(*source, wanted, *tone);
     if (unlike <= kMost) return *source;
     if (unlike < least) best = *source, least = unlike;
   }

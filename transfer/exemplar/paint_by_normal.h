@@ -31,7 +31,7 @@ class SourceVariation {
   // exemplar's pixels. The first is taken whose square has in its four quarters about the tone of the square around
   // `own`; if none has, the nearest one. (Quarters, because paint that is light on one side and dark on the other would
   // show its border although its mean is right.) `own` if no draw succeeds.
-  Source Choose(const PreparedExemplar& exemplar, const Wanted& wish) const;
+  Source Choose(const PreparedExemplar& exemplar, const Wanted& wanted) const;
 
   // The mean colour (times alpha) and alpha of the usable pixels in a square around a source, to whole cells: 0 … 65535
   // each; empty where no pixel there is usable. All arithmetic is in integers.
@@ -47,7 +47,7 @@ class SourceVariation {
     std::int64_t count = 0;
   };
   std::optional<Tone> ToneOf(int picture, int x0, int y0, int x1, int y1) const;
-  std::int64_t Unlikeness(Source source, const Wanted& wish, const Tone& tone) const;
+  std::int64_t Unlikeness(Source source, const Wanted& wanted, const Tone& tone) const;
   std::optional<Source> Draw(const PreparedExemplar& exemplar, Source own, double chord, float cosine, std::uint64_t a,
                              std::uint64_t b) const;
 

@@ -14,7 +14,7 @@ namespace scumble::internal {
 // edge is no painted edge: where the scene continues beyond it, pixels are usable up to it. O(pixels).
 std::vector<std::uint8_t> UsableMask(const GuideSet& guides, double rim);
 
-// Replaces the paint of every pixel outside the mask by that of the nearest one inside, so that a filter across the rim
+// Replaces the paint of every pixel outside the mask by that of the nearest one inside. So a filter across the rim
 // reads paint, and not the surroundings of the object. The mask holds at least one pixel.
 Picture ExtendPaint(const Picture& picture, std::span<const std::uint8_t> mask);
 

@@ -1,7 +1,7 @@
 // Smooth borders between objects: every surface of a pixel is painted by itself, then they are mixed by coverage.
 //
 // The chunks of the pixels in the style's window vote on the colour of a fragment (core/image/fragments.h), as on a
-// pixel's: so a border shows what its surface would show there. Where votes are cut at edges, pixels of the fragment's
+// pixel's. So a border shows what its surface would show there. Where votes are cut at edges, pixels of the fragment's
 // own object whose normals are within the crease vote. Without a window, or where votes are not cut, each of its cells
 // (core/image/fragments.h) takes the nearest of the eight pixels around that shows its surface. Without a window, these
 // are averaged in linear light. Where none shows it, and always for Lit Sphere, the fragment takes its own nearest

@@ -11,9 +11,9 @@
 
 namespace scumble::internal {
 
-// One active pixel for each block of step × step pixels, blocks counted from the picture's top left corner and cut off
-// at its right and lower edge: the active pixel nearest the block's centre, ties to the lowest (y, x). Blocks that lie
-// in the region as a whole or in part have one; a block without active pixels has none.
+// One active pixel for each block of step × step pixels: the one nearest the block's centre, ties to the lowest (y, x).
+// Blocks are counted from the picture's top left corner and cut off at its right and lower edge. Blocks that lie in the
+// region as a whole or in part have one; a block without active pixels has none.
 class CoarseGrid {
  public:
   CoarseGrid(std::span<const std::uint8_t> active, int width, int height, int step, const Region& region);
@@ -41,8 +41,8 @@ constexpr int CoarseLeastLevel(int step) { return std::bit_width(static_cast<uns
 // Fills the active pixels of input.region. `field` holds the matches of the pixels of `grid`. A pixel p tries the four
 // blocks whose centres are nearest, at the picture's edge fewer. A block with pixel q has the candidate S(q) + (p - q);
 // p may take it if it is usable and its guide is like p's, light included. It takes the one of the coarsest level, as
-// the match itself does; of these the one with the nearest guide; of equal ones the first, its own block's before the
-// others' in row order. If none is like it, p takes its own nearest neighbour. False: cancelled.
+// the match itself does, and of these the one with the nearest guide. Of equal ones it takes the first: its own
+// block's, then the others' in row order. If none is like it, p takes its own nearest neighbour. False: cancelled.
 bool UpsampleField(const MatchInput& input, const CoarseGrid& grid, SourceField& field, RowProgress& progress);
 
 }  // namespace scumble::internal

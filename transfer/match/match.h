@@ -74,10 +74,10 @@ struct MatchInput {
     if (space) return space->Alike(test, k, guide.normal + guide_offset, guide.extra_values, at, extra);
     return test.Alike(guide.normal + guide_offset, exemplar.Normal(at.x, at.y), extra);
   }
-  // Whether no source in the exemplar is within the threshold of a seed, `best` being the nearest: for example a shadow
-  // on a surface towards the light, where the exemplar shows all such surfaces lit. Its chunk would contain no pixel.
-  // Instead the pixels around it are compared with the seed's own difference as a guide offset. Normals alone are
-  // always compared directly.
+  // Whether no source in the exemplar is within the threshold of a seed, `best` being the nearest. An example is a
+  // shadow on a surface towards the light, if the exemplar shows all such surfaces lit. Its chunk would contain no
+  // pixel. Instead the pixels around it are compared with the seed's own difference as a guide offset. Normals alone
+  // are always compared directly.
   bool IsOff(const PixelGuide& seed, Source best, int k) const {
     return space && space->extra_dimensions() > 0 && !space->Alike(test, k, seed.normal, seed.extra_values, best, 0.0f);
   }
@@ -107,7 +107,7 @@ Candidate OwnCandidate(const MatchInput& input, const PixelGuide& guide);  // fo
 // Every pixel takes its own nearest neighbour.
 bool MatchLitSphere(const MatchInput& input, SourceField& field, RowProgress& progress);
 
-// Parallel StyleBlit, from coarse to fine: the nearest seed q has the source u*; pixel p takes u* + (p - q) if that is
+// Parallel StyleBlit, from coarse to fine. The nearest seed q has the source u*. Pixel p takes u* + (p - q) if that is
 // usable and its guide is like p's, light included. A seed outside the picture or on an inactive pixel fails its level.
 // If no level accepts, p takes its own u*. The plain form is written for reading and does everything. The SIMD form
 // does sixteen pixels at once, cannot match in a GuideSpace, and gives equal bytes.

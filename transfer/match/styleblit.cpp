@@ -20,7 +20,7 @@ Source ChooseInSpace(const MatchInput& input, const Candidate& own, int level, s
   constexpr int kTries = 16;
   for (int attempt = 0; attempt < kTries; ++attempt) {
     const Source other = ChooseAlike(input, own, level, attempt == 0 ? hash : Hash(hash, attempt));
-    if (input.space->AlikeRest(input.test, own.exemplar, own.source, other)) return other;
+    if (input.space->AlikeInExtra(input.test, own.exemplar, own.source, other)) return other;
   }
   return own.source;
 }

@@ -30,8 +30,8 @@ struct TileJob {
 // Matches the wanted pixels of the job in the input's region.
 void MatchTile(const TileJob& job);
 
-// The choice of a tile's pixel whose nearest seed s has an accepted candidate and is on a flat surface: near the border
-// of two such seeds, the other's candidate if it suits better. `taken` comes in with the candidate of s.
+// The choice of a tile's pixel whose nearest seed s has an accepted candidate and is on a flat surface. Near the border
+// of two such seeds, it is the other's candidate if that suits better. `taken` comes in with the candidate of s.
 struct FreeChoice {
   PixelPosition p;
   PixelGuide guide;

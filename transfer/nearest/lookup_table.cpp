@@ -33,8 +33,6 @@ LookUpTable::LookUpTable(const PointTree& normals, std::span<const Source> sourc
   });
 }
 
-double LookUpTable::Quantisation(int resolution) { return 4.0 * std::sqrt(2.0) / resolution; }
-
 std::vector<std::byte> LookUpTable::ToBytes() const {
   std::vector<std::byte> bytes;
   bytes.reserve(4 * cells_.size());

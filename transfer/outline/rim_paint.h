@@ -11,7 +11,7 @@ namespace scumble {
 class RimPaint {
  public:
   // `picture` is square and its sphere fills it; resized to `size`. The sphere touches the picture's sides, so at four
-  // places of the rim the paint outside it is not in the picture: there the paint 30 degrees farther on is used.
+  // places of the rim the paint outside it is not in the picture. There the paint 30 degrees farther on is used.
   RimPaint(const Picture& picture, int size);
 
   // Whether paint ends near the rim, on bare paper or on transparency. A sheet that is painted all over has no edge to

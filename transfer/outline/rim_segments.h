@@ -13,8 +13,8 @@
 
 namespace scumble::internal {
 
-// A segment of the rim laid along an outline: at `point` it shows the rim's paint in the direction `outward`, and away
-// from it the rim turns as on the sphere.
+// A segment of the rim laid along an outline. At `point` it shows the rim's paint in the direction `outward`. Away from
+// `point` the rim turns as on the sphere.
 struct RimSegment {
   glm::vec2 point{0.0f};
   glm::vec2 outward{1.0f, 0.0f};

@@ -34,9 +34,9 @@ struct SilhouetteInput {
 // (StyleMap::kPassThrough and kShadowCatcher) count as background, unless they are in front of the object.
 // Self-occlusion makes no outline.
 //
-// `width` falls with the thickness of the object there, full from 8 bands on and 0 below one band, where the outline
-// stays exact; and with the gap to the next object that is not behind, full from 3 bands on and 0 below half a band. It
-// is averaged over a band along the outline. Below kNarrowest nothing is painted.
+// `width` falls with the thickness of the object there: full from 8 bands on, and 0 below one band, where the outline
+// stays exact. It also falls with the gap to the next object that is not behind: full from 3 bands on, and 0 below half
+// a band. It is averaged over a band along the outline. Below kNarrowest nothing is painted.
 class Silhouettes {
  public:
   explicit Silhouettes(const SilhouetteInput& input);

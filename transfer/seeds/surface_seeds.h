@@ -1,19 +1,16 @@
 // Seeds that live on surfaces: those of StyleBlit's hierarchy (transfer/seeds/seeds.h), spread through an object's rest
 // space (layer `pref`) instead of over the screen. So chunks of paint move with their surface, and a frame needs no
-// other frame.
+// other frame. The reasons are in docs/numerics.md, "Seeds on surfaces".
 //
-//   - Rest space has a grid of cubes for every power of two, its edge 2^e, and one point hashed into each cube from
-//     (seed, time step, object, e, cube). A pixel belongs to the nearest point of the 27 cubes around it, its surface
-//     cell: the cells' borders are fixed on the surface, for any camera. Each grid is moved by a hash of (seed, object,
-//     e), or a floor at height 0 would lie exactly between two layers of cubes.
+//   - Rest space has a grid of cubes for every power of two, its edge 2^e. Each cube holds one point, hashed from
+//     (seed, time step, object, e, cube). Each grid is moved by a hash of (seed, object, e).
+//   - A pixel belongs to the nearest point of the 27 cubes around it, its surface cell.
 //   - A cell's seed q is its pixel nearest to the point, ties to the lowest (y, x). It follows the
 //     surface as closely as pixels can.
-//   - The size of 2^e on the screen follows from the pixel's footprint, as an octave κ = log2(pref units a pixel): the
-//     median over the object of (distance of pref to the next pixel / depth), times the pixel's own depth. So a floor
-//     has chunks of one size near and far, and a zoom moves κ without any step.
-//   - The cell's place in StyleBlit's hierarchy is level = e - floor(κ(q) + h), h in [0, 1) hashed from its cube; it
-//     takes part where 1 <= level < levels. Cubes do not depend on κ, so a zoom changes only the largest and the
-//     smallest cells, one by one in the order of h.
+//   - A pixel's octave is κ = log2(pref units a pixel): the median over the object of (distance of pref to the next
+//     pixel / depth), times the pixel's own depth.
+//   - The cell's place in StyleBlit's hierarchy is level = e - floor(κ(q) + h), h in [0, 1) hashed from its cube. The
+//     cell takes part where 1 <= level < levels.
 #pragma once
 
 #include <cstdint>
@@ -28,10 +25,10 @@ namespace scumble::internal {
 // κ of a pixel without an octave: it has no seed.
 inline constexpr float kNoOctave = -1e9f;
 
-// κ per pixel. kNoOctave where it is inactive, where pref is not finite, or where the object has no two neighbouring
-// pixels at different places. log2 is linear between powers of two, so that it is equal on every machine. Guides must
-// hold pref, depth and object ids. Guides without a depth above 0, or of an orthographic camera, count as all at one
-// distance. O(active pixels), in the caller's oneTBB arena.
+// κ per pixel. kNoOctave where the pixel is inactive, where pref is not finite, or where the object has no two
+// neighbouring pixels at different places. Here log2 is linear between powers of two, so that it is equal on every
+// machine. Guides must hold pref, depth and object ids. Guides without a depth above 0, or of an orthographic camera,
+// count as all at one distance. O(active pixels), in the caller's oneTBB arena.
 std::vector<float> SurfaceOctaves(const GuideSet& guides, std::span<const std::uint8_t> active);
 
 // The surface cell of a place.

@@ -27,7 +27,7 @@ class ShadowPainter {
   explicit ShadowPainter(const ShadowInput& input)
       : input_(input), seeds_(input.seeds, input.paint.level(), input.region) {}
 
-  // Writes the shadow paint of a pixel of the region, which itself need not catch shadows; where none of the catching
+  // Writes the shadow paint of a pixel of the region, which itself need not catch shadows. If none of the catching
   // pixels around is in shadow, the texel is left alone.
   void Paint(int x, int y, std::uint16_t* texel) const;
 
@@ -41,8 +41,8 @@ class ShadowPainter {
 // that no contour shows.
 //
 // The layer is sampled once a pixel, so its outlines have steps. The tone is that of the strongest shadow in the 5 × 5
-// pixels around, and alpha carries the ratio to their binomial mean: over some four pixels a hard outline fades evenly
-// in one paint, and the mean strength stays. Only pixels that catch count. False: cancelled.
+// pixels around, and alpha carries the ratio to their binomial mean. So over some four pixels a hard outline fades
+// evenly in one paint, and the mean strength stays. Only pixels that catch count. False: cancelled.
 bool PaintShadows(const ShadowInput& input, Picture& out, RowProgress& progress);
 
 }  // namespace scumble::internal

@@ -19,9 +19,9 @@ struct DarkPlace {
   int reach = 0;  // pixels around the centre that count as dark
 };
 
-// The square of usable paint, an eighth of the exemplar's shorter side wide, with the lowest mean luminance over white,
-// in any lighting condition; ties to the first in (exemplar, y, x). If an exemplar is too fragmented for that, its
-// darkest pixel.
+// The square of usable paint with the lowest mean luminance over white, in any lighting condition. It is an eighth of
+// the exemplar's shorter side wide. Ties go to the first in (exemplar, y, x). If an exemplar is too fragmented for
+// that, its darkest pixel.
 DarkPlace DarkestPlace(const PreparedExemplar& exemplar);
 
 // Paint for shadows of every strength, 0 none … 1 full. Full shadow is the darkest place's paint.

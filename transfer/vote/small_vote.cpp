@@ -170,12 +170,12 @@ class VoteTile {
     const SourceField& field = input_.field;
     for (; pixels; pixels &= pixels - 1) {
       const int i = std::countr_zero(pixels), x = 64 * word + i;
-      VoteSum ballot;
+      VoteSum sum;
       const auto add = [&](int u, int v) {
         const std::size_t q = field.Index(u, v);
         const Source at{field.x[q] - (u - x), field.y[q] - (v - y)};
         if (!input_.exemplar.Usable(at.x, at.y)) return;
-        ballot.Add(texels_.picture[field.exemplar[q]] + 4 * (std::size_t(at.y) * texels_.width + at.x));
+        sum.Add(texels_.picture[field.exemplar[q]] + 4 * (std::size_t(at.y) * texels_.width + at.x));
       };
       add(x, y);
       for (std::size_t k = 0; k < joined.size(); ++k) {
@@ -184,7 +184,7 @@ class VoteTile {
         if (u < 0 || v < 0 || u >= field.width || v >= field.height || !input_.active[field.Index(u, v)]) continue;
         add(u, v);
       }
-      ballot.Count(out.At(x, y));
+      sum.Count(out.At(x, y));
     }
   }
 

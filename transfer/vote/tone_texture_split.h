@@ -1,5 +1,5 @@
-// The hybrid of both methods, for exemplars with smooth tone and fine texture: a base layer laid as by the Lit Sphere,
-// without a seam, and a detail layer copied as by StyleBlit, unblurred (Sýkora et al. 2019 suggest it).
+// The hybrid of both methods, for exemplars with smooth tone and fine texture. The base layer is laid as by the Lit
+// Sphere, without a seam. The detail layer is copied as by StyleBlit, unblurred (Sýkora et al. 2019 suggest it).
 #pragma once
 
 #include <array>
@@ -72,7 +72,7 @@ struct HybridFrame {
 };
 
 // AddBaseLayer for many pixels. Where the choice of the exemplar changes within an object, the border would be a
-// staircase of pixels: there a pixel takes both colours by their area (core/filter/light_contour.h), in linear light.
+// staircase of pixels. There a pixel takes both colours by their area (core/filter/light_contour.h), in linear light.
 // Pixels that show several surfaces do not: their fragments have each its own light. Shared by all threads; what it is
 // made of must outlive it.
 class HybridTone {

@@ -16,11 +16,11 @@ bool VotePlainly(const VoteInput& input, Picture& out, RowProgress& progress) {
   return ForEachRow(region, progress, [&](int y) {
     for (int x = region.x0; x < region.x1; ++x) {
       if (!input.active[field.Index(x, y)]) continue;
-      VoteSum ballot;
+      VoteSum sum;
       ForEachVote(input, regions ? &*regions : nullptr, x, y, [&](int exemplar, Source source) {
-        ballot.Add(input.exemplar.picture(exemplar).At(source.x, source.y));
+        sum.Add(input.exemplar.picture(exemplar).At(source.x, source.y));
       });
-      ballot.Count(out.At(x, y));
+      sum.Count(out.At(x, y));
     }
     if (input.finished) input.finished(y, region.x0, region.x1);
   });

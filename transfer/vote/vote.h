@@ -24,19 +24,19 @@ struct VoteInput {
   int radius = 0;
   const EdgeRules* edges = nullptr;  // null: windows are not cut at edges
   Region region;
-  // Called from any thread for parts x0 … x1 - 1 of rows whose votes are counted, while they are in the caches: once
-  // for each active pixel of the region, and maybe for others. It may change those pixels of the picture.
+  // Called from any thread for parts x0 … x1 - 1 of rows whose votes are counted, while they are in the caches. It is
+  // called once for each active pixel of the region, and maybe for others. It may change those pixels of the picture.
   std::function<void(int y, int x0, int x1)> finished = {};
 };
 
-// How far a pixel votes: at most over one cell of the seed grid that settled it, so that chunks of a few pixels do not
-// blur what lies around them, and cost no more votes than large ones.
+// How far a pixel votes: at most over one cell of the seed grid that settled it. So chunks of a few pixels do not blur
+// what lies around them, and cost no more votes than large ones.
 inline int VoteReach(int level, int radius) { return std::min(radius, 1 << std::max(0, level)); }
 
-// Calls visit(exemplar, source) for each vote on the colour of an active pixel (x, y). Each active pixel q of the
-// (2·radius + 1)² window, or of its support region if `regions` is given, votes for the texel S(q) + (p - q) if that is
-// usable and p is within the reach of q. `regions` must be of the input's radius and hold (x, y). The pixel's own vote
-// is always among them.
+// Calls visit(exemplar, source) for each vote on the colour of an active pixel (x, y). Voters are the active pixels q
+// of the (2·radius + 1)² window, or of its support region if `regions` is given. q votes for the texel S(q) + (p - q)
+// if that is usable and p is within the reach of q. `regions` must be of the input's radius and hold (x, y). The
+// pixel's own vote is always among them.
 template <class Visit>
 void ForEachVote(const VoteInput& input, const SupportRegions* regions, int x, int y, const Visit& visit) {
   const SourceField& field = input.field;

@@ -57,8 +57,8 @@ class SourceRows {
 // + w) + i and the one to its right are of one chunk.
 void CopyMarked(const VoteRow& row, std::span<const std::uint64_t> marked, std::span<const std::uint64_t> linked);
 
-// Every marked pixel becomes the mean of the nine votes of its whole window: the window is in the picture and active,
-// and all texels that it votes for are usable. Only pixels whose texels are all opaque are done and their marks
+// Every marked pixel becomes the mean of the nine votes of its whole window. The window must be in the picture and
+// active, and all texels that it votes for usable. Only pixels whose texels are all opaque are done and their marks
 // cleared; the marks of other pixels stay. `sources` has the rows of the windows, of radius 1. The plain mean of opaque
 // texels equals VoteSum's (docs/numerics.md, "Derivations").
 void MeanOfMarked(const VoteRow& row, const SourceRows& sources, std::span<std::uint64_t> marked);

@@ -33,7 +33,7 @@ struct SolvedCamera {
 
 // Solves, then checks by reprojection: 99.9% of the pixels within 0.02 px, beyond the rounding of positions to float.
 // Cycles of Blender 3.4 keeps the first sample's position, which lies at the pixel's centre for any filter. Slight
-// depth of field, or a renderer whose filter moves that sample, scatters positions: they may be up to 3 px off if no
+// depth of field, or a renderer whose filter moves that sample, scatters positions. They may be up to 3 px off if no
 // part of the picture is off on average. Refuses with ErrorKind::kInput: fewer than 64 pixels, all in one plane, depth
 // that is not planar, pixels that are not square, a mirrored picture, and passes that no camera explains. `name` stands
 // for the file in messages. O(pixels), the fit itself on some 100,000 of them; deterministic; thread-safe.

@@ -161,7 +161,7 @@ Status CheckPart(const Part& part, std::uint64_t file_bytes, const std::string& 
   const std::uint64_t pixel_bytes = std::max<std::uint64_t>(part.pixel_bytes, 1);
   // Divided, because the product may not fit: the sides are below 2³².
   if (part.width * part.height / kMostPacked[part.compression] <= file_bytes / pixel_bytes) return Ok();
-  return InputError("cannot read " + name + ": it promises " + size + " of " + std::to_string(pixel_bytes) +
+  return InputError("cannot read " + name + ": it declares " + size + " of " + std::to_string(pixel_bytes) +
                     " bytes, more than its " + std::to_string(file_bytes) +
                     " bytes can hold; it is damaged, copy or save it again");
 }

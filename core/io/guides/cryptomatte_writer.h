@@ -18,8 +18,8 @@ std::string ManifestToText(const std::map<std::uint32_t, std::string>& names);
 // Planes that the channels of an ExrImage borrow.
 class MattePlanes {
  public:
-  // Adds the mattes CryptoObject and CryptoMaterial of those id layers that the guides have: the channels R (id), G
-  // (coverage), B and A of one level each, and the attributes cryptomatte/KEY/name, hash, conversion and manifest. A
+  // Adds the mattes CryptoObject and CryptoMaterial of those id layers that the guides have. Each has the channels R
+  // (id), G (coverage), B and A of one level, and the attributes cryptomatte/KEY/name, hash, conversion and manifest. A
   // pixel has its id with the coverage A; where it has fragments, the two ids with the largest coverage. An id without
   // a name is 0. The layer itself is added once more as kShownObjectIds or kShownMaterialIds. The guides and this
   // outlive the image.

@@ -9,8 +9,8 @@
 
 namespace scumble::internal {
 
-// Like ReadGuides and InspectGuides, but empty where the file holds anything besides guides without a view layer, or is
-// damaged: then the module of core/io/format_dispatch.h reads it or reports the error. Fragments, which the module does
+// Like ReadGuides and InspectGuides, but empty if the file is damaged, or holds anything besides guides without a view
+// layer. Then the module of core/io/format_dispatch.h reads it or reports the error. Fragments, which the module does
 // not read, are an error where they are damaged.
 std::optional<Expected<GuideSet>> ReadPlainGuides(const std::filesystem::path& path, const GuideReadOptions& options);
 std::optional<Expected<GuideFileInfo>> InspectPlainGuides(const std::filesystem::path& path);

@@ -296,6 +296,77 @@ Status TakeIdsOf(const BlenderMattes& mattes, const LayerSet& required, const st
   return Ok();
 }
 
+// What is read of a file, and from where in it.
+struct ReadPlan {
+  std::string prefix, light_layer, matte_prefix;
+  LayerSet wanted;                    // required or optional
+  std::optional<GuideCamera> camera;  // of a Blender render, if it is given
+  BlenderMattes mattes;
+  std::vector<FoundChannel> channels;
+  LayerSet complete;  // layers whose channels are all there
+};
+
+Expected<ReadPlan> PlanRead(const FileContents& contents, const GuideReadOptions& options, const std::string& name) {
+  ReadPlan plan;
+  SCUMBLE_ASSIGN(plan.prefix, ChoosePrefix(contents, options.view_layer, name));
+  SCUMBLE_ASSIGN(plan.light_layer, ChooseLightLayer(contents, options, plan.prefix, name));
+  plan.wanted = options.required;
+  plan.wanted.Add(options.optional);
+  LayerSet read_along = plan.wanted;
+  if (contents.from_blender) {
+    if (!options.blender_camera.empty()) {
+      SCUMBLE_ASSIGN(plan.camera, ReadBlenderCamera(options.blender_camera));
+    }
+    const LayerSet ids = {Layer::kObject, Layer::kMaterial};
+    SCUMBLE_ASSIGN(plan.mattes, MattesOf(contents, plan.prefix, ids, ids, name));
+    // One Cryptomatte is always read: it has the coverage that an opaque film's alpha lacks.
+    if (!plan.wanted.Has(Layer::kMaterial) && plan.mattes.count(Layer::kObject)) plan.mattes.erase(Layer::kMaterial);
+    read_along.Add({Layer::kDepth, Layer::kPosition});
+  }
+  plan.channels = SelectChannels(contents, plan.prefix, read_along, options.required);
+  plan.complete = CompleteLayers(plan.channels);
+  plan.matte_prefix = MattePrefix(contents, plan.prefix);
+  if (!contents.from_blender) {
+    LayerSet without_ids;
+    for (const Layer layer : {Layer::kObject, Layer::kMaterial}) {
+      if (plan.wanted.Has(layer) && !plan.complete.Has(layer)) without_ids.Add(layer);
+    }
+    SCUMBLE_ASSIGN(plan.mattes, MattesOf(contents, plan.matte_prefix, without_ids, options.required, name));
+  }
+  return plan;
+}
+
+// Whether the layer is made of a Cryptomatte or of passes of light.
+bool IsMade(const FileContents& contents, const ReadPlan& plan, Layer layer) {
+  return plan.mattes.count(layer) || !LightFor(contents, plan.light_layer, layer).empty();
+}
+
+// An error where required layers are missing, or the camera cannot be solved.
+Status CheckLayers(const FileContents& contents, const ReadPlan& plan, const GuideReadOptions& options,
+                   const std::string& name) {
+  LayerSet missing = options.required;
+  for (const LayerInfo& info : AllLayers()) {
+    if (plan.complete.Has(info.layer) || IsMade(contents, plan, info.layer)) missing.Remove(info.layer);
+  }
+  const bool solves_camera = contents.from_blender && !plan.camera;
+  if (!contents.dwa.empty() && solves_camera) return LossyCompression(name, contents.dwa);
+  if (missing.empty()) return Ok();
+  if (solves_camera) {  // name at once the layers that the next run would lack
+    for (const Layer layer : {Layer::kDepth, Layer::kPosition}) {
+      if (!plan.complete.Has(layer)) missing.Add(layer);
+    }
+  }
+  std::string remedy = contents.from_blender ? BlenderPassesFor(missing) : RemedyFor(missing, options.user);
+  if (solves_camera && missing.Has(Layer::kPosition)) {
+    remedy += ", or give the camera with --camera FILE, which does without Position";
+  }
+  const bool is_for_camera = solves_camera && (missing.Has(Layer::kDepth) || missing.Has(Layer::kPosition));
+  if (options.remedy && !is_for_camera) remedy += options.remedy(missing);
+  LayerSet there = CompleteLayers(SelectChannels(contents, plan.prefix, EveryLayer(), EveryLayer()));
+  for (const auto& [layer, matte] : plan.mattes) there.Add(layer);
+  return LacksLayers(contents, missing, remedy, there, plan.channels, name);
+}
+
 }  // namespace
 
 Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideReadOptions& options) {
@@ -306,77 +377,29 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
     return InputError(name + " is no Blender render: its normals are taken to be in view space, and it needs no " +
                       options.blender_camera.string());
   }
-  SCUMBLE_ASSIGN(const std::string prefix, ChoosePrefix(contents, options.view_layer, name));
-  SCUMBLE_ASSIGN(const std::string light_layer, ChooseLightLayer(contents, options, prefix, name));
-  LayerSet wanted = options.required;
-  wanted.Add(options.optional);
-  std::optional<GuideCamera> camera;
-  BlenderMattes mattes;
-  LayerSet read_along = wanted;
-  if (contents.from_blender) {
-    if (!options.blender_camera.empty()) {
-      SCUMBLE_ASSIGN(camera, ReadBlenderCamera(options.blender_camera));
-    }
-    const LayerSet ids = {Layer::kObject, Layer::kMaterial};
-    SCUMBLE_ASSIGN(mattes, MattesOf(contents, prefix, ids, ids, name));
-    // One Cryptomatte is always read: it has the coverage that an opaque film's alpha lacks.
-    if (!wanted.Has(Layer::kMaterial) && mattes.count(Layer::kObject)) mattes.erase(Layer::kMaterial);
-    read_along.Add({Layer::kDepth, Layer::kPosition});
-  }
-  const std::vector<FoundChannel> channels = SelectChannels(contents, prefix, read_along, options.required);
-  LayerSet complete = CompleteLayers(channels);
-  const std::string matte_prefix = MattePrefix(contents, prefix);
-  if (!contents.from_blender) {
-    LayerSet without_ids;
-    for (const Layer layer : {Layer::kObject, Layer::kMaterial}) {
-      if (wanted.Has(layer) && !complete.Has(layer)) without_ids.Add(layer);
-    }
-    SCUMBLE_ASSIGN(mattes, MattesOf(contents, matte_prefix, without_ids, options.required, name));
-  }
-  LayerSet missing = options.required;
-  for (const LayerInfo& info : AllLayers()) {
-    const bool lit = !LightFor(contents, light_layer, info.layer).empty();
-    if (complete.Has(info.layer) || mattes.count(info.layer) || lit) missing.Remove(info.layer);
-  }
-  const bool solves_camera = contents.from_blender && !camera;
-  if (!contents.dwa.empty() && solves_camera) return LossyCompression(name, contents.dwa);
-  if (solves_camera && !missing.empty()) {  // name at once the layers that the next run would lack
-    for (const Layer layer : {Layer::kDepth, Layer::kPosition}) {
-      if (!complete.Has(layer)) missing.Add(layer);
-    }
-  }
-  if (!missing.empty()) {
-    std::string remedy = contents.from_blender ? BlenderPassesFor(missing) : RemedyFor(missing, options.user);
-    if (solves_camera && missing.Has(Layer::kPosition)) {
-      remedy += ", or give the camera with --camera FILE, which does without Position";
-    }
-    const bool is_for_camera = solves_camera && (missing.Has(Layer::kDepth) || missing.Has(Layer::kPosition));
-    if (options.remedy && !is_for_camera) remedy += options.remedy(missing);
-    LayerSet there = CompleteLayers(SelectChannels(contents, prefix, EveryLayer(), EveryLayer()));
-    for (const auto& [layer, matte] : mattes) there.Add(layer);
-    return LacksLayers(contents, missing, remedy, there, channels, name);
-  }
+  SCUMBLE_ASSIGN(ReadPlan plan, PlanRead(contents, options, name));
+  SCUMBLE_RETURN_IF_ERROR(CheckLayers(contents, plan, options, name));
   GuideSet guides(contents.spec.full_width, contents.spec.full_height);
   for (const LayerInfo& info : AllLayers()) {
-    const bool made = mattes.count(info.layer) || !LightFor(contents, light_layer, info.layer).empty();
-    if (complete.Has(info.layer) || (made && wanted.Has(info.layer))) guides.Add(info.layer);
+    const bool made = plan.wanted.Has(info.layer) && IsMade(contents, plan, info.layer);
+    if (plan.complete.Has(info.layer) || made) guides.Add(info.layer);
   }
   std::vector<PlaneRead> reads;
-  for (const FoundChannel& found : channels) {
-    if (!complete.Has(found.meaning.layer) || mattes.count(found.meaning.layer)) continue;
+  for (const FoundChannel& found : plan.channels) {
+    if (!plan.complete.Has(found.meaning.layer) || plan.mattes.count(found.meaning.layer)) continue;
     reads.push_back({found.subimage, found.channel, guides.Plane(found.meaning.layer, found.meaning.component)});
   }
-  ReadMattesToo(contents, matte_prefix, mattes, reads);
-  const BlenderLight light = LightOf(contents, light_layer, wanted, complete, reads);
+  ReadMattesToo(contents, plan.matte_prefix, plan.mattes, reads);
+  const BlenderLight light = LightOf(contents, plan.light_layer, plan.wanted, plan.complete, reads);
   SCUMBLE_RETURN_IF_ERROR(ReadPlanes(*input, reads, name));
   ReadHeader(contents.spec, guides);
   if (contents.from_blender) {
-    SCUMBLE_RETURN_IF_ERROR(ConvertBlenderPasses(camera, mattes, light, name, guides));
+    SCUMBLE_RETURN_IF_ERROR(ConvertBlenderPasses(plan.camera, plan.mattes, light, name, guides));
     for (const Layer layer : {Layer::kDepth, Layer::kPosition}) {
-      if (!wanted.Has(layer)) guides.Remove(layer);
+      if (!plan.wanted.Has(layer)) guides.Remove(layer);
     }
   } else {
-    SCUMBLE_RETURN_IF_ERROR(TakeIdsOf(mattes, options.required, name, guides));
+    SCUMBLE_RETURN_IF_ERROR(TakeIdsOf(plan.mattes, options.required, name, guides));
   }
   SCUMBLE_RETURN_IF_ERROR(internal::MakeValid(name, guides));
   return guides;

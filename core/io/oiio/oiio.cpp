@@ -75,7 +75,7 @@ Status CheckDeclaredSize(const OIIO::ImageSpec& spec, const std::string& reader,
   const auto samples =
       static_cast<std::uint64_t>(spec.width) * static_cast<std::uint64_t>(spec.height);  // of 31 bits each
   if (samples / most <= bytes / static_cast<std::uint64_t>(spec.nchannels)) return Ok();
-  return InputError("cannot read " + name + ": it promises " + std::to_string(spec.width) + "×" +
+  return InputError("cannot read " + name + ": it declares " + std::to_string(spec.width) + "×" +
                     std::to_string(spec.height) + " pixels of " + std::to_string(spec.nchannels) +
                     " channels, and its " + std::to_string(bytes) +
                     " bytes cannot hold them; it may be cut short or damaged");

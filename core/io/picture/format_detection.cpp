@@ -122,7 +122,7 @@ Status CheckStart(std::string_view reader, std::span<const std::byte> start, con
 }
 
 Error DeclaredSizeError(const std::string& name, std::uint64_t bytes) {
-  return InputError("cannot read " + name + ": its header promises more than its " + std::to_string(bytes) +
+  return InputError("cannot read " + name + ": its header declares more than its " + std::to_string(bytes) +
                     " bytes hold; it may be cut short or damaged");
 }
 

@@ -30,8 +30,8 @@ inline constexpr double kWordsMm = 62.0;
 
 inline double MillimetresOf(double pixels, int dpi) { return pixels * 25.4 / dpi; }
 
-// Dots an inch at which a printed sphere should be scanned: as fine as it was printed, at least 300, and a quarter more
-// than RectifyScan needs across a small one; in steps of 50.
+// Dots an inch at which a printed sphere should be scanned, in steps of 50. It is as fine as the sphere was printed, at
+// least 300, and a quarter more than RectifyScan needs across a small one.
 int ScanDpi(int size, int dpi);
 
 // Places the template of a sphere `size` pixels across, printed at `dpi` pixels an inch. If the paper or any PDF cannot

@@ -79,8 +79,8 @@ std::string StarterStyle(const std::vector<KitLight>& lights) {
                      "name = \"my style\"\n"
                      "licence = \"\"\n\n"
                      "[transfer]\n"
-                     "threshold = 0.125     # smaller: shape is followed closer; larger: bigger patches of your paint\n"
-                     "blend_radius = 1      # how softly patches melt into each other, pixels\n"
+                     "threshold = 0.125     # smaller: shape is followed closer; larger: bigger chunks of your paint\n"
+                     "blend_radius = 1      # how far neighbouring chunks blend, pixels\n"
                      "scale = 1.0           # smaller: finer strokes in the picture\n"
                      "paper = \"\"            # a colour like \"#f4efe6\" or a picture behind; empty: transparent\n";
   for (std::size_t i = 0; i < lights.size(); ++i) {
@@ -136,7 +136,7 @@ and tune style.toml: threshold, scale, blend_radius, paper.
 
 Let strokes run over the sphere's edge; what lies outside it is never shown. What helps: the whole range from
 highlight to reflected light; strokes with a direction; irregular, lively texture. What hurts: a regular pattern (it
-tears where patches meet), bare template showing through.
+tears where chunks meet), bare template showing through.
 )";
 constexpr const char* kHowtoOtherLight = R"(
 $TEMPLATE is the same sphere in another light: $ANGLES, from $PLACE.

@@ -12,8 +12,8 @@
 
 namespace scumble {
 
-// One page, true to scale: the sphere so pale (0 to 18% grey) that paint covers it, the same marks as in the picture
-// but as shapes, and a text on how it is lit, printed and scanned. `painting` is the file name for the painting. The
+// One page, true to scale. The sphere is so pale (0 to 18% grey) that paint covers it. The marks are the picture's, as
+// shapes. A text says how the sphere is lit, printed and scanned. `painting` is the file name for the painting. The
 // same input makes the same bytes: no date is in it. `name` is for messages. Thread-safe.
 Expected<std::vector<std::byte>> EncodeTemplatePdf(const KitLight& light, const PrintPage& page, int dpi,
                                                    const std::string& painting, const std::string& name);

@@ -46,8 +46,8 @@ struct KeyTrack {
 class GltfAnimation {
  public:
   // Chooses by name: "" is the file's first, "*" all of them at once (Blender may write one for each object). An
-  // unknown name is a kUsage error that lists those of the file. kInput errors name animation, channel and place: keys
-  // that are not finite or do not increase, counts of accessors that do not fit, and more keys than the limit.
+  // unknown name is a kUsage error that lists those of the file. kInput errors name animation, channel and place. They
+  // are keys that are not finite or do not increase, counts of accessors that do not fit, and more keys than the limit.
   static Expected<GltfAnimation> Read(const tinygltf::Model& model, const std::string& file, const std::string& name,
                                       WarningCounter& warnings);
 

@@ -9,9 +9,9 @@
 // lights (Blender's lights have none). A mesh without normals, or with none that has a direction, is flat, as glTF
 // demands, unless the user says otherwise. A file that *requires* another extension is refused by the extension's name.
 //
-// An object is named after its node. Where several nodes have one name, the first in the file's list keeps it and the
-// others take their path, "Parent/Name", then "Parent/Name#2", …: the additions rename no other object. Names of more
-// than 512 MiB in total, counted for each copy, are refused.
+// An object is named after its node. If several nodes have one name, the first in the file's list keeps it and the
+// others take their path, "Parent/Name", then "Parent/Name#2", and so on. The additions rename no other object. Names
+// of more than 512 MiB in total, counted for each copy, are refused.
 #pragma once
 
 #include <filesystem>

@@ -23,7 +23,7 @@ std::string NodeLabel(const tinygltf::Model& model, int node);
 std::optional<int> LightOf(const tinygltf::Node& node);
 
 // The nodes that the file's own scene reaches, depth first in the file's order, with their transforms without the
-// animation; animated ones are marked. kInput errors that name the node: one that does not exist or is reached twice,
+// animation. Animated ones are marked. kInput errors name the node: one that does not exist or is reached twice,
 // nesting beyond 1024 levels, and an invalid transform.
 Expected<std::vector<RigNode>> ReadNodes(const tinygltf::Model& model, const std::string& file,
                                          const GltfAnimation& animation, WarningCounter& warnings);

@@ -19,10 +19,11 @@ namespace scumble {
 // Fills `model` from a file. Pictures stay encoded in Image::image; those in buffer views stay in their buffer.
 // Pictures in files beside the scene are not read and stay empty: only the materials show which are needed.
 //
-// Checks the container before tinygltf reads it. Refuses JSON nested too deeply for its recursion, lists of more
-// elements and extras of more values than any scene has, each of which it makes hundreds of times as large. Refuses
-// buffers that repeat one chunk or one large file, of which it would keep as many copies. Its exceptions become errors
-// that name the file, its messages about accepted files become warnings. Only regular files beside the scene are read.
+// Checks the container before tinygltf reads it. Refuses JSON nested too deeply for its recursion. Refuses lists of
+// more elements and extras of more values than any scene has, each of which it makes hundreds of times as large.
+// Refuses buffers that repeat one chunk or one large file, of which it would keep as many copies. Its exceptions become
+// errors that name the file, its messages about accepted files become warnings. Only regular files beside the scene are
+// read.
 Status ParseGltf(const std::filesystem::path& path, const FileListener& on_file, tinygltf::Model& model,
                  WarningCounter& warnings);
 

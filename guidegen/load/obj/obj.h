@@ -7,8 +7,8 @@
 // library or texture that is missing is a warning, not an error: OBJ files are often passed on without them. Libraries
 // are looked for beside the scene, textures beside their library, then beside the scene.
 //
-// Normals that the file lacks: in a file that speaks of smoothing groups, faces of one group share the normal at a
-// place, and faces in group 0 (`s off`) or before the first `s` are flat. Any other file is smooth up to
+// Normals that the file lacks are made. In a file with smoothing groups, faces of one group share the normal at a
+// place. Faces in group 0 (`s off`) or before the first `s` are flat. Any other file is smooth up to
 // kDefaultAutoSmooth. The user's degrees go before both.
 //
 // Vertices far from 0, as surveyors' are, keep their digits: the objects stand at the middle of what faces use in the

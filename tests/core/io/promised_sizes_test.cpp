@@ -98,7 +98,7 @@ TEST_F(Promises, ExrWindowsThatNoFileOfThatSizeHolds) {
         ASSERT_TRUE(WriteFileAtomically(path_, file));
         EXPECT_FALSE(ReadGuides(path_));
       } else {
-        ExpectRefused(file, "promises");
+        ExpectRefused(file, "declares");
       }
     }
   }
@@ -166,7 +166,7 @@ TEST_F(Promises, ImagesThatAreCalledDeepAreImages) {
     auto large = file;
     Patch(large, window, 8, last);
     Patch(large, window, 12, last);
-    ExpectRefused(large, "promises");
+    ExpectRefused(large, "declares");
   }
 }
 
@@ -237,7 +237,7 @@ TEST(PromisesOfPictures, SidesThatNoFileOfThatSizeHolds) {
     const auto refused = [&](const Expected<Picture>& picture) {
       ASSERT_FALSE(picture) << claim.name;
       EXPECT_THAT(picture.error().message, HasSubstr(claim.name));
-      EXPECT_THAT(picture.error().message, HasSubstr("it promises 16384×16384 pixels"));
+      EXPECT_THAT(picture.error().message, HasSubstr("it declares 16384×16384 pixels"));
       EXPECT_THAT(picture.error().message, HasSubstr(std::to_string(claim.header.size()) + " bytes"));
     };
     ASSERT_TRUE(WriteFileAtomically(folder / claim.name, claim.header));
@@ -405,14 +405,14 @@ TEST(PromisesOfPsd, SectionsAndRowsThatTheFileDoesNotHold) {
     const PsdFile file{.version = version};
     const auto whole = file.Bytes();
     for (std::size_t length = 26; length < whole.size(); ++length) {
-      refused({whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(length)}, "promises more than its");
+      refused({whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(length)}, "declares more than its");
     }
     // The lengths of palette, resources and layers stand at bytes 26, 30 and 34.
     for (const std::size_t at : {26, 30, 34}) {
       auto bytes = whole;
       for (int i = 0; i < (at == 34 ? file.Digits() : 4); ++i) bytes[at + std::size_t(i)] = std::byte(0xff);
       bytes.resize(bytes.size() + 4096);
-      refused(bytes, "promises more than its");
+      refused(bytes, "declares more than its");
     }
     // Packed, each of the three rows is two bytes, once.
     PsdFile packed = file;
@@ -424,12 +424,12 @@ TEST(PromisesOfPsd, SectionsAndRowsThatTheFileDoesNotHold) {
     EXPECT_EQ(picture->At(1, 0)[0], 10 * 257);
     EXPECT_EQ(picture->At(1, 0)[1], 100 * 257);
     packed.pixels[std::size_t(2 + 2 * version - 1)] = 4;
-    refused(packed.Bytes(), "promises more than its");
+    refused(packed.Bytes(), "declares more than its");
   }
   // 16384² pixels, as in Claims(), and 2³² − 1 of them.
   auto bytes = PsdFile{}.Bytes();
   for (const std::size_t at : {16, 20}) bytes[at] = std::byte(64), bytes[at + 1] = std::byte(0);
-  refused(bytes, "promises more than its");
+  refused(bytes, "declares more than its");
   for (std::size_t at = 14; at < 22; ++at) bytes[at] = std::byte(0xff);
   refused(bytes, "expected one flat picture");
   // Missing data would be read: of one channel three, of eight bits a pixel one.

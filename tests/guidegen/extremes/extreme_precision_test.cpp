@@ -306,8 +306,8 @@ double ChanceOfAnotherCell(const glm::dvec3& whole, const glm::dvec3& stored) {
 
 // The same by the two searches that go by the distance in space: a tree, which is exact, and a table. Both bring a
 // normal to unit length first, so it is off by δ = √3 e / (1 - √3 e), and its source is as far from it as LargestGap
-// says. A table asks for the middle of its cell instead, half of Quantisation() away. So two sources are δ and two gaps
-// apart in space, by table Quantisation() more, and in the picture no more than in space.
+// says. A table asks for the middle of its cell instead, half of TableQuantisation away. So two sources are δ and two
+// gaps apart in space, by table TableQuantisation more, and in the picture no more than in space.
 //
 // How many sources are others: of a tree, as many as on a lattice of pixels that lies anywhere (both counts are chance,
 // so their difference has twice the variance of one), up to the ring of 0.95, which no edge of the disc disturbs. Of a
@@ -316,7 +316,7 @@ double ChanceOfAnotherCell(const glm::dvec3& whole, const glm::dvec3& stored) {
 // Radii are no powers of two here, so that steps of half floats and borders of pixels meet by chance.
 void CheckPixels(const PreparedExemplar& sphere, bool is_table, Kept kept) {
   const int radius = sphere.size() / 2;
-  const double cell = is_table ? LookUpTable::Quantisation(LookUpTable::kResolution) : 0.0;
+  const double cell = is_table ? TableQuantisation(LookUpTable::kResolution) : 0.0;
   const double off = std::sqrt(3.0) * LargestHalfStep(kept) / (1.0 - std::sqrt(3.0) * LargestHalfStep(kept));
   std::uint64_t draws = 0;
   Changes all, told;

@@ -25,7 +25,7 @@ struct StepRow {
   std::ptrdiff_t to_below;  // from a guide's value to the one below
   std::int64_t readable;    // values of the guides from column 0 to their end
   float crease_cosine;
-  DepthTolerance give;
+  DepthTolerance tolerance;
 };
 
 struct StepWords {
@@ -70,11 +70,12 @@ HWY_INLINE F Slope(F before, F here, F after) {
 HWY_INLINE F Least(F a, F b) { return hn::IfThenElse(hn::Lt(b, a), b, a); }
 
 // Whether depth passes the test between p and the neighbour q; slopes along the step.
-HWY_INLINE hn::Mask<hn::CappedTag<float, 16>> DepthPasses(const DepthTolerance& give, F depth_p, F depth_q, F slope_p,
-                                                          F slope_q) {
+HWY_INLINE hn::Mask<hn::CappedTag<float, 16>> DepthPasses(const DepthTolerance& allowed, F depth_p, F depth_q,
+                                                          F slope_p, F slope_q) {
   const F expected = hn::Mul(hn::Set(kFloat, 0.5f), hn::Add(slope_p, slope_q));
-  const F given = hn::Add(hn::Set(kFloat, give.fixed), hn::Mul(hn::Set(kFloat, give.share), Least(depth_p, depth_q)));
-  const F tolerance = hn::Add(Least(hn::Abs(slope_p), hn::Abs(slope_q)), given);
+  const F of_depth =
+      hn::Add(hn::Set(kFloat, allowed.fixed), hn::Mul(hn::Set(kFloat, allowed.share), Least(depth_p, depth_q)));
+  const F tolerance = hn::Add(Least(hn::Abs(slope_p), hn::Abs(slope_q)), of_depth);
   return hn::Le(hn::Abs(hn::Sub(hn::Sub(depth_q, depth_p), expected)), tolerance);
 }
 
@@ -99,8 +100,8 @@ HWY_INLINE StepBits TestSteps(const StepRow& row, int column) {
   const F here = depth(1, 0), next = depth(1, 1), below = depth(2, 0);
   const F slope_x = Slope(depth(1, -1), here, next), next_slope_x = Slope(here, next, depth(1, 2));
   const F slope_y = Slope(depth(0, 0), here, below), below_slope_y = Slope(here, below, depth(3, 0));
-  auto right = DepthPasses(row.give, here, next, slope_x, next_slope_x);
-  auto down = DepthPasses(row.give, here, below, slope_y, below_slope_y);
+  auto right = DepthPasses(row.tolerance, here, next, slope_x, next_slope_x);
+  auto down = DepthPasses(row.tolerance, here, below, slope_y, below_slope_y);
   const F object = guide(row.object, 0);
   right = hn::And(right, hn::Eq(object, guide(row.object, 1)));
   down = hn::And(down, hn::Eq(object, guide(row.object, row.to_below)));
@@ -186,7 +187,7 @@ void MarkOpenSteps(const EdgeRules& rules, const MaskedTile& tile, const BitMask
   steps.right.Reset(tile, 0), steps.down.Reset(tile, 0);
   DepthRows depths(rules, tile.first_word, tile.words);
   const float crease_cosine = rules.CreaseCosine();
-  const DepthTolerance give = rules.Give();
+  const DepthTolerance tolerance = rules.Tolerance();
   const int end = std::min(tile.first_row + tile.rows, guides.height());
   int next = std::numeric_limits<int>::min();  // the first row of depths that is not filled yet
   for (int y = std::max(0, tile.first_row); y < end; ++y) {
@@ -201,7 +202,7 @@ void MarkOpenSteps(const EdgeRules& rules, const MaskedTile& tile, const BitMask
                          y + 1 < guides.height() ? guides.width() : 0,
                          static_cast<std::int64_t>(guides.pixel_count() - begin),
                          crease_cosine,
-                         give};
+                         tolerance};
     std::uint64_t *right = steps.right.Row(y), *down = steps.down.Row(y);
     HWY_DYNAMIC_DISPATCH(TestRow)(tested, tile.first_word, tile.words, {row, right, down});
     const std::uint64_t* here = active.Row(y);

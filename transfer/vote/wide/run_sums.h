@@ -1,5 +1,5 @@
-// Sums of the votes of a tile. For each chunk: the number of its pixels in a pixel's support region (or, for plain
-// voting, in its window) and within the chunk's reach, times the chunk's texel there.
+// Sums of the votes of a tile. For each chunk the number of its votes, times the chunk's texel there. Votes are its
+// pixels within the chunk's reach that are in the pixel's support region or, for plain voting, in its window.
 //
 // In a chunk the texel moves along with the pixel, so all of a chunk's votes on a pixel are for one texel. They are
 // counted as in Zhang, Lu, Lafruit (2009): along rows the pixels of the chunk on each horizontal arm, then sums of
