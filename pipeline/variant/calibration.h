@@ -27,7 +27,7 @@ inline constexpr int kCalibrationRuns = 9;
 inline constexpr int kHopelessRuns = 3;  // where nothing fits, of what is near the quickest
 // Where nothing fits: times the least run of all. What is near is run again; of what is nearly as quick, the most
 // accurate is taken, so that strokes are not given up for nothing.
-inline constexpr double kNearQuickest = 2.0, kNearlyQuickest = 1.2;
+inline constexpr double kNearQuickest = 2.0, kNearlyQuickest = 1.25;
 
 struct Calibration {
   // Everything that times depend on, but for the variants themselves: machine, program, scene, style, size.
