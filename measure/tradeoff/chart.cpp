@@ -140,7 +140,7 @@ std::string Grid(const Chart& chart, const ChartLook& look) {
                    (chart.top + bottom) / 2, ErrorName(look.error));
 }
 
-// What halves of the exemplar differ by: no picture need be nearer.
+// What halves of the exemplar differ by: a scale, no floor. Small pictures, which show little of it, may be nearer.
 std::string Floor(const Chart& chart, const TradeReport& report, const ChartLook& look) {
   if (look.error != ChartError::kTexture || !report.texture_floor) return "";
   const double y = chart.up.At(*report.texture_floor);

@@ -119,7 +119,8 @@ std::string Charts(const TradeReport& report) {
   return html +
          "<p id=\"told\" class=\"soft\">Dashed: the front, ringed its points; of memory none is drawn, as most "
          "variants differ by less than two runs of one. Bars are quartiles of the time and, of energies, standard "
-         "errors; the thin line is what halves of the exemplar differ by. Each point leads to its "
+         "errors; the thin line is what halves of the exemplar differ by, which is no floor: small pictures may "
+         "be nearer. Each point leads to its "
          "picture.</p>\n</section>\n";
 }
 

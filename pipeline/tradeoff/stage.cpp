@@ -60,6 +60,10 @@ Status AddQualities(const TradeSetup& setup, const RunContext& context, TradeSta
 
 }  // namespace
 
+Expected<Style> StyleOnPaper(const TradeSetup& setup, const Variant& variant, const RunContext& context) {
+  return OpenStyleWith(setup, variant.settings, context);
+}
+
 Expected<Style> StyleOfVariant(const TradeSetup& setup, const Variant& variant, const RunContext& context) {
   std::vector<std::string> settings = variant.settings;
   settings.push_back(kNoPaper);

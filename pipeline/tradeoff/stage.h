@@ -28,7 +28,8 @@ struct TradeStage {
 };
 Expected<TradeStage> OpenTradeStage(const TradeSetup& setup, const RunContext& context);
 
-// The style with what the variant changes of it, without paper.
+// The style with what the variant changes of it; on its own paper, or without paper.
+Expected<Style> StyleOnPaper(const TradeSetup& setup, const Variant& variant, const RunContext& context);
 Expected<Style> StyleOfVariant(const TradeSetup& setup, const Variant& variant, const RunContext& context);
 
 // The options of stylize that make the variant's picture again; or none, and why.

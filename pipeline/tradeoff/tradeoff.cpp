@@ -107,6 +107,10 @@ class Trade {
     for (std::size_t begin = 0; begin < variants.size(); begin += kTogether) {
       SCUMBLE_RETURN_IF_ERROR(MeasureTogether(variants, begin, std::min(variants.size(), begin + kTogether)));
     }
+    if (!report_.variants.front().texture) {
+      report_.left_out.emplace_back(
+          "texture of the style as it is, which ranks: too few pixels show paint to be measured; take a larger --size");
+    }
     return std::move(report_);
   }
 

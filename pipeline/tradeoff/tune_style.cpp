@@ -72,9 +72,16 @@ class TuneScene {
     return scene;
   }
 
+  // Of bare paint, which is measured.
   Expected<VariantPainter> PainterOf(const Variant& variant) const {
     SCUMBLE_ASSIGN(Style style, StyleOfVariant(setup_, variant, silent_));
     style.transfer.colorize = 0.0;
+    style.finish.clear();
+    return VariantPainter::Prepare(setup_, variant, style, guides_, silent_);
+  }
+  // Of the picture as stylize paints it, with paper, base colours and finishing effects, which is timed and shown.
+  Expected<VariantPainter> ShownPainterOf(const Variant& variant) const {
+    SCUMBLE_ASSIGN(const Style style, StyleOnPaper(setup_, variant, silent_));
     return VariantPainter::Prepare(setup_, variant, style, guides_, silent_);
   }
 
@@ -244,7 +251,7 @@ class Tuner {
     for (std::size_t s = 0; s < scenes_.size(); ++s) {
       std::vector<VariantPainter> painters;
       for (const Settings& settings : chosen) {
-        SCUMBLE_ASSIGN(VariantPainter painter, scenes_[s]->PainterOf(VariantOf(settings, 0)));
+        SCUMBLE_ASSIGN(VariantPainter painter, scenes_[s]->ShownPainterOf(VariantOf(settings, 0)));
         painters.push_back(std::move(painter));
       }
       for (int run = 0; run < kTimedRuns; ++run) {

@@ -94,7 +94,7 @@ Expected<Variant> VariantWithin(const BudgetRequest& options, const LadderFrame&
   };
   const MeasureVariant measure = [&](std::size_t place) -> Expected<double> {
     if (runs == 0)
-      context.Note(fmt::format("--budget-ms: measuring up to {} variants on this machine, once", variants.size()));
+      context.Note(fmt::format("--budget-ms: measuring up to {} variants on this machine", variants.size()));
     SCUMBLE_RETURN_IF_ERROR(begin_run());
     return paint(variants[place]);
   };
@@ -106,9 +106,10 @@ Expected<Variant> VariantWithin(const BudgetRequest& options, const LadderFrame&
                            std::ceil(picked.predicted_ms), WordsOf(variant),
                            OptionsOf(variant).empty() ? "" : ", which repeats it"));
   if (!picked.fits) {
-    context.Warn(
-        fmt::format("--budget-ms {:g}: nothing fits; the quickest variant is taken, which needs about {:.0f} ms",
-                    options.budget_ms, std::ceil(picked.predicted_ms)));
+    context.Warn(fmt::format(
+        "--budget-ms {:g}: nothing fits; one of the quickest variants is taken, which needs about {:.0f} ms{}",
+        options.budget_ms, std::ceil(picked.predicted_ms),
+        picked.measured == 0 ? " by times of an earlier run; --recalibrate measures them again" : ""));
   }
   choice.budget_ms = options.budget_ms;
   choice.picked = variant.name;

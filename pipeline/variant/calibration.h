@@ -7,6 +7,9 @@
 //     quiet machine and much on a busy one.
 //   - A process has just begun: its first run wakes threads and touches memory. What that costs is measured once, by
 //     one quick variant, and added.
+//
+// Load that is gone must not decide for good. So variants that were left out are measured again at the second pick, the
+// fourth, the eighth and so on: it costs less and less, and the quicker of their times are kept.
 #pragma once
 
 #include <cstddef>
@@ -21,7 +24,10 @@
 namespace scumble {
 
 inline constexpr int kCalibrationRuns = 9;
-inline constexpr int kHopelessRuns = 3;  // of the quickest, where even that is over twice the budget
+inline constexpr int kHopelessRuns = 3;  // where nothing fits, of what is near the quickest
+// Where nothing fits: times the least run of all. What is near is run again; of what is nearly as quick, the most
+// accurate is taken, so that strokes are not given up for nothing.
+inline constexpr double kNearQuickest = 2.0, kNearlyQuickest = 1.25;
 
 struct Calibration {
   // Everything that times depend on, but for the variants themselves: machine, program, scene, style, size.
@@ -38,7 +44,7 @@ using MeasureVariant = std::function<Expected<double>(std::size_t variant)>;
 struct PickedVariant {
   std::size_t variant = 0;    // its place in Calibration::variants
   double predicted_ms = 0.0;  // nineteen frames of twenty take no longer
-  bool fits = false;          // otherwise it is the quickest there is
+  bool fits = false;          // otherwise it is the quickest there is, or nearly
   int measured = 0;           // runs that were made for it now; 0: all times were known
 };
 
@@ -46,11 +52,12 @@ struct PickedVariant {
 // any.
 double PredictedMs(std::span<const double> runs_ms, double cold_ms);
 
-// The first of the variants whose predicted time is within the budget; where none fits, the quickest.
+// The first of the variants whose predicted time is within the budget; where none fits, the first that is nearly as
+// quick as the quickest.
 //
-// A variant is dropped at its first run beyond the budget: what is too slow costs one run. The very first run is one of
-// Calibration::cold, and is compared with the slower of two more. What was kept and makes no sense is measured again.
-// Fails as `measure` does.
+// A variant is left out at its first run beyond the budget: what is too slow costs one run. The very first run is one
+// of Calibration::cold, and is compared with the slower of two more. What was kept and makes no sense is measured
+// again. Fails as `measure` does.
 Expected<PickedVariant> PickVariant(const Calibration& calibration, double budget_ms, const MeasureVariant& measure);
 
 }  // namespace scumble

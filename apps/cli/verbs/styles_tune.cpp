@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "apps/cli/app/json_text.h"
+#include "apps/cli/app/made_folders.h"
 #include "apps/cli/app/options.h"
 #include "core/io/atomic_file.h"
 #include "core/io/picture_file.h"
@@ -63,7 +64,7 @@ std::string TextOf(const TuneReport& report) {
   }
   text += fmt::format(
       "\ntexture: how far the paint looks from the exemplar's, of the style as it is; other seeds differ by {:.3f}.\n"
-      "time: of the transfer, likewise.\n",
+      "time: of the transfer and its finishing effects, likewise.\n",
       report.chance);
   if (report.proposals.empty()) text += "Nothing that was tried is nearer to the exemplar by more than that.\n";
   return text;
@@ -81,9 +82,10 @@ Expected<std::string> PageOf(const TuneReport& report) {
   html += fmt::format("<div class=\"sheet\" style=\"grid-template-columns: repeat({}, 1fr)\">\n", report.scenes.size());
   const std::vector<const TunedStyle*> all = AllOf(report);
   for (std::size_t i = 0; i < all.size(); ++i) {
-    html += fmt::format("<p style=\"grid-column: 1 / -1\"><b>{}</b>: texture {:.3f}, time {:.2f} <code>{}</code></p>\n",
+    const std::string options = internal::EscapeHtml(OptionsOf(*all[i]));
+    html += fmt::format("<p style=\"grid-column: 1 / -1\"><b>{}</b>: texture {:.3f}, time {:.2f}{}</p>\n",
                         i == 0 ? "The style as it is" : NameOf(i), all[i]->texture, all[i]->time,
-                        internal::EscapeHtml(OptionsOf(*all[i])));
+                        options.empty() ? "" : " <code>" + options + "</code>");
     for (std::size_t s = 0; s < all[i]->pictures.size(); ++s) {
       SCUMBLE_ASSIGN(const std::vector<std::byte> png, EncodePng(all[i]->pictures[s]));
       html += fmt::format("<img alt=\"{}\" src=\"{}\">\n", internal::EscapeHtml(report.scenes[s] + ", " + NameOf(i)),
@@ -174,8 +176,12 @@ Status CheckTargets(const StylesTune& tune, const fs::path& style_file) {
     SCUMBLE_RETURN_IF_ERROR(CheckWritable(style_file));
   }
   if (tune.folder.empty()) return Ok();
-  std::error_code failed;  // which CheckWritable says
-  fs::create_directories(tune.folder, failed);
+  const MadeFolders folders(tune.folder);  // removed again, because minutes of work may be interrupted
+  std::error_code failed;
+  if (!fs::is_directory(tune.folder, failed)) {
+    return OutputError(fmt::format("-o {}: it is no folder, and none can be made{}; name another", tune.folder,
+                                   folders.error() ? ": " + folders.error().message() : ""));
+  }
   return CheckWritable(fs::path(tune.folder) / kPage);
 }
 
@@ -197,6 +203,7 @@ Expected<ExitCode> RunStylesTune(const StylesTune& tune, const Globals& globals)
   Print(globals.json ? JsonText(JsonOf(report)) : TextOf(report));
   if (!tune.folder.empty()) {
     SCUMBLE_ASSIGN(const std::string page, PageOf(report));
+    const MadeFolders folders(tune.folder);
     SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(fs::path(tune.folder) / kPage, page));
     globals.Note((fs::path(tune.folder) / kPage).string() + ": the pictures side by side");
   }

@@ -50,7 +50,9 @@ TEST_F(CliUsage, EveryVerbHasHelp) {
     }
   }
   EXPECT_EQ(RunOk({"help", "sphere"}).out, RunOk({"sphere", "-h"}).out);
+  EXPECT_EQ(RunOk({"help", "styles", "tune"}).out, RunOk({"styles", "tune", "-h"}).out);
   ExpectError({"help", "bogus"}, 2, {"there is no command 'bogus'", "scumble help"});
+  ExpectError({"help", "styles", "bogus"}, 2, {"there is no command 'styles bogus'", "scumble help"});
 }
 
 TEST_F(CliUsage, VerbsThatAreNone) {

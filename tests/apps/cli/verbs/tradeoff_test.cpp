@@ -304,8 +304,19 @@ TEST_F(Tradeoff, AWayThatCannotBeMadeIsLeftOut) {
   std::set<std::string> variants;
   for (const auto& variant : json["variants"]) variants.insert(variant["variant"]);
   EXPECT_EQ(variants, (std::set<std::string>{"the style", "levels 1", "resolution 0.5", "resolution 0.5 scaled up"}));
-  ASSERT_EQ(json["left_out"].size(), 1u) << json["left_out"];
+  ASSERT_EQ(json["left_out"].size(), 2u) << json["left_out"];
   EXPECT_EQ(json["left_out"][0].get<std::string>().find("resolution 2, as "), 0u) << json["left_out"];
+  EXPECT_EQ(json["left_out"][1].get<std::string>().find("texture "), 0u) << "4 rows show too little paint";
+}
+
+TEST_F(Tradeoff, TextureThatIsNotMeasuredIsSaid) {
+  const Arguments tiny = Small(Scene("suzanne.glb"), {"--only", "levels 1"}, "8x8");
+  const nlohmann::json json = RunOk(With(tiny, {"--json"})).Json();
+  ASSERT_TRUE(json["variants"][0]["texture"].is_null());
+  ASSERT_EQ(json["left_out"].size(), 1u) << json["left_out"];
+  EXPECT_EQ(json["left_out"][0].get<std::string>().find("texture "), 0u) << json["left_out"];
+  EXPECT_NE(RunOk(tiny).out.find("left out: texture "), std::string::npos);
+  EXPECT_TRUE(RunOk(Small(Scene("suzanne.glb"), {"--only", "levels 1", "--json"})).Json()["left_out"].empty());
 }
 
 // The cost of a table is reported, though this machine has made it before.
