@@ -100,7 +100,8 @@ Expected<Picture> Stylizer::Paint(const SceneSettings& scene, const StyleSetting
     return UsageError(fmt::format("exposure {} is out of range; expected -64 to 64 stops", *paint.exposure));
   }
   StyleRequest style_request;
-  style_request.style = style.style, style_request.sets = style.overrides;
+  style_request.style = style.style;
+  SCUMBLE_ASSIGN(style_request.sets, ParseStyleOverrides(style.overrides));
   style_request.assigned = style.assignments, style_request.scene_styles = style.follow_scene;
   style_request.finishes = style.finishes;
   PictureRequest picture;

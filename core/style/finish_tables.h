@@ -9,6 +9,9 @@
 
 namespace scumble::internal {
 
+// Of lists of names, by which effects are limited to objects and materials.
+inline constexpr const char* kNamesExpected = "expected names in quotes, as [\"Tree*\", \"House\"]";
+
 // A key whose value is a list: of frames with their values.
 struct FinishFrames {
   std::string key;  // "finish.ink.width"

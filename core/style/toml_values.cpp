@@ -2,27 +2,60 @@
 
 #include <algorithm>
 
-#include "core/style/toml_keys.h"
-
 namespace scumble::internal {
 namespace {
 
-// A number with a digit on either side of its point; any other text as it is.
-std::string WithBothDigits(std::string_view text) {
-  std::string number(text);
-  const auto is_digit = [&](std::size_t at) { return at < number.size() && number[at] >= '0' && number[at] <= '9'; };
-  const std::size_t point = number.find('.'), end = std::min(number.find_first_of("eE"), number.size());
-  const std::size_t begin = number.find_first_not_of("+-") == 1 ? 1 : 0;
-  if (point == std::string::npos || point > end || end - begin < 2) return number;
-  for (std::size_t at = begin; at < end; ++at) {
-    if (at != point && !is_digit(at)) return number;
+// The place after the string that begins at `begin` with a quote of either kind, by TOML 1.0's rules; empty if it is
+// not closed.
+std::optional<std::size_t> EndOfString(std::string_view text, std::size_t begin) {
+  const char quote = text[begin];
+  const std::string three(3, quote);
+  const bool has_escapes = quote == '"', is_long = text.substr(begin, 3) == three;
+  for (std::size_t i = begin + (is_long ? 3 : 1); i < text.size(); ++i) {
+    if (has_escapes && text[i] == '\\') {
+      ++i;
+    } else if (is_long && text.substr(i, 3) == three) {
+      i += 3;
+      for (int more = 0; more < 2 && i < text.size() && text[i] == quote; ++more) ++i;  // up to two belong to the text
+      return i;
+    } else if (!is_long && text[i] == quote) {
+      return i + 1;
+    } else if (!is_long && text[i] == '\n') {
+      return std::nullopt;
+    }
   }
-  if (!is_digit(point + 1)) number.insert(point + 1, 1, '0');
-  if (point == begin) number.insert(point, 1, '0');
-  return number;
+  return std::nullopt;
 }
 
 }  // namespace
+
+Status CheckTomlText(std::string_view text, const std::string& file) {
+  constexpr std::string_view kAround = "=[]{},\n";  // the characters around a key
+  const auto at_line = [&](std::size_t i) {
+    const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(i), '\n');
+    return file + ":" + std::to_string(line) + ": ";
+  };
+  std::size_t parts = 1;
+  for (std::size_t i = 0; i < text.size();) {
+    if (text[i] == '"' || text[i] == '\'') {
+      const std::optional<std::size_t> end = EndOfString(text, i);
+      if (!end) return InputError(at_line(i) + "not valid TOML: the string that begins here is not closed");
+      i = *end;
+      continue;
+    }
+    if (text[i] == '#') {
+      i = std::min(text.find('\n', i), text.size());
+      continue;
+    }
+    if (kAround.find(text[i]) != std::string_view::npos) parts = 1;
+    if (text[i] == '.' && ++parts > kMostKeyParts) {
+      return InputError(at_line(i) + "a key of more than " + std::to_string(kMostKeyParts) +
+                        " parts; a style's have up to four, as transfer.guide_weights.lpe.LDE");
+    }
+    ++i;
+  }
+  return Ok();
+}
 
 // Debian's toml++ throws; nothing else here does.
 Expected<toml::table> ParseToml(std::string_view text, const std::string& file) {
@@ -35,16 +68,25 @@ Expected<toml::table> ParseToml(std::string_view text, const std::string& file) 
   }
 }
 
-Expected<toml::table> ParseSetValue(std::string_view text) {
-  return ParseToml("value = " + WithBothDigits(text), "--set");
-}
-
 std::optional<KeyValue> ValueOf(const toml::node& node) {
   if (const auto* flag = node.as_boolean()) return KeyValue(flag->get());
   if (const auto* whole = node.as_integer()) return KeyValue(whole->get());
   if (const auto* number = node.as_floating_point()) return KeyValue(number->get());
   if (const auto* text = node.as_string()) return KeyValue(text->get());
   return std::nullopt;
+}
+
+std::optional<std::vector<std::string>> NamesOf(const toml::node& node) {
+  if (const auto* one = node.as_string()) return std::vector{one->get()};
+  const auto* list = node.as_array();
+  if (!list) return std::nullopt;
+  std::vector<std::string> names;
+  for (const auto& item : *list) {
+    const auto* name = item.as_string();
+    if (!name) return std::nullopt;
+    names.push_back(name->get());
+  }
+  return names;
 }
 
 std::optional<std::vector<StyleTrack::Key>> FramesOf(const toml::array& pairs) {
