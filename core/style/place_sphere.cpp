@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/image/painting/find_sphere.h"
+#include "core/painting/find_sphere.h"
 #include "core/style/kit/sphere_kit.h"
 #include "core/style/kit/sphere_template.h"
 #include "core/style/scan/rectify.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/image/painting/bare_paper.h"
+#include "core/painting/bare_paper.h"
 
 namespace scumble {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "core/image/check.h"
 #include "core/image/color.h"
-#include "core/image/painting/soft_edge.h"
+#include "core/painting/soft_edge.h"
 
 namespace scumble {
 namespace {

@@ -7,7 +7,7 @@
 #include "core/image/check.h"
 #include "core/image/color.h"
 #include "core/image/oklab.h"
-#include "core/image/painting/circle_fit.h"
+#include "core/painting/circle_fit.h"
 
 namespace scumble {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/image/painting/paint_mask.h"
+#include "core/painting/paint_mask.h"
 #include "measure/painting/connected_regions.h"
 #include "measure/painting/paint_sheet.h"
 

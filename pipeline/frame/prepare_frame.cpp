@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/image/painting/soft_edge.h"
+#include "core/painting/soft_edge.h"
 #include "core/style/finish_keys.h"
 #include "core/style/place_sphere.h"
 #include "core/style/style_keyframes.h"

@@ -1,5 +1,5 @@
 // Spheres that do not fill their picture are found where they were drawn, and nothing else is taken for one.
-#include "core/image/painting/find_sphere.h"
+#include "core/painting/find_sphere.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/image/hash.h"
-#include "core/image/painting/soft_edge.h"
+#include "core/painting/soft_edge.h"
 #include "tests/support/painted_spheres.h"
 
 namespace scumble {

@@ -10,7 +10,7 @@
 #include "core/filter/resample.h"
 #include "core/image/check.h"
 #include "core/image/hash.h"
-#include "core/image/painting/soft_edge.h"
+#include "core/painting/soft_edge.h"
 #include "transfer/exemplar/paint_by_normal.h"
 #include "transfer/exemplar/usable_mask.h"
 #include "transfer/nearest/guide_tree.h"

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "core/filter/resample.h"
-#include "core/image/painting/bare_paper.h"
+#include "core/painting/bare_paper.h"
 
 namespace scumble {
 namespace {

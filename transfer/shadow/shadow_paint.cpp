@@ -11,7 +11,7 @@
 #include "core/image/color.h"
 #include "core/image/exact_math.h"
 #include "core/image/hash.h"
-#include "core/image/painting/bare_paper.h"
+#include "core/painting/bare_paper.h"
 
 namespace scumble {
 namespace {

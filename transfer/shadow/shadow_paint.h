@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "core/image/painting/bare_paper.h"
+#include "core/painting/bare_paper.h"
 #include "scumble/picture.h"
 #include "transfer/exemplar/prepared_exemplar.h"
 

@@ -6,7 +6,7 @@
 
 #include "core/image/color.h"
 #include "core/image/oklab.h"
-#include "core/image/painting/bare_paper.h"
+#include "core/painting/bare_paper.h"
 #include "tests/support/transfer_fixtures.h"
 
 namespace scumble {

@@ -1,4 +1,4 @@
-#include "core/image/painting/circle_fit.h"
+#include "core/painting/circle_fit.h"
 
 #include <algorithm>
 #include <array>

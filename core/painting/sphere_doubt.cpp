@@ -1,4 +1,4 @@
-#include "core/image/painting/sphere_doubt.h"
+#include "core/painting/sphere_doubt.h"
 
 #include <algorithm>
 #include <cmath>

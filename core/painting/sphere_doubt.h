@@ -1,9 +1,9 @@
 // Why paint shows no clear sphere, as far as its picture tells.
 #pragma once
 
-#include "core/image/painting/circle_fit.h"
-#include "core/image/painting/paint_mask.h"
 #include "core/image/style.h"
+#include "core/painting/circle_fit.h"
+#include "core/painting/paint_mask.h"
 
 namespace scumble {
 

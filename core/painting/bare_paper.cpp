@@ -1,4 +1,4 @@
-#include "core/image/painting/bare_paper.h"
+#include "core/painting/bare_paper.h"
 
 #include <algorithm>
 #include <array>

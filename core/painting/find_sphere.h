@@ -1,8 +1,8 @@
 // Finds the one painted sphere in a picture that it may not fill.
 #pragma once
 
-#include "core/image/painting/circle_fit.h"
 #include "core/image/style.h"
+#include "core/painting/circle_fit.h"
 #include "scumble/picture.h"
 
 namespace scumble {

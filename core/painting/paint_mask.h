@@ -5,7 +5,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "core/image/painting/bare_paper.h"
+#include "core/painting/bare_paper.h"
 #include "scumble/picture.h"
 
 namespace scumble {

@@ -1,4 +1,4 @@
-#include "core/image/painting/paint_mask.h"
+#include "core/painting/paint_mask.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "core/image/painting/find_sphere.h"
+#include "core/painting/find_sphere.h"
 
 #include <algorithm>
 #include <array>
@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/image/painting/paint_mask.h"
-#include "core/image/painting/sphere_doubt.h"
+#include "core/painting/paint_mask.h"
+#include "core/painting/sphere_doubt.h"
 
 namespace scumble {
 namespace {

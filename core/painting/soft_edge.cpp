@@ -1,11 +1,11 @@
-#include "core/image/painting/soft_edge.h"
+#include "core/painting/soft_edge.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <vector>
 
-#include "core/image/painting/bare_paper.h"
+#include "core/painting/bare_paper.h"
 
 namespace scumble {
 namespace {
