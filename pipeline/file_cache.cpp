@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "core/image/hash.h"
-#include "core/io/file/atomic_file.h"
+#include "core/io/atomic_file.h"
 
 namespace scumble {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <system_error>
 
-#include "core/io/file/atomic_file.h"
+#include "core/io/atomic_file.h"
 #include "core/io/format_dispatch.h"
 #include "core/io/guide_file.h"
 #include "core/io/picture_file.h"

@@ -14,14 +14,14 @@
 #include <system_error>
 #include <vector>
 
+#include "core/io/atomic_file.h"
 #include "core/io/channel_file.h"
-#include "core/io/file/atomic_file.h"
-#include "core/io/file/readable_file.h"
 #include "core/io/guides/normal_space.h"
 #include "core/io/guides/own_guides.h"
 #include "core/io/library.h"
 #include "core/io/png/png_integrity.h"
 #include "core/io/png/png_reader.h"
+#include "core/io/readable_file.h"
 
 namespace scumble {
 namespace {

@@ -7,18 +7,18 @@
 #include <vector>
 
 #include "core/image/color.h"
+#include "core/io/atomic_file.h"
 #include "core/io/color_profile.h"
 #include "core/io/exr/scanline_exr.h"
-#include "core/io/file/atomic_file.h"
 #include "core/io/file/zip_archive.h"
 #include "core/io/format_dispatch.h"
 #include "core/io/guide_file.h"
-#include "core/io/picture/open_raster.h"
+#include "core/io/open_raster.h"
 #include "core/io/picture/tiff_writer.h"
 #include "core/io/picture_rules.h"
 #include "core/io/png/png_integrity.h"
 #include "core/io/png/png_reader.h"
-#include "core/io/png/png_writer.h"
+#include "core/io/png_writer.h"
 
 namespace scumble {
 namespace {

@@ -1,5 +1,5 @@
 // Pictures from and to files: PNG by libpng, EXR written by OpenEXR, TIFF by libtiff, everything else by OpenImageIO;
-// layered OpenRaster files by core/io/picture/open_raster.h.
+// layered OpenRaster files by core/io/open_raster.h.
 #pragma once
 
 #include <cstddef>

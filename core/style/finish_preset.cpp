@@ -4,7 +4,7 @@
 #include <system_error>
 #include <utility>
 
-#include "core/io/file/atomic_file.h"
+#include "core/io/atomic_file.h"
 #include "core/style/finish_keys.h"
 #include "core/style/finish_tables.h"
 

@@ -5,11 +5,11 @@
 #include <cstdint>
 #include <optional>
 
+#include "core/io/atomic_file.h"
 #include "core/io/channel_file.h"
-#include "core/io/file/atomic_file.h"
-#include "core/io/file/readable_file.h"
 #include "core/io/guide_file.h"
 #include "core/io/picture_file.h"
+#include "core/io/readable_file.h"
 #include "core/style/finish_chain.h"
 #include "core/style/finish_keys.h"
 #include "core/style/finish_tables.h"

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "core/io/file/atomic_file.h"
+#include "core/io/atomic_file.h"
 
 namespace scumble {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "core/image/guides.h"
 #include "core/image/status.h"
-#include "core/io/blender/cycles_light.h"
+#include "core/io/cycles_light.h"
 #include "scumble/picture.h"
 
 namespace scumble {

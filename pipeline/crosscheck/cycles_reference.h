@@ -8,7 +8,7 @@
 #include "core/image/guides.h"
 #include "core/image/progress.h"
 #include "core/image/status.h"
-#include "core/io/blender/cycles_light.h"
+#include "core/io/cycles_light.h"
 #include "pipeline/run_context.h"
 
 namespace scumble {

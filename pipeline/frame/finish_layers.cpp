@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/io/atomic_file.h"
 #include "core/io/existing_output.h"
-#include "core/io/file/atomic_file.h"
-#include "core/io/picture/open_raster.h"
+#include "core/io/open_raster.h"
 #include "core/io/picture_file.h"
 #include "core/style/nearest_name.h"
 

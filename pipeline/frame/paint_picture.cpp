@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "core/image/stopwatch.h"
-#include "core/io/file/atomic_file.h"
+#include "core/io/atomic_file.h"
 #include "core/io/picture_file.h"
 #include "measure/mosaic/coherence.h"
 #include "pipeline/frame/explain_frame.h"

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "core/image/stopwatch.h"
+#include "core/io/atomic_file.h"
 #include "core/io/existing_output.h"
-#include "core/io/file/atomic_file.h"
 #include "core/io/guide_file.h"
 #include "pipeline/memory/memory_estimate.h"
 #include "pipeline/run/guide_casters.h"

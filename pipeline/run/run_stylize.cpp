@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/image/stopwatch.h"
-#include "core/io/blender/blender_camera.h"
+#include "core/io/blender_camera.h"
 #include "core/io/format_dispatch.h"
 #include "core/io/guide_file.h"
 #include "core/io/picture_file.h"

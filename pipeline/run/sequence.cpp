@@ -9,7 +9,7 @@
 #include <system_error>
 
 #include "core/image/stopwatch.h"
-#include "core/io/file/atomic_file.h"
+#include "core/io/atomic_file.h"
 #include "pipeline/stage_clock.h"
 
 namespace scumble {

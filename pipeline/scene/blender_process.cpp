@@ -17,7 +17,7 @@
 #include <thread>
 #include <utility>
 
-#include "core/io/file/stale_temporaries.h"
+#include "core/io/stale_temporaries.h"
 #include "pipeline/process_guard.h"
 #include "pipeline/scene/blender_file.h"
 

@@ -8,7 +8,7 @@
 #include <optional>
 #include <system_error>
 
-#include "core/io/file/atomic_file.h"
+#include "core/io/atomic_file.h"
 
 namespace scumble {
 namespace {

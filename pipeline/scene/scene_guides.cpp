@@ -10,7 +10,7 @@
 #include "core/image/stopwatch.h"
 #include "core/io/format_dispatch.h"
 #include "core/io/guide_file.h"
-#include "core/io/guides/guide_precision.h"
+#include "core/io/guide_precision.h"
 #include "pipeline/frame_range.h"
 #include "pipeline/memory/memory_estimate.h"
 #include "pipeline/scene/needed_textures.h"

@@ -6,7 +6,7 @@
 #include <set>
 #include <string_view>
 
-#include "core/io/file/atomic_file.h"
+#include "core/io/atomic_file.h"
 #include "core/style/nearest_name.h"
 
 namespace scumble {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/io/guides/guide_precision.h"
+#include "core/io/guide_precision.h"
 #include "core/style/style_override.h"
 #include "transfer/nearest/lookup_table.h"
 

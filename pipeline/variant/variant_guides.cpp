@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/image/stopwatch.h"
-#include "core/io/guides/guide_precision.h"
+#include "core/io/guide_precision.h"
 #include "guidegen/light/path_layers.h"
 #include "transfer/upsample_guides.h"
 

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <set>
 
-#include "core/io/blender/blender_camera.h"
+#include "core/io/blender_camera.h"
 #include "core/io/channel_file.h"
 #include "tests/blender/blender_version.h"
 #include "tests/support/cli_harness.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "core/io/blender/blender_camera.h"
+#include "core/io/blender_camera.h"
 #include "core/io/guides/cryptomatte.h"
 #include "core/io/guides/guide_header.h"
 #include "tests/fuzz/fuzz_target.h"

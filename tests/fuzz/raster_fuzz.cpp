@@ -1,6 +1,6 @@
 // Zip archives: pictures in layers (.ora, .kra), and every entry under any name.
 #include "core/io/file/zip_archive.h"
-#include "core/io/picture/open_raster.h"
+#include "core/io/open_raster.h"
 #include "core/io/picture_file.h"
 #include "tests/fuzz/fuzz_target.h"
 

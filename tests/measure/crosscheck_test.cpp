@@ -7,7 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "core/io/file/atomic_file.h"
+#include "core/io/atomic_file.h"
 #include "measure/crosscheck/html.h"
 #include "tests/support/temporary_folder.h"
 

@@ -1,5 +1,5 @@
 // Cycles' lighting passes, made here, turned into light-path layers.
-#include "core/io/blender/cycles_light.h"
+#include "core/io/cycles_light.h"
 
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "core/image/hash.h"
-#include "core/io/guides/guide_precision.h"
+#include "core/io/guide_precision.h"
 #include "guidegen/guidegen.h"
 #include "pipeline/tradeoff/grid.h"
 #include "pipeline/tradeoff/stage.h"

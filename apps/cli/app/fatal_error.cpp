@@ -9,7 +9,7 @@
 #include <system_error>
 
 #include "apps/cli/app/command.h"
-#include "core/io/file/pending_temporaries.h"
+#include "core/io/pending_temporaries.h"
 
 namespace scumble {
 namespace {

@@ -3,7 +3,7 @@
 #include <atomic>
 #include <csignal>
 
-#include "core/io/file/pending_temporaries.h"
+#include "core/io/pending_temporaries.h"
 
 namespace scumble {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "apps/cli/app/command.h"
 #include "apps/cli/app/options.h"
-#include "core/io/file/atomic_file.h"
+#include "core/io/atomic_file.h"
 #include "core/io/guide_file.h"
 #include "guidegen/light/path_layers.h"
 #include "guidegen/scene/pure_materials.h"

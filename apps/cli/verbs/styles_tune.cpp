@@ -9,7 +9,7 @@
 
 #include "apps/cli/app/json_text.h"
 #include "apps/cli/app/options.h"
-#include "core/io/file/atomic_file.h"
+#include "core/io/atomic_file.h"
 #include "core/io/picture_file.h"
 #include "core/style/style_edit.h"
 #include "core/style/style_keys.h"

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "core/io/picture_file.h"
-#include "core/io/png/png_writer.h"
+#include "core/io/png_writer.h"
 
 namespace scumble {
 namespace {

@@ -4,8 +4,8 @@
 #include <unistd.h>
 
 #include "core/image/hash.h"
-#include "core/io/file/atomic_file.h"
-#include "core/io/picture/open_raster.h"
+#include "core/io/atomic_file.h"
+#include "core/io/open_raster.h"
 #include "core/io/picture_file.h"
 #include "pipeline/requests.h"
 

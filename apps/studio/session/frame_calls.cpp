@@ -10,7 +10,7 @@
 #include "core/filter/resample.h"
 #include "core/image/hash.h"
 #include "core/image/stopwatch.h"
-#include "core/io/file/atomic_file.h"
+#include "core/io/atomic_file.h"
 #include "core/io/picture_file.h"
 #include "pipeline/file_stamp.h"
 #include "pipeline/scene/blender_scene.h"

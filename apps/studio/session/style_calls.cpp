@@ -5,7 +5,7 @@
 #include "apps/studio/session/exemplar_paint.h"
 #include "apps/studio/session/session_state.h"
 #include "apps/studio/session/style_files.h"
-#include "core/io/file/atomic_file.h"
+#include "core/io/atomic_file.h"
 #include "core/io/picture_file.h"
 #include "core/style/finish_chain.h"
 #include "pipeline/frame/check_style.h"

@@ -2,7 +2,7 @@
 
 #include <system_error>
 
-#include "core/io/file/atomic_file.h"
+#include "core/io/atomic_file.h"
 #include "core/style/style_edit.h"
 #include "core/style/style_file.h"
 #include "pipeline/style/finish_files.h"

@@ -14,7 +14,7 @@
 #include <string_view>
 
 #include "core/image/hash.h"
-#include "core/io/file/atomic_file.h"
+#include "core/io/atomic_file.h"
 #include "pipeline/file_stamp.h"
 
 namespace scumble {

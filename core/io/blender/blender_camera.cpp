@@ -1,10 +1,10 @@
-#include "core/io/blender/blender_camera.h"
+#include "core/io/blender_camera.h"
 
 #include <optional>
 #include <sstream>
 #include <string>
 
-#include "core/io/file/atomic_file.h"
+#include "core/io/atomic_file.h"
 #include "core/io/guides/guide_header.h"
 
 namespace scumble {

@@ -1,4 +1,4 @@
-#include "core/io/file/atomic_file.h"
+#include "core/io/atomic_file.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -10,7 +10,7 @@
 #include <fstream>
 #include <string>
 
-#include "core/io/file/pending_temporaries.h"
+#include "core/io/pending_temporaries.h"
 
 namespace scumble {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/io/file/pending_temporaries.h"
+#include "core/io/pending_temporaries.h"
 
 #include <fcntl.h>
 #include <pthread.h>
@@ -14,7 +14,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "core/io/file/stale_temporaries.h"
+#include "core/io/stale_temporaries.h"
 
 namespace scumble {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/io/file/readable_file.h"
+#include "core/io/readable_file.h"
 
 #include <unistd.h>
 

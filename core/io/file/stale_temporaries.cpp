@@ -1,4 +1,4 @@
-#include "core/io/file/stale_temporaries.h"
+#include "core/io/stale_temporaries.h"
 
 #include <fcntl.h>
 #include <sys/file.h>

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <limits>
 
-#include "core/io/file/readable_file.h"
+#include "core/io/readable_file.h"
 
 namespace scumble {
 namespace internal {

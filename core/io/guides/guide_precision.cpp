@@ -1,4 +1,4 @@
-#include "core/io/guides/guide_precision.h"
+#include "core/io/guide_precision.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // Guides to EXR.
+#include "core/io/atomic_file.h"
 #include "core/io/exr/scanline_exr.h"
-#include "core/io/file/atomic_file.h"
 #include "core/io/guide_file.h"
 #include "core/io/guides/cryptomatte_writer.h"
 #include "core/io/guides/fragment_storage.h"

@@ -3,9 +3,9 @@
 #include <array>
 #include <set>
 
-#include "core/io/blender/blender_camera.h"
 #include "core/io/blender/blender_passes.h"
 #include "core/io/blender/render_light.h"
+#include "core/io/blender_camera.h"
 #include "core/io/format_dispatch.h"
 #include "core/io/guide_file.h"
 #include "core/io/guides/guide_header.h"

@@ -6,13 +6,13 @@
 #include <system_error>
 
 #include "core/image/guides.h"
+#include "core/io/atomic_file.h"
 #include "core/io/exr/exr_integrity.h"
-#include "core/io/file/atomic_file.h"
-#include "core/io/file/readable_file.h"
 #include "core/io/format_dispatch.h"
 #include "core/io/oiio/flat_psd.h"
 #include "core/io/picture/format_detection.h"
 #include "core/io/png/png_integrity.h"
+#include "core/io/readable_file.h"
 
 namespace scumble {
 

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "core/image/color.h"
+#include "core/io/atomic_file.h"
 #include "core/io/color_profile.h"
-#include "core/io/file/atomic_file.h"
 #include "core/io/format_dispatch.h"
 #include "core/io/guides/guide_header.h"
 #include "core/io/oiio/oiio.h"

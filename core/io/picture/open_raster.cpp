@@ -1,4 +1,4 @@
-#include "core/io/picture/open_raster.h"
+#include "core/io/open_raster.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -1,4 +1,4 @@
-#include "core/io/png/png_writer.h"
+#include "core/io/png_writer.h"
 
 #include <zlib.h>
 

@@ -15,7 +15,7 @@
 #include <system_error>
 #include <thread>
 
-#include "core/io/file/pending_temporaries.h"
+#include "core/io/pending_temporaries.h"
 #include "tests/support/temporary_folder.h"
 
 namespace scumble {

@@ -1,6 +1,6 @@
 // `scumble sphere --rectify`: from a photograph in the kit's folder to a style.
-#include "core/io/file/atomic_file.h"
-#include "core/io/picture/open_raster.h"
+#include "core/io/atomic_file.h"
+#include "core/io/open_raster.h"
 #include "tests/support/cli_harness.h"
 #include "tests/support/scan_fixtures.h"
 

@@ -5,7 +5,7 @@
 
 #include "apps/studio/session/lane.h"
 #include "core/io/file/zip_archive.h"
-#include "core/io/picture/open_raster.h"
+#include "core/io/open_raster.h"
 #include "core/style/style_file.h"
 #include "tests/apps/studio/session_fixture.h"
 

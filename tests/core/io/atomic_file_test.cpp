@@ -1,5 +1,5 @@
 // Files that appear whole or not at all.
-#include "core/io/file/atomic_file.h"
+#include "core/io/atomic_file.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

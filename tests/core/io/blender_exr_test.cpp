@@ -13,10 +13,10 @@
 #include <vector>
 
 #include "core/image/hash.h"
-#include "core/io/blender/blender_camera.h"
+#include "core/io/atomic_file.h"
 #include "core/io/blender/blender_passes.h"
 #include "core/io/blender/render_light.h"
-#include "core/io/file/atomic_file.h"
+#include "core/io/blender_camera.h"
 #include "core/io/guide_file.h"
 #include "core/io/guides/cryptomatte.h"
 #include "tests/core/io/true_camera.h"

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "core/io/file/atomic_file.h"
+#include "core/io/atomic_file.h"
 #include "core/io/picture_file.h"
 #include "tests/support/temporary_folder.h"
 

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "core/image/color.h"
+#include "core/io/atomic_file.h"
 #include "core/io/exr/scanline_exr.h"
-#include "core/io/file/atomic_file.h"
 #include "core/io/format_dispatch.h"
 #include "core/io/guides/own_guides.h"
 #include "core/io/library.h"

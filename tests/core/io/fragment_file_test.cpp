@@ -13,8 +13,8 @@
 
 #include "core/image/fragments.h"
 #include "core/image/hash.h"
+#include "core/io/atomic_file.h"
 #include "core/io/channel_file.h"
-#include "core/io/file/atomic_file.h"
 #include "core/io/guide_file.h"
 #include "core/io/guides/cryptomatte.h"
 #include "core/io/guides/fragment_storage.h"

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "core/image/hash.h"
-#include "core/io/file/atomic_file.h"
+#include "core/io/atomic_file.h"
 #include "tests/support/guide_files.h"
 #include "tests/support/refusal.h"
 #include "tests/support/temporary_folder.h"

@@ -1,5 +1,5 @@
 // Files of layers: written, and read from untrusted files.
-#include "core/io/picture/open_raster.h"
+#include "core/io/open_raster.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/image/hash.h"
-#include "core/io/file/atomic_file.h"
+#include "core/io/atomic_file.h"
 #include "core/io/file/zip_archive.h"
 #include "core/io/picture_file.h"
 #include "tests/support/refusal.h"

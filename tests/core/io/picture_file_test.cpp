@@ -19,7 +19,7 @@
 
 #include "core/image/color.h"
 #include "core/image/hash.h"
-#include "core/io/file/atomic_file.h"
+#include "core/io/atomic_file.h"
 #include "tests/support/picture_files.h"
 #include "tests/support/refusal.h"
 #include "tests/support/temporary_folder.h"

@@ -16,13 +16,13 @@
 #include <vector>
 
 #include "core/image/hash.h"
-#include "core/io/file/atomic_file.h"
+#include "core/io/atomic_file.h"
 #include "core/io/format_dispatch.h"
 #include "core/io/parallel.h"
 #include "core/io/png/png_filter.h"
 #include "core/io/png/png_integrity.h"
 #include "core/io/png/png_reader.h"
-#include "core/io/png/png_writer.h"
+#include "core/io/png_writer.h"
 #include "tests/support/temporary_folder.h"
 
 namespace scumble {

@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "core/image/guides.h"
+#include "core/io/atomic_file.h"
 #include "core/io/channel_file.h"
 #include "core/io/exr/exr_integrity.h"
 #include "core/io/exr/scanline_exr.h"
-#include "core/io/file/atomic_file.h"
 #include "core/io/guide_file.h"
 #include "core/io/guides/own_guides.h"
 #include "core/io/picture_file.h"

@@ -1,5 +1,5 @@
 // Temporary files of killed runs: which are removed, and which are not.
-#include "core/io/file/stale_temporaries.h"
+#include "core/io/stale_temporaries.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -15,8 +15,8 @@
 #include <string>
 #include <vector>
 
-#include "core/io/file/atomic_file.h"
-#include "core/io/file/pending_temporaries.h"
+#include "core/io/atomic_file.h"
+#include "core/io/pending_temporaries.h"
 #include "tests/support/temporary_folder.h"
 
 namespace scumble::internal {

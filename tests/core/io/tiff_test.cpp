@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "core/image/hash.h"
+#include "core/io/atomic_file.h"
 #include "core/io/channel_file.h"
-#include "core/io/file/atomic_file.h"
 #include "core/io/picture/tiff_writer.h"
 #include "core/io/picture_file.h"
 #include "tests/support/temporary_folder.h"

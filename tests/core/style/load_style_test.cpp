@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/image/hash.h"
-#include "core/io/file/atomic_file.h"
+#include "core/io/atomic_file.h"
 #include "core/io/picture_file.h"
 #include "core/style/style_file.h"
 #include "tests/core/style/style_fixtures.h"

@@ -16,10 +16,10 @@
 #include <vector>
 
 #include "core/image/hash.h"
-#include "core/io/file/atomic_file.h"
+#include "core/io/atomic_file.h"
 #include "core/io/file/zip_archive.h"
 #include "core/io/guide_file.h"
-#include "core/io/picture/open_raster.h"
+#include "core/io/open_raster.h"
 #include "core/io/picture_file.h"
 #include "core/style/kit/fiducials.h"
 #include "core/style/kit/template_pdf.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <string>
 
-#include "core/io/file/atomic_file.h"
+#include "core/io/atomic_file.h"
 #include "core/style/style_file.h"
 #include "core/style/toml_values.h"
 #include "tests/support/refusal.h"

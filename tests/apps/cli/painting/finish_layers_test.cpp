@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/io/file/zip_archive.h"
-#include "core/io/picture/open_raster.h"
+#include "core/io/open_raster.h"
 #include "core/io/picture_file.h"
 #include "tests/support/cli_harness.h"
 

@@ -1,4 +1,4 @@
-#include "core/io/blender/cycles_light.h"
+#include "core/io/cycles_light.h"
 
 #include <array>
 #include <string>
