@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "core/style/scan/rectify.h"
+#include "core/style/rectify.h"
 #include "tests/support/scan_fixtures.h"
 
 namespace scumble {

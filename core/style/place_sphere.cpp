@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "core/painting/find_sphere.h"
-#include "core/style/kit/sphere_kit.h"
-#include "core/style/kit/sphere_template.h"
-#include "core/style/scan/rectify.h"
+#include "core/style/rectify.h"
+#include "core/style/sphere_kit.h"
+#include "core/style/sphere_template.h"
 
 namespace scumble {
 namespace {

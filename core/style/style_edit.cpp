@@ -9,7 +9,7 @@
 #include <optional>
 #include <utility>
 
-#include "core/style/toml_values.h"
+#include "core/style/toml/toml_values.h"
 
 namespace scumble {
 namespace {

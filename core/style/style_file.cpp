@@ -10,15 +10,15 @@
 #include "core/io/guide_file.h"
 #include "core/io/picture_file.h"
 #include "core/io/readable_file.h"
+#include "core/style/finish/finish_tables.h"
 #include "core/style/finish_chain.h"
 #include "core/style/finish_keys.h"
-#include "core/style/finish_tables.h"
-#include "core/style/kit/sphere_template.h"
 #include "core/style/place_sphere.h"
-#include "core/style/scan/rectify.h"
+#include "core/style/rectify.h"
+#include "core/style/sphere_template.h"
 #include "core/style/style_keyframes.h"
 #include "core/style/style_keys.h"
-#include "core/style/toml_values.h"
+#include "core/style/toml/toml_values.h"
 
 namespace scumble {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "core/image/color.h"
 #include "core/image/oklab.h"
+#include "core/style/finish/finish_mask_keys.h"
 #include "core/style/finish_keys.h"
-#include "core/style/finish_mask_keys.h"
 
 namespace scumble {
 namespace {

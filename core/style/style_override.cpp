@@ -7,7 +7,7 @@
 
 #include "core/style/finish_keys.h"
 #include "core/style/style_edit.h"
-#include "core/style/toml_values.h"
+#include "core/style/toml/toml_values.h"
 
 namespace scumble {
 namespace {

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "core/io/picture_file.h"
-#include "core/style/kit/sphere_template.h"
 #include "core/style/place_sphere.h"
-#include "core/style/scan/rectify.h"
+#include "core/style/rectify.h"
+#include "core/style/sphere_template.h"
 #include "pipeline/file_cache.h"
 #include "pipeline/frame/prepare_frame.h"
 #include "pipeline/style/kit_template.h"

@@ -8,7 +8,7 @@
 
 #include "core/image/fragments.h"
 #include "core/io/picture_file.h"
-#include "core/style/kit/sphere_template.h"
+#include "core/style/sphere_template.h"
 #include "finish/finish.h"
 #include "guidegen/light/path_layers.h"
 #include "transfer/exemplar/prepared_exemplar.h"

@@ -7,7 +7,7 @@
 
 #include "core/image/direction.h"
 #include "core/io/guide_file.h"
-#include "core/style/kit/sphere_kit.h"
+#include "core/style/sphere_kit.h"
 #include "guidegen/guidegen.h"
 
 namespace scumble {

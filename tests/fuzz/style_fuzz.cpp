@@ -5,7 +5,7 @@
 
 #include "core/io/guide_file.h"
 #include "core/io/picture_file.h"
-#include "core/style/kit/sphere_template.h"
+#include "core/style/sphere_template.h"
 #include "core/style/style_file.h"
 #include "core/style/style_keyframes.h"
 #include "tests/fuzz/fuzz_target.h"

@@ -8,8 +8,8 @@
 #include "core/image/color.h"
 #include "core/image/hash.h"
 #include "core/io/picture_file.h"
-#include "core/style/kit/fiducials.h"
-#include "core/style/kit/sphere_kit.h"
+#include "core/style/fiducials.h"
+#include "core/style/sphere_kit.h"
 #include "tests/support/temporary_folder.h"
 
 namespace scumble {

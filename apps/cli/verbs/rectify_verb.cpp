@@ -13,9 +13,9 @@
 #include "apps/cli/app/options.h"
 #include "core/io/guide_file.h"
 #include "core/io/picture_file.h"
-#include "core/style/kit/fiducials.h"
-#include "core/style/kit/sphere_kit.h"
-#include "core/style/scan/rectify.h"
+#include "core/style/fiducials.h"
+#include "core/style/rectify.h"
+#include "core/style/sphere_kit.h"
 #include "pipeline/scene/run_inputs.h"
 
 namespace scumble {

@@ -15,8 +15,8 @@
 #include "apps/cli/app/run_report.h"
 #include "apps/cli/verbs/rectify_verb.h"
 #include "core/image/direction.h"
-#include "core/style/kit/fiducials.h"
-#include "core/style/kit/sphere_kit.h"
+#include "core/style/fiducials.h"
+#include "core/style/sphere_kit.h"
 #include "guidegen/guidegen.h"
 #include "pipeline/memory/memory_estimate.h"
 

@@ -1,4 +1,4 @@
-#include "core/style/kit/fiducials.h"
+#include "core/style/fiducials.h"
 
 #include <apriltag/apriltag.h>
 #include <apriltag/tag16h5.h>

@@ -3,7 +3,7 @@
 // the sphere's formula, so that they are equally sharp at any size.
 #pragma once
 
-#include "core/style/kit/sphere_template.h"
+#include "core/style/sphere_template.h"
 #include "scumble/picture.h"
 
 namespace scumble {

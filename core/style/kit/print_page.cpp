@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <string_view>
 
-#include "core/style/kit/fiducials.h"
-#include "core/style/kit/sphere_template.h"
+#include "core/style/fiducials.h"
+#include "core/style/sphere_template.h"
 
 namespace scumble {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/style/kit/sphere_kit.h"
+#include "core/style/sphere_kit.h"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -19,12 +19,12 @@
 #include "core/io/open_raster.h"
 #include "core/io/picture_file.h"
 #include "core/io/readable_file.h"
-#include "core/style/kit/fiducials.h"
+#include "core/style/fiducials.h"
 #include "core/style/kit/guide_layers.h"
 #include "core/style/kit/template_pdf.h"
 #include "core/style/style_file.h"
 #include "core/style/style_keys.h"
-#include "core/style/toml_values.h"
+#include "core/style/toml/toml_values.h"
 
 namespace scumble {
 namespace {

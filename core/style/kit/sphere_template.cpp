@@ -1,4 +1,4 @@
-#include "core/style/kit/sphere_template.h"
+#include "core/style/sphere_template.h"
 
 #include <algorithm>
 #include <charconv>
@@ -9,7 +9,7 @@
 #include "core/image/check.h"
 #include "core/image/color.h"
 #include "core/image/direction.h"
-#include "core/style/kit/fiducials.h"
+#include "core/style/fiducials.h"
 
 namespace scumble {
 namespace {

@@ -9,7 +9,7 @@
 #include <type_traits>
 
 #include "core/image/direction.h"
-#include "core/style/kit/fiducials.h"
+#include "core/style/fiducials.h"
 
 namespace scumble {
 namespace {

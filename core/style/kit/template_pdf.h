@@ -8,7 +8,7 @@
 
 #include "core/image/status.h"
 #include "core/style/kit/print_page.h"
-#include "core/style/kit/sphere_template.h"
+#include "core/style/sphere_template.h"
 
 namespace scumble {
 

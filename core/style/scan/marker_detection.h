@@ -6,7 +6,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "core/style/kit/fiducials.h"
+#include "core/style/fiducials.h"
 #include "scumble/picture.h"
 
 namespace scumble {

@@ -1,4 +1,4 @@
-#include "core/style/scan/rectify.h"
+#include "core/style/rectify.h"
 
 #include <algorithm>
 #include <array>
@@ -8,12 +8,12 @@
 
 #include "core/image/check.h"
 #include "core/image/color.h"
-#include "core/style/kit/sphere_kit.h"
 #include "core/style/scan/homography.h"
 #include "core/style/scan/marker_detection.h"
 #include "core/style/scan/paper_light.h"
 #include "core/style/scan/resample_scan.h"
 #include "core/style/scan/template_fit.h"
+#include "core/style/sphere_kit.h"
 
 namespace scumble {
 namespace {

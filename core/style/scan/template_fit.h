@@ -6,12 +6,12 @@
 #include <span>
 #include <vector>
 
-#include "core/style/kit/fiducials.h"
+#include "core/style/fiducials.h"
 #include "core/style/scan/marker_detection.h"
 
 namespace scumble {
 
-// Template coordinates (core/style/kit/fiducials.h: the sphere's square is [0, 1]²) → pixels of the picture.
+// Template coordinates (core/style/fiducials.h: the sphere's square is [0, 1]²) → pixels of the picture.
 struct TemplateMap {
   glm::dmat3 perspective{1.0};
   // A lens moves a point at distance r from the picture's middle by the factor 1 + bend · r², r in halves of the

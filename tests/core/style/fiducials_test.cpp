@@ -1,5 +1,5 @@
 // The printed marks: their places, their bits, their drawing.
-#include "core/style/kit/fiducials.h"
+#include "core/style/fiducials.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 
 #include "core/image/color.h"
 #include "core/image/hash.h"
-#include "core/style/kit/sphere_kit.h"
+#include "core/style/sphere_kit.h"
 
 namespace scumble {
 namespace {

@@ -14,8 +14,8 @@
 
 #include "core/io/picture_file.h"
 #include "core/style/color_ramp.h"
+#include "core/style/finish/finish_mask_keys.h"
 #include "core/style/finish_keys.h"
-#include "core/style/finish_mask_keys.h"
 #include "core/style/finish_preset.h"
 #include "core/style/style_file.h"
 #include "core/style/style_keyframes.h"

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "core/io/picture_file.h"
-#include "core/style/kit/sphere_kit.h"
-#include "core/style/kit/sphere_template.h"
+#include "core/style/sphere_kit.h"
+#include "core/style/sphere_template.h"
 #include "core/style/style_file.h"
 #include "tests/support/painted_spheres.h"
 #include "tests/support/refusal.h"

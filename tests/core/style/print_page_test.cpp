@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "core/style/kit/sphere_template.h"
+#include "core/style/sphere_template.h"
 #include "tests/support/refusal.h"
 
 namespace scumble {

@@ -8,10 +8,10 @@
 
 #include "core/image/color.h"
 #include "core/image/hash.h"
-#include "core/style/kit/sphere_template.h"
 #include "core/style/scan/homography.h"
 #include "core/style/scan/marker_detection.h"
 #include "core/style/scan/resample_scan.h"
+#include "core/style/sphere_template.h"
 #include "tests/support/scan_fixtures.h"
 
 namespace scumble {

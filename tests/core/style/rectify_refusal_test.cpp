@@ -1,8 +1,8 @@
 // Pictures that no exemplar can be made of: each is refused, with a helpful reason.
 #include <gtest/gtest.h>
 
-#include "core/style/kit/sphere_template.h"
-#include "core/style/scan/rectify.h"
+#include "core/style/rectify.h"
+#include "core/style/sphere_template.h"
 #include "tests/support/refusal.h"
 #include "tests/support/scan_fixtures.h"
 

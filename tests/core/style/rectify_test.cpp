@@ -1,5 +1,5 @@
 // Scans with a known camera and known light: the place of the template, and its colours.
-#include "core/style/scan/rectify.h"
+#include "core/style/rectify.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/style/kit/sphere_template.h"
+#include "core/style/sphere_template.h"
 #include "tests/support/scan_fixtures.h"
 
 namespace scumble {

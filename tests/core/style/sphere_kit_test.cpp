@@ -1,5 +1,5 @@
 // The artist's kit, from the template to the style that loads.
-#include "core/style/kit/sphere_kit.h"
+#include "core/style/sphere_kit.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@
 #include "core/io/guide_file.h"
 #include "core/io/open_raster.h"
 #include "core/io/picture_file.h"
-#include "core/style/kit/fiducials.h"
+#include "core/style/fiducials.h"
 #include "core/style/kit/template_pdf.h"
 #include "core/style/style_file.h"
 #include "tests/support/refusal.h"

@@ -11,8 +11,8 @@
 
 #include "core/image/jitter.h"
 #include "core/style/color_ramp.h"
+#include "core/style/finish/finish_mask_keys.h"
 #include "core/style/finish_keys.h"
-#include "core/style/finish_mask_keys.h"
 #include "core/style/nearest_name.h"
 
 namespace scumble {

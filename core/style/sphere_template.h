@@ -32,7 +32,7 @@ std::optional<int> SphereMargin(const GuideSet& guides);
 // The attribute that it is recorded in.
 inline constexpr const char* kMarginAttribute = "scumble:sphereMargin";
 
-// The plain marks of the margin besides the fiducials (core/style/kit/fiducials.h), in pixels of the template: ticks
+// The plain marks of the margin besides the fiducials (core/style/fiducials.h), in pixels of the template: ticks
 // where the square's sides begin, and crosses in the corners of a template that is too small for fiducials. Pixels [x0,
 // x1) × [y0, y1).
 struct TemplateMark {

@@ -1,4 +1,4 @@
-#include "core/style/finish_mask_keys.h"
+#include "core/style/finish/finish_mask_keys.h"
 
 #include <algorithm>
 #include <system_error>

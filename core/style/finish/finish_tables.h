@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/image/finish_pass.h"
-#include "core/style/toml_values.h"
+#include "core/style/toml/toml_values.h"
 
 namespace scumble::internal {
 

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "core/io/atomic_file.h"
+#include "core/style/finish/finish_tables.h"
 #include "core/style/finish_keys.h"
-#include "core/style/finish_tables.h"
 
 namespace scumble {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/style/finish_tables.h"
+#include "core/style/finish/finish_tables.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -6,8 +6,8 @@
 #include <variant>
 
 #include "core/style/color_ramp.h"
+#include "core/style/finish/finish_mask_keys.h"
 #include "core/style/finish_keys.h"
-#include "core/style/finish_mask_keys.h"
 
 namespace scumble {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/image/status.h"
-#include "core/style/kit/fiducials.h"
+#include "core/style/fiducials.h"
 #include "core/style/scan/template_fit.h"
 #include "scumble/picture.h"
 

@@ -10,8 +10,8 @@
 
 #include "core/image/hash.h"
 #include "core/style/color_ramp.h"
-#include "core/style/finish_mask_keys.h"
-#include "core/style/finish_tables.h"
+#include "core/style/finish/finish_mask_keys.h"
+#include "core/style/finish/finish_tables.h"
 #include "core/style/nearest_name.h"
 
 namespace scumble {

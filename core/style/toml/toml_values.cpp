@@ -1,4 +1,4 @@
-#include "core/style/toml_values.h"
+#include "core/style/toml/toml_values.h"
 
 #include <algorithm>
 
