@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "guidegen/rays/embree.h"
-#include "guidegen/scene/scene.h"
+#include "guidegen/scene.h"
 
 namespace scumble::testing {
 

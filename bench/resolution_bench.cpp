@@ -12,9 +12,9 @@
 #include "bench/or_stop.h"
 #include "core/image/stopwatch.h"
 #include "core/style/style_file.h"
+#include "guidegen/framing.h"
 #include "guidegen/guidegen.h"
-#include "guidegen/load/load_scene.h"
-#include "guidegen/scene/framing.h"
+#include "guidegen/load_scene.h"
 #include "transfer/transfer.h"
 #include "transfer/upsample_guides.h"
 

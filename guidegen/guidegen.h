@@ -10,7 +10,7 @@
 #include "core/image/guides.h"
 #include "core/image/progress.h"
 #include "core/image/status.h"
-#include "guidegen/scene/scene.h"
+#include "guidegen/scene.h"
 
 namespace scumble {
 
@@ -116,7 +116,7 @@ struct GuidegenResult {
 // Casts rays through pixel centres and returns the guides (conventions in core/image/guides.h). Transforms compose in
 // double and Embree's scene is relative to the camera. Deterministic for one isa and one version of Embree, whatever
 // the threads; both are recorded in guides.attributes, "scumble:isa" and "scumble:embree". Light-path layers are in
-// guidegen/light/path_layers.h; each is traced only as far as its expression and the scene's lights and materials
+// guidegen/path_layers.h; each is traced only as far as its expression and the scene's lights and materials
 // require. A layer that is not supported yet is a kUnavailable error that names it. An empty scene, or a camera that
 // sees nothing, is an empty picture and no error. If options.progress returns false, the call ends with kCancelled
 // within a fraction of a second. Uses oneTBB and Embree.

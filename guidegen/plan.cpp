@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "guidegen/guidegen.h"
-#include "guidegen/light/path_layers.h"
+#include "guidegen/path_layers.h"
 #include "guidegen/scene_textures.h"
 #include "guidegen/surface/bsdf.h"
 

@@ -12,8 +12,8 @@
 #include "core/image/check.h"
 #include "guidegen/cast/cast_guides.h"
 #include "guidegen/guidegen.h"
-#include "guidegen/light/path_layers.h"
 #include "guidegen/load/mesh_normals.h"
+#include "guidegen/path_layers.h"
 #include "guidegen/scene_textures.h"
 
 namespace scumble {

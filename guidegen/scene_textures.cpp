@@ -5,9 +5,9 @@
 #include <optional>
 #include <utility>
 
-#include "guidegen/light/path_layers.h"
 #include "guidegen/load/loader_util.h"
 #include "guidegen/load/texture_budget.h"
+#include "guidegen/path_layers.h"
 #include "guidegen/surface/bsdf.h"
 #include "guidegen/surface/surface.h"
 

@@ -9,7 +9,7 @@
 
 #include "core/image/status.h"
 #include "guidegen/guidegen.h"
-#include "guidegen/scene/scene.h"
+#include "guidegen/scene.h"
 
 namespace scumble {
 

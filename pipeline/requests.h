@@ -14,9 +14,9 @@
 #include "core/style/style_file.h"
 #include "core/style/style_override.h"
 #include "finish/finish.h"
+#include "guidegen/file_listener.h"
+#include "guidegen/framing.h"
 #include "guidegen/guidegen.h"
-#include "guidegen/load/file_listener.h"
-#include "guidegen/scene/framing.h"
 #include "measure/mosaic/explain.h"
 #include "pipeline/frame_rate.h"
 

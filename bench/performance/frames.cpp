@@ -11,9 +11,9 @@
 
 #include "bench/or_stop.h"
 #include "core/style/style_file.h"
+#include "guidegen/framing.h"
 #include "guidegen/guidegen.h"
-#include "guidegen/load/load_scene.h"
-#include "guidegen/scene/framing.h"
+#include "guidegen/load_scene.h"
 
 namespace scumble::bench {
 namespace {

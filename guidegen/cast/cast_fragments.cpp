@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "guidegen/light/path_layers.h"
+#include "guidegen/path_layers.h"
 #include "guidegen/surface/shading_normal.h"
 
 namespace scumble {

@@ -20,7 +20,7 @@
 #include "guidegen/cast/tile_caster.h"
 #include "guidegen/cast/tile_store.h"
 #include "guidegen/light/light_passes.h"
-#include "guidegen/light/path_layers.h"
+#include "guidegen/path_layers.h"
 #include "guidegen/rays/embree_scene.h"
 #include "guidegen/rays/progress_gate.h"
 #include "guidegen/surface/work_counters.h"

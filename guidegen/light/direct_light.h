@@ -7,7 +7,7 @@
 
 #include "core/image/status.h"
 #include "guidegen/rays/camera_rays.h"
-#include "guidegen/scene/scene.h"
+#include "guidegen/scene.h"
 #include "guidegen/surface/surface.h"
 
 namespace scumble {

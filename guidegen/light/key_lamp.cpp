@@ -5,8 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "guidegen/framing.h"
 #include "guidegen/light/light_tree.h"
-#include "guidegen/scene/framing.h"
 #include "guidegen/surface/bsdf.h"
 
 namespace scumble {

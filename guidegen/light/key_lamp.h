@@ -4,7 +4,7 @@
 #include <glm/glm.hpp>
 #include <optional>
 
-#include "guidegen/scene/scene.h"
+#include "guidegen/scene.h"
 
 namespace scumble {
 

@@ -1,4 +1,4 @@
-#include "guidegen/light/path_layers.h"
+#include "guidegen/path_layers.h"
 
 #include <algorithm>
 #include <utility>

@@ -20,9 +20,9 @@
 
 #include "guidegen/guidegen.h"
 #include "guidegen/light/light_sampling.h"
-#include "guidegen/light/path_layers.h"
 #include "guidegen/light/sampler.h"
 #include "guidegen/light/view.h"
+#include "guidegen/path_layers.h"
 #include "guidegen/rays/embree_scene.h"
 #include "guidegen/surface/bsdf.h"
 

@@ -6,7 +6,7 @@
 
 #include "guidegen/light/direct_light.h"
 #include "guidegen/light/key_lamp.h"
-#include "guidegen/light/path_layers.h"
+#include "guidegen/path_layers.h"
 #include "guidegen/rays/camera_rays.h"
 #include "guidegen/surface/surface.h"
 

@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "guidegen/load/split_vertices.h"
-#include "guidegen/scene/scene.h"
+#include "guidegen/scene.h"
 
 namespace scumble {
 

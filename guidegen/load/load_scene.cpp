@@ -1,4 +1,4 @@
-#include "guidegen/load/load_scene.h"
+#include "guidegen/load_scene.h"
 
 #include <cctype>
 #include <cmath>
@@ -52,7 +52,7 @@ Expected<Scene> LoadByEnding(const std::filesystem::path& path, const LoadOption
                     "'; expected a scene in .glb, .gltf, .obj or .ply");
 }
 
-// Checks the contract of every loader about its scene (guidegen/scene/scene.h).
+// Checks the contract of every loader about its scene (guidegen/scene.h).
 void CheckContract(const Scene& scene) {
   SCUMBLE_CHECK(!scene.materials.empty());
   for (const Mesh& mesh : scene.meshes) {

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "core/image/status.h"
-#include "guidegen/scene/scene.h"
+#include "guidegen/scene.h"
 
 namespace scumble {
 

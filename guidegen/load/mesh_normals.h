@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-#include "guidegen/scene/scene.h"
+#include "guidegen/scene.h"
 
 namespace scumble {
 

@@ -1,5 +1,5 @@
 // PLY, ASCII and binary of either byte order: scans and exchange files of one mesh. Use LoadScene
-// (guidegen/load/load_scene.h), which also does the work common to all formats.
+// (guidegen/load_scene.h), which also does the work common to all formats.
 //
 // Read: positions, normals, colours (sRGB-encoded, as scanners and MeshLab write them), texture coordinates (s t, u v
 // or texture_u texture_v; v flipped), faces of any number of corners, with their own colour and MeshLab's `texcoord` of
@@ -16,9 +16,9 @@
 #include <filesystem>
 
 #include "core/image/status.h"
+#include "guidegen/file_listener.h"
 #include "guidegen/load/auto_smooth.h"
-#include "guidegen/load/file_listener.h"
-#include "guidegen/scene/scene.h"
+#include "guidegen/scene.h"
 
 namespace scumble {
 

@@ -7,7 +7,7 @@
 
 #include "core/image/guides.h"
 #include "core/image/status.h"
-#include "guidegen/scene/scene.h"
+#include "guidegen/scene.h"
 #include "guidegen/scene/view_ray.h"
 
 namespace scumble {

@@ -1,4 +1,4 @@
-#include "guidegen/scene/cycles_version.h"
+#include "guidegen/cycles_version.h"
 
 #include <charconv>
 

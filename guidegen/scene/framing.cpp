@@ -1,4 +1,4 @@
-#include "guidegen/scene/framing.h"
+#include "guidegen/framing.h"
 
 #include <algorithm>
 #include <cmath>

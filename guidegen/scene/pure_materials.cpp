@@ -1,4 +1,4 @@
-#include "guidegen/scene/pure_materials.h"
+#include "guidegen/pure_materials.h"
 
 #include <cstddef>
 

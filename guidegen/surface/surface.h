@@ -6,7 +6,7 @@
 #include <optional>
 #include <span>
 
-#include "guidegen/scene/scene.h"
+#include "guidegen/scene.h"
 #include "guidegen/scene/view_ray.h"
 #include "scumble/picture.h"
 

@@ -3,7 +3,7 @@
 
 #include <glm/glm.hpp>
 
-#include "guidegen/scene/scene.h"
+#include "guidegen/scene.h"
 #include "scumble/picture.h"
 
 namespace scumble {

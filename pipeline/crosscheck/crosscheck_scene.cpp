@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "core/io/guide_file.h"
-#include "guidegen/light/path_layers.h"
-#include "guidegen/scene/cycles_version.h"
-#include "guidegen/scene/pure_materials.h"
+#include "guidegen/cycles_version.h"
+#include "guidegen/path_layers.h"
+#include "guidegen/pure_materials.h"
 #include "pipeline/crosscheck/cycles_reference.h"
 #include "pipeline/scene/scene_guides.h"
 

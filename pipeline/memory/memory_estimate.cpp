@@ -10,7 +10,7 @@
 #include "core/io/picture_file.h"
 #include "core/style/sphere_template.h"
 #include "finish/finish.h"
-#include "guidegen/light/path_layers.h"
+#include "guidegen/path_layers.h"
 #include "transfer/exemplar/prepared_exemplar.h"
 
 namespace scumble {

@@ -10,7 +10,7 @@
 #include "core/image/style.h"
 #include "core/io/guide_file.h"
 #include "core/style/finish_chain.h"
-#include "guidegen/scene/scene.h"
+#include "guidegen/scene.h"
 #include "guidegen/scene_textures.h"
 #include "pipeline/memory/memory_limit.h"
 #include "pipeline/requests.h"

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "guidegen/load/load_scene.h"
+#include "guidegen/load_scene.h"
 #include "pipeline/frame_range.h"
 #include "pipeline/process_guard.h"
 #include "pipeline/requests.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/image/status.h"
-#include "guidegen/scene/scene.h"
+#include "guidegen/scene.h"
 #include "pipeline/requests.h"
 #include "pipeline/run_context.h"
 

@@ -10,7 +10,7 @@
 #include "core/image/progress.h"
 #include "core/image/style.h"
 #include "guidegen/guidegen.h"
-#include "guidegen/load/load_scene.h"
+#include "guidegen/load_scene.h"
 #include "pipeline/memory/memory_limit.h"
 #include "pipeline/requests.h"
 #include "pipeline/run_context.h"

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "guidegen/load/load_scene.h"
-#include "guidegen/scene/framing.h"
+#include "guidegen/framing.h"
+#include "guidegen/load_scene.h"
 #include "pipeline/requests.h"
 #include "pipeline/scene/blender_scene.h"
 #include "pipeline/scene/scene_guides.h"

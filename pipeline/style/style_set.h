@@ -9,7 +9,7 @@
 #include "core/image/guides.h"
 #include "core/image/style.h"
 #include "core/style/finish_chain.h"
-#include "guidegen/scene/scene.h"
+#include "guidegen/scene.h"
 #include "pipeline/requests.h"
 #include "pipeline/run_context.h"
 #include "pipeline/style/assignments.h"

@@ -8,7 +8,7 @@
 
 #include "core/image/stopwatch.h"
 #include "core/io/guide_precision.h"
-#include "guidegen/light/path_layers.h"
+#include "guidegen/path_layers.h"
 #include "transfer/upsample_guides.h"
 
 namespace scumble {

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <tuple>
 
-#include "guidegen/load/load_scene.h"
+#include "guidegen/load_scene.h"
 #include "tests/support/temporary_folder.h"
 
 namespace scumble {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "guidegen/guidegen.h"
-#include "guidegen/load/load_scene.h"
+#include "guidegen/load_scene.h"
 #include "guidegen/rays/camera_rays.h"
 #include "tests/blender/blender_cases.h"
 #include "tests/blender/blender_version.h"

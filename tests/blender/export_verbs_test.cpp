@@ -1,7 +1,7 @@
 // The commands that run Blender's export themselves, on the scenes of tests/blender/make_cases.py.
 #include <gmock/gmock.h>
 
-#include "guidegen/load/load_scene.h"
+#include "guidegen/load_scene.h"
 #include "tests/blender/blender_cases.h"
 #include "tests/support/cli_harness.h"
 #include "tests/support/scoped_variable.h"

@@ -4,14 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "guidegen/framing.h"
 #include "guidegen/guidegen.h"
-#include "guidegen/load/load_scene.h"
-#include "guidegen/scene/framing.h"
+#include "guidegen/load_scene.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace scumble::fuzz {
 
-// The contract of guidegen/scene/scene.h for readers of a scene.
+// The contract of guidegen/scene.h for readers of a scene.
 inline void CheckScene(const Scene& scene) {
   for (const Mesh& mesh : scene.meshes) {
     SCUMBLE_CHECK_EQ(mesh.normals.size(), mesh.IsCurves() ? 0 : mesh.positions.size());

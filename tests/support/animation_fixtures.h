@@ -6,7 +6,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "guidegen/load/load_scene.h"
+#include "guidegen/load_scene.h"
 #include "tests/support/gltf_builder.h"
 
 namespace scumble {

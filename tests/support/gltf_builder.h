@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "guidegen/load/load_scene.h"
+#include "guidegen/load_scene.h"
 #include "tests/support/temporary_folder.h"
 
 namespace scumble {

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "guidegen/guidegen.h"
-#include "guidegen/scene/scene.h"
+#include "guidegen/scene.h"
 
 namespace scumble::testing {
 

@@ -11,9 +11,9 @@
 #include "core/filter/resample.h"
 #include "core/image/hash.h"
 #include "core/style/style_file.h"
+#include "guidegen/framing.h"
 #include "guidegen/guidegen.h"
-#include "guidegen/load/load_scene.h"
-#include "guidegen/scene/framing.h"
+#include "guidegen/load_scene.h"
 #include "transfer/transfer.h"
 
 namespace scumble {

@@ -6,9 +6,9 @@
 
 #include "core/image/color.h"
 #include "core/style/style_file.h"
+#include "guidegen/framing.h"
 #include "guidegen/guidegen.h"
-#include "guidegen/load/load_scene.h"
-#include "guidegen/scene/framing.h"
+#include "guidegen/load_scene.h"
 #include "tests/support/transfer_fixtures.h"
 #include "transfer/seeds/seeds.h"
 

@@ -17,7 +17,7 @@
 #include "core/io/guide_file.h"
 #include "core/style/finish_keys.h"
 #include "core/style/style_file.h"
-#include "guidegen/load/load_scene.h"
+#include "guidegen/load_scene.h"
 #include "guidegen/scene_textures.h"
 #include "pipeline/frame/prepare_frame.h"
 #include "pipeline/scene/scene_guides.h"

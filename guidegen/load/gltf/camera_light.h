@@ -7,7 +7,7 @@
 #include "core/image/status.h"
 #include "guidegen/load/gltf/rig.h"
 #include "guidegen/load/loader_util.h"
-#include "guidegen/scene/scene.h"
+#include "guidegen/scene.h"
 
 namespace tinygltf {
 class Model;

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "guidegen/cycles_version.h"
 #include "guidegen/load/loader_util.h"
-#include "guidegen/scene/cycles_version.h"
 
 namespace scumble {
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "core/image/status.h"
-#include "guidegen/scene/scene.h"
+#include "guidegen/scene.h"
 
 namespace tinygltf {
 class Model;

@@ -1,4 +1,4 @@
-// glTF 2.0 scenes, binary (.glb) and text (.gltf), by tinygltf. Use LoadScene (guidegen/load/load_scene.h), which also
+// glTF 2.0 scenes, binary (.glb) and text (.gltf), by tinygltf. Use LoadScene (guidegen/load_scene.h), which also
 // does the work common to all formats.
 //
 // Read: the default scene's node hierarchy; triangles, strips and fans; every component type, sparse accessors and
@@ -19,10 +19,10 @@
 #include <vector>
 
 #include "core/image/status.h"
+#include "guidegen/file_listener.h"
 #include "guidegen/load/auto_smooth.h"
-#include "guidegen/load/file_listener.h"
 #include "guidegen/load/gltf/rig.h"
-#include "guidegen/scene/scene.h"
+#include "guidegen/scene.h"
 
 namespace scumble {
 

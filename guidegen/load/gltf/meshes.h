@@ -9,7 +9,7 @@
 #include "guidegen/load/gltf/accessor.h"
 #include "guidegen/load/gltf/skin.h"
 #include "guidegen/load/loader_util.h"
-#include "guidegen/scene/scene.h"
+#include "guidegen/scene.h"
 
 namespace tinygltf {
 class Model;

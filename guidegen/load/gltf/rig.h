@@ -8,7 +8,7 @@
 #include "core/image/status.h"
 #include "guidegen/load/gltf/animation.h"
 #include "guidegen/load/gltf/skin.h"
-#include "guidegen/scene/scene.h"
+#include "guidegen/scene.h"
 
 namespace scumble {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "guidegen/load/loader_util.h"
-#include "guidegen/scene/scene.h"
+#include "guidegen/scene.h"
 
 namespace scumble {
 

@@ -1,4 +1,4 @@
-// Wavefront OBJ with MTL, by tinyobjloader. Use LoadScene (guidegen/load/load_scene.h), which also does the work common
+// Wavefront OBJ with MTL, by tinyobjloader. Use LoadScene (guidegen/load_scene.h), which also does the work common
 // to all formats.
 //
 // Each shape (o or g) becomes an object, one instance for each of its materials. A group that is named again, with no
@@ -31,9 +31,9 @@
 #include <filesystem>
 
 #include "core/image/status.h"
+#include "guidegen/file_listener.h"
 #include "guidegen/load/auto_smooth.h"
-#include "guidegen/load/file_listener.h"
-#include "guidegen/scene/scene.h"
+#include "guidegen/scene.h"
 
 namespace scumble {
 

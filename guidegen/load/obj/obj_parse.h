@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/image/status.h"
-#include "guidegen/load/file_listener.h"
+#include "guidegen/file_listener.h"
 #include "guidegen/load/loader_util.h"
 
 namespace scumble {

@@ -14,8 +14,8 @@
 #include <utility>
 #include <vector>
 
-#include "guidegen/load/load_scene.h"
-#include "guidegen/scene/framing.h"
+#include "guidegen/framing.h"
+#include "guidegen/load_scene.h"
 #include "tests/support/exact_rays.h"
 #include "tests/support/guidegen_checks.h"
 #include "tests/support/guidegen_scenes.h"

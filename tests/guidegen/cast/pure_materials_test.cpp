@@ -1,5 +1,5 @@
 // The pure material that replaces each glTF material.
-#include "guidegen/scene/pure_materials.h"
+#include "guidegen/pure_materials.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/io/picture_file.h"
-#include "guidegen/load/load_scene.h"
+#include "guidegen/load_scene.h"
 #include "guidegen/scene_textures.h"
 #include "tests/support/gltf_builder.h"
 

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <random>
 
+#include "guidegen/cycles_version.h"
 #include "guidegen/rays/camera_rays.h"
-#include "guidegen/scene/cycles_version.h"
 #include "tests/support/light_path_scenes.h"
 
 namespace scumble::testing {

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "guidegen/load/load_scene.h"
+#include "guidegen/framing.h"
+#include "guidegen/load_scene.h"
 #include "guidegen/rays/camera_rays.h"
-#include "guidegen/scene/framing.h"
 #include "tests/support/exact_rays.h"
 #include "tests/support/guidegen_checks.h"
 #include "tests/support/guidegen_scenes.h"

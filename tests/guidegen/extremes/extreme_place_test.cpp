@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "guidegen/load/load_scene.h"
+#include "guidegen/load_scene.h"
 #include "tests/support/animation_fixtures.h"
 #include "tests/support/exact_rays.h"
 #include "tests/support/gltf_builder.h"

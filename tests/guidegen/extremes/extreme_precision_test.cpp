@@ -14,9 +14,9 @@
 
 #include "core/image/hash.h"
 #include "core/io/guides/guide_storage.h"
+#include "guidegen/framing.h"
 #include "guidegen/guidegen.h"
-#include "guidegen/load/load_scene.h"
-#include "guidegen/scene/framing.h"
+#include "guidegen/load_scene.h"
 #include "tests/support/transfer_fixtures.h"
 #include "transfer/nearest/lookup_table.h"
 

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "guidegen/load/load_scene.h"
-#include "guidegen/scene/framing.h"
+#include "guidegen/framing.h"
+#include "guidegen/load_scene.h"
 #include "tests/support/exact_rays.h"
 #include "tests/support/guidegen_scenes.h"
 #include "tests/support/temporary_folder.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "guidegen/scene/cycles_version.h"
+#include "guidegen/cycles_version.h"
 #include "tests/support/light_path_scenes.h"
 
 namespace scumble::testing {

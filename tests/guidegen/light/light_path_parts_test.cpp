@@ -10,8 +10,8 @@
 
 #include "guidegen/light/light_sampling.h"
 #include "guidegen/light/path_expression.h"
-#include "guidegen/light/path_layers.h"
 #include "guidegen/light/sampler.h"
+#include "guidegen/path_layers.h"
 #include "guidegen/surface/bsdf.h"
 #include "tests/support/guidegen_scenes.h"
 #include "tests/support/numbers.h"

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "guidegen/load/load_scene.h"
+#include "guidegen/load_scene.h"
 #include "tests/support/gltf_builder.h"
 
 namespace scumble {

@@ -9,8 +9,8 @@
 
 #include "core/image/hash.h"
 #include "core/io/picture_file.h"
-#include "guidegen/load/load_scene.h"
 #include "guidegen/load/texture_budget.h"
+#include "guidegen/load_scene.h"
 #include "guidegen/scene_textures.h"
 #include "tests/support/gltf_builder.h"
 

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "core/io/picture_file.h"
-#include "guidegen/load/load_scene.h"
 #include "guidegen/load/loader_util.h"
+#include "guidegen/load_scene.h"
 #include "tests/support/gltf_builder.h"
 
 namespace scumble {

@@ -1,5 +1,5 @@
 // Code that all scene loaders share, and the simple formats: normals, polygons, OBJ, PLY, framing.
-#include "guidegen/load/load_scene.h"
+#include "guidegen/load_scene.h"
 
 #include <gmock/gmock.h>
 
@@ -7,9 +7,9 @@
 
 #include "core/image/color.h"
 #include "core/io/picture_file.h"
+#include "guidegen/framing.h"
 #include "guidegen/load/loader_util.h"
 #include "guidegen/load/mesh_normals.h"
-#include "guidegen/scene/framing.h"
 #include "tests/support/gltf_builder.h"
 #include "tests/support/numbers.h"
 

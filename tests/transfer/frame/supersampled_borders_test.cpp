@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "core/style/style_file.h"
-#include "guidegen/load/load_scene.h"
-#include "guidegen/scene/framing.h"
+#include "guidegen/framing.h"
+#include "guidegen/load_scene.h"
 #include "tests/support/fragment_fixtures.h"
 #include "tests/support/numbers.h"
 #include "transfer/vote/vote_sum.h"

@@ -5,9 +5,9 @@
 #include <optional>
 #include <random>
 
+#include "guidegen/framing.h"
 #include "guidegen/guidegen.h"
-#include "guidegen/load/load_scene.h"
-#include "guidegen/scene/framing.h"
+#include "guidegen/load_scene.h"
 #include "measure/mosaic/coherence.h"
 #include "tests/support/transfer_fixtures.h"
 #include "transfer/nearest/guide_distance.h"

@@ -5,9 +5,9 @@
 #include <set>
 
 #include "core/filter/resample.h"
+#include "guidegen/framing.h"
 #include "guidegen/guidegen.h"
-#include "guidegen/load/load_scene.h"
-#include "guidegen/scene/framing.h"
+#include "guidegen/load_scene.h"
 #include "tests/support/transfer_fixtures.h"
 
 namespace scumble {

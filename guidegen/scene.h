@@ -69,7 +69,7 @@ struct Material {
   // kDiffuse only: Oren and Nayar's, in [0, 1]; 0 is Lambert. A field of its own, because a metallic-roughness material
   // that becomes kDiffuse becomes Lambert.
   float diffuse_roughness = 0.0f;
-  bool cycles4 = false;  // shaded as by Cycles 4 instead of 3, where they differ: guidegen/scene/cycles_version.h
+  bool cycles4 = false;  // shaded as by Cycles 4 instead of 3, where they differ: guidegen/cycles_version.h
   TextureUse metallic_roughness_texture;  // linear: G multiplies the roughness, B the metalness
   glm::vec3 emission{0.0f};               // radiance, linear, from both sides
   TextureUse emission_texture;

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "guidegen/scene/scene.h"
+#include "guidegen/scene.h"
 
 namespace scumble {
 

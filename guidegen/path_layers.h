@@ -7,7 +7,7 @@
 
 #include "core/image/layers.h"
 #include "guidegen/light/path_expression.h"
-#include "guidegen/scene/scene.h"
+#include "guidegen/scene.h"
 
 namespace scumble {
 

@@ -7,7 +7,7 @@
 
 #include "core/image/direction.h"
 #include "core/image/status.h"
-#include "guidegen/scene/scene.h"
+#include "guidegen/scene.h"
 
 namespace scumble {
 

@@ -13,7 +13,7 @@
 
 #include <string_view>
 
-#include "guidegen/scene/scene.h"
+#include "guidegen/scene.h"
 
 namespace scumble {
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/image/status.h"
-#include "guidegen/load/file_listener.h"
-#include "guidegen/scene/scene.h"
+#include "guidegen/file_listener.h"
+#include "guidegen/scene.h"
 
 namespace scumble {
 
