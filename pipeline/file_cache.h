@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "transfer/nearest/table_cache.h"
+#include "transfer/table_cache.h"
 
 namespace scumble {
 

@@ -20,12 +20,12 @@
 #include "scumble/picture.h"
 #include "transfer/exemplar/guide_space.h"
 #include "transfer/exemplar/illumination.h"
-#include "transfer/exemplar/prepared_exemplar.h"
-#include "transfer/field/source_field.h"
-#include "transfer/frame/style_map.h"
-#include "transfer/nearest/lookup_table.h"
+#include "transfer/lookup_table.h"
 #include "transfer/outline/rim_paint.h"
+#include "transfer/prepared_exemplar.h"
 #include "transfer/shadow/shadow_paint.h"
+#include "transfer/source_field.h"
+#include "transfer/style_map.h"
 
 namespace scumble {
 

@@ -2,7 +2,7 @@
 #include <set>
 
 #include "bench/performance/performance.h"
-#include "transfer/frame/style_map.h"
+#include "transfer/style_map.h"
 
 namespace scumble::bench {
 namespace {

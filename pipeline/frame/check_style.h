@@ -12,7 +12,7 @@
 #include "measure/painting/paint_traits.h"
 #include "pipeline/requests.h"
 #include "pipeline/run_context.h"
-#include "transfer/exemplar/ambiguity.h"
+#include "transfer/ambiguity.h"
 #include "transfer/transfer.h"
 
 namespace scumble {

@@ -11,7 +11,7 @@
 #include "core/style/sphere_template.h"
 #include "finish/finish.h"
 #include "guidegen/path_layers.h"
-#include "transfer/exemplar/prepared_exemplar.h"
+#include "transfer/prepared_exemplar.h"
 
 namespace scumble {
 namespace {

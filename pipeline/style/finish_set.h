@@ -16,7 +16,7 @@
 #include "finish/finish.h"
 #include "pipeline/run_context.h"
 #include "pipeline/style/style_set.h"
-#include "transfer/frame/style_map.h"
+#include "transfer/style_map.h"
 
 namespace scumble {
 

@@ -13,7 +13,7 @@
 #include "pipeline/requests.h"
 #include "pipeline/run_context.h"
 #include "pipeline/style/assignments.h"
-#include "transfer/frame/style_map.h"
+#include "transfer/style_map.h"
 
 namespace scumble {
 

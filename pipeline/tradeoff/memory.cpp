@@ -1,7 +1,7 @@
 #include "pipeline/tradeoff/memory.h"
 
 #include "pipeline/memory/memory_estimate.h"
-#include "transfer/exemplar/prepared_exemplar.h"
+#include "transfer/prepared_exemplar.h"
 
 namespace scumble {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "core/io/guide_precision.h"
 #include "core/style/style_override.h"
-#include "transfer/nearest/lookup_table.h"
+#include "transfer/lookup_table.h"
 
 namespace scumble {
 

@@ -1,4 +1,4 @@
-#include "transfer/exemplar/ambiguity.h"
+#include "transfer/ambiguity.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "transfer/nearest/lookup_table.h"
+#include "transfer/lookup_table.h"
 
 namespace scumble {
 namespace {

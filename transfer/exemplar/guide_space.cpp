@@ -9,7 +9,7 @@
 
 #include "core/image/check.h"
 #include "transfer/exemplar/illumination.h"
-#include "transfer/nearest/lookup_table.h"
+#include "transfer/lookup_table.h"
 
 namespace scumble {
 namespace {

@@ -26,10 +26,10 @@
 #include "core/image/guides.h"
 #include "core/image/status.h"
 #include "core/image/style.h"
-#include "transfer/exemplar/prepared_exemplar.h"
-#include "transfer/field/source.h"
 #include "transfer/nearest/guide_distance.h"
 #include "transfer/nearest/guide_tree.h"
+#include "transfer/prepared_exemplar.h"
+#include "transfer/source.h"
 
 namespace scumble {
 

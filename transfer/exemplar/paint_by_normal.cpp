@@ -7,7 +7,7 @@
 
 #include "core/image/exact_math.h"
 #include "core/image/hash.h"
-#include "transfer/exemplar/prepared_exemplar.h"
+#include "transfer/prepared_exemplar.h"
 
 namespace scumble {
 namespace {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "transfer/field/source.h"
+#include "transfer/source.h"
 
 namespace scumble {
 

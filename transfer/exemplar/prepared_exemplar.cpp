@@ -1,4 +1,4 @@
-#include "transfer/exemplar/prepared_exemplar.h"
+#include "transfer/prepared_exemplar.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,8 +13,8 @@
 #include "core/painting/soft_edge.h"
 #include "transfer/exemplar/paint_by_normal.h"
 #include "transfer/exemplar/usable_mask.h"
+#include "transfer/lookup_table.h"
 #include "transfer/nearest/guide_tree.h"
-#include "transfer/nearest/lookup_table.h"
 
 namespace scumble {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/filter/region.h"
-#include "transfer/exemplar/prepared_exemplar.h"
+#include "transfer/prepared_exemplar.h"
 
 namespace scumble::internal {
 

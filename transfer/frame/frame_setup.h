@@ -7,8 +7,8 @@
 #include "core/filter/region.h"
 #include "core/image/guides.h"
 #include "scumble/picture.h"
-#include "transfer/field/source_field.h"
-#include "transfer/frame/style_map.h"
+#include "transfer/source_field.h"
+#include "transfer/style_map.h"
 
 namespace scumble::internal {
 

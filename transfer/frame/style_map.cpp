@@ -1,4 +1,4 @@
-#include "transfer/frame/style_map.h"
+#include "transfer/style_map.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>

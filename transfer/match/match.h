@@ -9,10 +9,10 @@
 #include "core/image/guides.h"
 #include "transfer/exemplar/guide_space.h"
 #include "transfer/exemplar/illumination.h"
-#include "transfer/exemplar/prepared_exemplar.h"
-#include "transfer/field/source_field.h"
 #include "transfer/nearest/guide_distance.h"
+#include "transfer/prepared_exemplar.h"
 #include "transfer/seeds/seeds.h"
+#include "transfer/source_field.h"
 
 namespace scumble::internal {
 

@@ -1,4 +1,4 @@
-#include "transfer/nearest/lookup_table.h"
+#include "transfer/lookup_table.h"
 
 #include <tbb/parallel_for.h>
 

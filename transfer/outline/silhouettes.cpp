@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "core/filter/distance_transform.h"
-#include "transfer/frame/style_map.h"
+#include "transfer/style_map.h"
 
 namespace scumble::internal {
 namespace {

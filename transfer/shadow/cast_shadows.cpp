@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/image/hash.h"
-#include "transfer/frame/style_map.h"
+#include "transfer/style_map.h"
 
 namespace scumble::internal {
 namespace {

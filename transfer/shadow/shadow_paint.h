@@ -8,7 +8,7 @@
 
 #include "core/painting/bare_paper.h"
 #include "scumble/picture.h"
-#include "transfer/exemplar/prepared_exemplar.h"
+#include "transfer/prepared_exemplar.h"
 
 namespace scumble {
 

@@ -8,7 +8,7 @@
 #include "core/image/guides.h"
 #include "core/image/style.h"
 #include "scumble/picture.h"
-#include "transfer/exemplar/prepared_exemplar.h"
+#include "transfer/prepared_exemplar.h"
 
 namespace scumble::internal {
 

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <span>
 
-#include "transfer/exemplar/prepared_exemplar.h"
-#include "transfer/field/bit_mask_rows.h"
-#include "transfer/field/source_field.h"
+#include "transfer/prepared_exemplar.h"
+#include "transfer/source_field.h"
+#include "transfer/vote/bit_mask_rows.h"
 
 namespace scumble::internal {
 

@@ -14,7 +14,7 @@
 #include "scumble/picture.h"
 #include "transfer/exemplar/guide_space.h"
 #include "transfer/exemplar/illumination.h"
-#include "transfer/exemplar/prepared_exemplar.h"
+#include "transfer/prepared_exemplar.h"
 #include "transfer/vote/vote.h"
 
 namespace scumble {

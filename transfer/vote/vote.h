@@ -11,8 +11,8 @@
 #include "core/filter/parallel.h"
 #include "core/image/guides.h"
 #include "scumble/picture.h"
-#include "transfer/exemplar/prepared_exemplar.h"
-#include "transfer/field/source_field.h"
+#include "transfer/prepared_exemplar.h"
+#include "transfer/source_field.h"
 #include "transfer/vote/edge/support_regions.h"
 
 namespace scumble::internal {

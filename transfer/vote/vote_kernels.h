@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "transfer/exemplar/prepared_exemplar.h"
-#include "transfer/field/source_field.h"
+#include "transfer/prepared_exemplar.h"
+#include "transfer/source_field.h"
 
 namespace scumble::internal {
 

@@ -6,8 +6,8 @@
 
 #include "core/image/guides.h"
 #include "core/style/style_keys.h"
-#include "transfer/field/source_field.h"
-#include "transfer/frame/style_map.h"
+#include "transfer/source_field.h"
+#include "transfer/style_map.h"
 
 namespace scumble {
 namespace {

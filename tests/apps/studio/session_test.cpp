@@ -5,7 +5,7 @@
 #include "apps/studio/session/state.h"
 #include "pipeline/workspace.h"
 #include "tests/apps/studio/session_fixture.h"
-#include "transfer/field/source_field.h"
+#include "transfer/source_field.h"
 
 namespace scumble {
 namespace {

@@ -18,7 +18,7 @@
 #include "guidegen/guidegen.h"
 #include "guidegen/load_scene.h"
 #include "tests/support/transfer_fixtures.h"
-#include "transfer/nearest/lookup_table.h"
+#include "transfer/lookup_table.h"
 
 namespace scumble::testing {
 namespace {

@@ -6,7 +6,7 @@
 #include "core/filter/outline_distance.h"
 #include "tests/support/numbers.h"
 #include "tests/support/scene_exemplar_fixtures.h"
-#include "transfer/nearest/lookup_table.h"
+#include "transfer/lookup_table.h"
 #include "transfer/seeds/seeds.h"
 
 namespace scumble {

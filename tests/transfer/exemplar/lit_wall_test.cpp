@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "tests/support/scene_exemplar_fixtures.h"
-#include "transfer/exemplar/ambiguity.h"
+#include "transfer/ambiguity.h"
 
 namespace scumble {
 namespace {

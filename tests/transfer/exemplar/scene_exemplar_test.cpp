@@ -3,7 +3,7 @@
 #include <numbers>
 
 #include "tests/support/scene_exemplar_fixtures.h"
-#include "transfer/exemplar/ambiguity.h"
+#include "transfer/ambiguity.h"
 #include "transfer/exemplar/usable_mask.h"
 
 namespace scumble {

@@ -3,7 +3,7 @@
 #include <map>
 
 #include "tests/support/scene_exemplar_fixtures.h"
-#include "transfer/nearest/lookup_table.h"
+#include "transfer/lookup_table.h"
 
 namespace scumble {
 namespace {

@@ -11,7 +11,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "transfer/field/mask_lanes-inl.h"
+#include "transfer/vote/mask_lanes-inl.h"
 
 #ifndef SCUMBLE_OPEN_STEPS_ONCE
 #define SCUMBLE_OPEN_STEPS_ONCE

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/filter/edge_test.h"
-#include "transfer/field/bit_mask_rows.h"
+#include "transfer/vote/bit_mask_rows.h"
 
 namespace scumble::internal {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/filter/region.h"
-#include "transfer/field/source_field.h"
+#include "transfer/source_field.h"
 #include "transfer/vote/vote.h"
 
 namespace scumble::internal {

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "scumble/picture.h"
-#include "transfer/exemplar/prepared_exemplar.h"
 #include "transfer/exemplar/usable_rows.h"
+#include "transfer/prepared_exemplar.h"
 #include "transfer/vote/wide/chunk_runs.h"
 #include "transfer/vote/wide/wide_arms.h"
 

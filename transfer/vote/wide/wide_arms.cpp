@@ -12,7 +12,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "transfer/field/mask_lanes-inl.h"
+#include "transfer/vote/mask_lanes-inl.h"
 
 #ifndef SCUMBLE_WIDE_ARMS_ONCE
 #define SCUMBLE_WIDE_ARMS_ONCE

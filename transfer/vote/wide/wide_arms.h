@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "transfer/field/bit_mask_rows.h"
+#include "transfer/vote/bit_mask_rows.h"
 #include "transfer/vote/edge/open_steps.h"
 #include "transfer/vote/vote.h"
 #include "transfer/vote/wide/chunk_runs.h"

@@ -15,8 +15,8 @@
 #include "core/image/status.h"
 #include "core/image/style.h"
 #include "scumble/picture.h"
-#include "transfer/field/source.h"
-#include "transfer/nearest/table_cache.h"
+#include "transfer/source.h"
+#include "transfer/table_cache.h"
 
 namespace scumble {
 

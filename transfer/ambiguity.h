@@ -6,7 +6,7 @@
 #include <cstddef>
 
 #include "transfer/exemplar/guide_space.h"
-#include "transfer/exemplar/prepared_exemplar.h"
+#include "transfer/prepared_exemplar.h"
 
 namespace scumble {
 

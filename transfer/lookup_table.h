@@ -10,8 +10,8 @@
 #include <span>
 #include <vector>
 
-#include "transfer/field/source.h"
 #include "transfer/nearest/guide_tree.h"
+#include "transfer/source.h"
 
 namespace scumble {
 
