@@ -14,7 +14,7 @@
 #include "guidegen/framing.h"
 #include "guidegen/guidegen.h"
 #include "guidegen/load_scene.h"
-#include "measure/compare/flicker.h"
+#include "measure/flicker.h"
 #include "transfer/transfer.h"
 
 namespace scumble {

@@ -14,7 +14,7 @@
 #include "core/io/guide_file.h"
 #include "core/io/picture_file.h"
 #include "core/style/style_file.h"
-#include "measure/texture/outline_error.h"
+#include "measure/outline_error.h"
 #include "pipeline/variant/variant_error.h"
 #include "transfer/transfer.h"
 

@@ -14,7 +14,7 @@
 #include "core/io/guide_file.h"
 #include "core/io/picture_file.h"
 #include "core/style/style_file.h"
-#include "measure/mosaic/repetition.h"
+#include "measure/repetition.h"
 #include "transfer/transfer.h"
 
 namespace scumble {

@@ -17,7 +17,7 @@
 #include "guidegen/file_listener.h"
 #include "guidegen/framing.h"
 #include "guidegen/guidegen.h"
-#include "measure/mosaic/explain.h"
+#include "measure/explain.h"
 #include "pipeline/frame_rate.h"
 
 namespace scumble {

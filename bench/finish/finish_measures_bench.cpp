@@ -1,7 +1,7 @@
 // What finishing effects promise of size and time, measured: prints two tables; exit code 1 if a promise is broken.
 //   half size: FLIP between an effect at 540 lines and the effect at 1080 lines, halved. Both see one painting. On the
 //   ball paint fills the frame; there the effect is measured by itself, too, on paint of 540 lines at both sizes.
-//   flicker: of effects under a slow move of the camera, beside its floor (measure/compare/flicker.h) and that of the
+//   flicker: of effects under a slow move of the camera, beside its floor (measure/flicker.h) and that of the
 //   painting alone. What sticks to surfaces is measured on one flat colour.
 //   finish_measures_bench [flicker | half [NAME [FOLDER]]]
 // With NAME, only chains whose names contain it are measured; `half` puts both pictures of each into FOLDER.

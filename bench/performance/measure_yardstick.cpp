@@ -5,7 +5,7 @@
 #include "bench/performance/performance.h"
 #include "bench/performance/yardstick.h"
 #include "core/image/stopwatch.h"
-#include "measure/mosaic/coherence.h"
+#include "measure/coherence.h"
 
 namespace scumble::bench {
 namespace {

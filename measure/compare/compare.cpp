@@ -1,4 +1,4 @@
-#include "measure/compare/compare.h"
+#include "measure/compare.h"
 
 #include <algorithm>
 #include <array>

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "measure/compare/compare.h"
-#include "measure/report/json_number.h"
+#include "measure/compare.h"
+#include "measure/json_number.h"
 
 namespace scumble {
 namespace {

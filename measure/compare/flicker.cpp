@@ -1,4 +1,4 @@
-#include "measure/compare/flicker.h"
+#include "measure/flicker.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "measure/compare/flip.h"
+#include "measure/flip.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "measure/compare/heat_map.h"
+#include "measure/heat_map.h"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 
 #include "core/image/color.h"
 #include "core/image/oklab.h"
-#include "measure/compare/compare.h"
+#include "measure/compare.h"
 
 namespace scumble {
 namespace {

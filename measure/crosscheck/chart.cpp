@@ -6,7 +6,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "measure/report/chart_colors.h"
+#include "measure/chart_colors.h"
 
 namespace scumble::internal {
 namespace {

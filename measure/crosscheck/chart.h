@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "measure/crosscheck/crosscheck.h"
+#include "measure/crosscheck.h"
 
 namespace scumble::internal {
 

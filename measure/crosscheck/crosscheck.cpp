@@ -1,4 +1,4 @@
-#include "measure/crosscheck/crosscheck.h"
+#include "measure/crosscheck.h"
 
 #include <fmt/format.h>
 

@@ -9,7 +9,7 @@
 #include <map>
 
 #include "core/image/color.h"
-#include "measure/crosscheck/crosscheck.h"
+#include "measure/crosscheck.h"
 #include "measure/crosscheck/parts.h"
 
 namespace scumble {

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "measure/crosscheck/crosscheck.h"
+#include "measure/crosscheck.h"
 #include "measure/crosscheck/parts.h"
-#include "measure/report/json_number.h"
+#include "measure/json_number.h"
 
 namespace scumble {
 namespace {

@@ -1,4 +1,4 @@
-#include "measure/mosaic/coherence.h"
+#include "measure/coherence.h"
 
 #include <algorithm>
 #include <numeric>

@@ -1,4 +1,4 @@
-#include "measure/mosaic/explain.h"
+#include "measure/explain.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "measure/mosaic/repetition.h"
+#include "measure/repetition.h"
 
 #include <algorithm>
 #include <cmath>

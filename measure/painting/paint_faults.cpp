@@ -1,4 +1,4 @@
-#include "measure/painting/paint_faults.h"
+#include "measure/paint_faults.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "measure/painting/paint_traits.h"
+#include "measure/paint_traits.h"
 
 #include <algorithm>
 #include <cmath>

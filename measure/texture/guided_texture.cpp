@@ -1,4 +1,4 @@
-#include "measure/texture/guided_texture.h"
+#include "measure/guided_texture.h"
 
 #include <hwy/contrib/sort/vqsort.h>
 #include <tbb/parallel_for.h>

@@ -1,4 +1,4 @@
-#include "measure/texture/outline_error.h"
+#include "measure/outline_error.h"
 
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>

@@ -6,8 +6,8 @@
 #include <iterator>
 #include <limits>
 
-#include "measure/report/chart_colors.h"
-#include "measure/report/html_page.h"
+#include "measure/chart_colors.h"
+#include "measure/html_page.h"
 #include "measure/tradeoff/pareto.h"
 #include "measure/tradeoff/parts.h"
 #include "measure/tradeoff/scale.h"

@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include "measure/tradeoff/parts.h"
-#include "measure/tradeoff/report.h"
+#include "measure/tradeoff_report.h"
 
 namespace scumble {
 namespace {

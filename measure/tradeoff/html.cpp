@@ -5,9 +5,9 @@
 #include <map>
 #include <string_view>
 
-#include "measure/report/html_page.h"
+#include "measure/html_page.h"
 #include "measure/tradeoff/parts.h"
-#include "measure/tradeoff/report.h"
+#include "measure/tradeoff_report.h"
 
 namespace scumble {
 namespace {

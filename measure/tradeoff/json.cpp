@@ -1,9 +1,9 @@
 // The trade-off for programs.
 #include <nlohmann/json.hpp>
 
-#include "measure/report/json_number.h"
+#include "measure/json_number.h"
 #include "measure/tradeoff/parts.h"
-#include "measure/tradeoff/report.h"
+#include "measure/tradeoff_report.h"
 
 namespace scumble {
 namespace {

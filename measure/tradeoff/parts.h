@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "measure/tradeoff/report.h"
+#include "measure/tradeoff_report.h"
 
 namespace scumble::internal {
 
@@ -50,7 +50,7 @@ std::string ChartMark(std::size_t axis, double x, double y);
 // The axes in the order in which they first come.
 std::vector<std::string> AxesOf(const TradeReport& report);
 
-// Style sheet and script of the page, beside what all pages share (measure/report/html_page.h).
+// Style sheet and script of the page, beside what all pages share (measure/html_page.h).
 extern const char* const kTradePageStyle;
 extern const char* const kTradePageScript;
 

@@ -5,7 +5,7 @@
 #include <array>
 
 #include "measure/tradeoff/parts.h"
-#include "measure/tradeoff/report.h"
+#include "measure/tradeoff_report.h"
 
 namespace scumble {
 namespace {

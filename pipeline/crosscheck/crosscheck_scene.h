@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/image/status.h"
-#include "measure/crosscheck/crosscheck.h"
+#include "measure/crosscheck.h"
 #include "pipeline/requests.h"
 #include "pipeline/run_context.h"
 

@@ -8,8 +8,8 @@
 
 #include "core/image/status.h"
 #include "core/image/style.h"
-#include "measure/painting/paint_faults.h"
-#include "measure/painting/paint_traits.h"
+#include "measure/paint_faults.h"
+#include "measure/paint_traits.h"
 #include "pipeline/requests.h"
 #include "pipeline/run_context.h"
 #include "transfer/ambiguity.h"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/image/guides.h"
-#include "measure/mosaic/explain.h"
+#include "measure/explain.h"
 #include "scumble/picture.h"
 #include "transfer/transfer.h"
 

@@ -10,7 +10,7 @@
 #include "core/image/stopwatch.h"
 #include "core/io/atomic_file.h"
 #include "core/io/picture_file.h"
-#include "measure/mosaic/coherence.h"
+#include "measure/coherence.h"
 #include "pipeline/frame/explain_frame.h"
 #include "pipeline/style/finish_order.h"
 #include "transfer/upsample_guides.h"

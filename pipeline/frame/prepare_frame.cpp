@@ -10,7 +10,7 @@
 #include "core/style/place_sphere.h"
 #include "core/style/style_keyframes.h"
 #include "core/style/style_keys.h"
-#include "measure/painting/paint_faults.h"
+#include "measure/paint_faults.h"
 #include "pipeline/frame/frame_painter.h"
 
 namespace scumble {

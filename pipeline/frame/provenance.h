@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "measure/mosaic/explain.h"
+#include "measure/explain.h"
 #include "pipeline/frame_rate.h"
 #include "pipeline/style/style_set.h"
 

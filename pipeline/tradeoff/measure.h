@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "measure/tradeoff/report.h"
+#include "measure/tradeoff_report.h"
 #include "pipeline/requests.h"
 #include "pipeline/run_context.h"
 

@@ -6,7 +6,7 @@
 namespace scumble {
 namespace {
 
-// Of a pixel of picture and exemplars: TradeReference, measure/energy/energy.h.
+// Of a pixel of picture and exemplars: TradeReference, measure/energy.h.
 constexpr std::uint64_t kReference = 100, kEnergy = 250;
 constexpr std::uint64_t kPng = 4;   // of a pixel, of which no compression makes less
 constexpr std::uint64_t kPage = 4;  // of a byte of a PNG: in Base64 it is 4/3, and text that grows is there three times

@@ -2,7 +2,7 @@
 //
 // A step lowers the accuracy of a style, never its look. Guides are cast smaller or with fewer samples, pictures are
 // scaled up, blended less, or their sources found more simply; colours, thresholds, edges and sizes are the artist's.
-// The steps are ordered by the guided texture distance (measure/texture/guided_texture.h). bench/ladder_bench measures
+// The steps are ordered by the guided texture distance (measure/guided_texture.h). bench/ladder_bench measures
 // it; docs/budget.md has the table.
 #pragma once
 

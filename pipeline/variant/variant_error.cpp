@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "core/image/exact_math.h"
-#include "measure/compare/flip.h"
-#include "measure/energy/flat_surfaces.h"
-#include "measure/mosaic/coherence.h"
-#include "measure/mosaic/repetition.h"
+#include "measure/coherence.h"
+#include "measure/flat_surfaces.h"
+#include "measure/flip.h"
+#include "measure/repetition.h"
 
 namespace scumble {
 namespace {

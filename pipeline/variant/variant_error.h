@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "core/image/guides.h"
-#include "measure/energy/energy.h"
-#include "measure/texture/guided_texture.h"
-#include "measure/texture/outline_error.h"
-#include "measure/tradeoff/report.h"
+#include "measure/energy.h"
+#include "measure/guided_texture.h"
+#include "measure/outline_error.h"
+#include "measure/tradeoff_report.h"
 #include "transfer/transfer.h"
 
 namespace scumble {

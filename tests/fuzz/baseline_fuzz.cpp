@@ -1,5 +1,5 @@
 // Baselines of a cross-check, in JSON. A baseline survives writing and reading again.
-#include "measure/crosscheck/baseline.h"
+#include "measure/crosscheck_baseline.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace scumble::fuzz {

@@ -11,9 +11,9 @@
 
 #include "core/image/guides.h"
 #include "core/io/channel_file.h"
-#include "measure/compare/compare.h"
-#include "measure/compare/heat_map.h"
-#include "measure/mosaic/coherence.h"
+#include "measure/coherence.h"
+#include "measure/compare.h"
+#include "measure/heat_map.h"
 #include "tests/support/numbers.h"
 #include "tests/support/temporary_folder.h"
 

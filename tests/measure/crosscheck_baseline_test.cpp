@@ -1,10 +1,11 @@
 // Baselines of the cross-check: written, read, tightening and never loosening.
+#include "measure/crosscheck_baseline.h"
+
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "measure/crosscheck/baseline.h"
 #include "tests/measure/crosscheck_fixtures.h"
 
 namespace scumble {

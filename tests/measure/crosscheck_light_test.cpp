@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "core/image/hash.h"
-#include "measure/crosscheck/html.h"
+#include "measure/crosscheck_page.h"
 #include "tests/measure/crosscheck_fixtures.h"
 
 namespace scumble {

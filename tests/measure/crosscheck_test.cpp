@@ -1,5 +1,5 @@
 // The cross-check's figures and verdict on guides made by hand, and Blender's passes turned into guides.
-#include "measure/crosscheck/crosscheck.h"
+#include "measure/crosscheck.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/io/atomic_file.h"
-#include "measure/crosscheck/html.h"
+#include "measure/crosscheck_page.h"
 #include "tests/support/temporary_folder.h"
 
 namespace scumble {

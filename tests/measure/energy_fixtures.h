@@ -13,7 +13,7 @@
 
 #include "core/image/guides.h"
 #include "core/image/hash.h"
-#include "measure/energy/energy.h"
+#include "measure/energy.h"
 #include "scumble/picture.h"
 
 namespace scumble::testing {

@@ -1,5 +1,5 @@
 // Figures of the energy that follow from the formula, and of pictures that the engine made.
-#include "measure/energy/energy.h"
+#include "measure/energy.h"
 
 #include <gtest/gtest.h>
 

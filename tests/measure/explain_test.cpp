@@ -1,5 +1,5 @@
 // The pictures that explain a result, on planes with a known answer.
-#include "measure/mosaic/explain.h"
+#include "measure/explain.h"
 
 #include <gtest/gtest.h>
 

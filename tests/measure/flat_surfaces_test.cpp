@@ -1,5 +1,5 @@
 // The flat surfaces of a picture, on a scene whose surfaces are known.
-#include "measure/energy/flat_surfaces.h"
+#include "measure/flat_surfaces.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The measure of flicker, on pictures whose motion is known.
-#include "measure/compare/flicker.h"
+#include "measure/flicker.h"
 
 #include <gtest/gtest.h>
 

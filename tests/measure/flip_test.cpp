@@ -1,5 +1,5 @@
 // LDR-FLIP against the formulas of its paper, in plain form, and against values that follow from them by hand.
-#include "measure/compare/flip.h"
+#include "measure/flip.h"
 
 #include <gtest/gtest.h>
 

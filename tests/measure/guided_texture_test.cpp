@@ -1,5 +1,5 @@
 // The texture distance of pictures whose order is known: what spoils paint raises it.
-#include "measure/texture/guided_texture.h"
+#include "measure/guided_texture.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The error along outlines of pictures whose every pixel's share is known.
-#include "measure/texture/outline_error.h"
+#include "measure/outline_error.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Each usual mistake, alone in an otherwise good exemplar, is found, and no other is.
-#include "measure/painting/paint_faults.h"
+#include "measure/paint_faults.h"
 
 #include <gtest/gtest.h>
 

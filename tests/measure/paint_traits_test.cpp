@@ -1,5 +1,5 @@
 // The measures of exemplars, against the parameters that they were made with.
-#include "measure/painting/paint_traits.h"
+#include "measure/paint_traits.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Repetition and seams of pictures with a known answer.
-#include "measure/mosaic/repetition.h"
+#include "measure/repetition.h"
 
 #include <gtest/gtest.h>
 

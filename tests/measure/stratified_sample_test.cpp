@@ -1,5 +1,5 @@
 // Stratified samples: the drawn places, and mean and standard error by the formula of the sampling.
-#include "measure/energy/stratified_sample.h"
+#include "measure/mosaic/stratified_sample.h"
 
 #include <gtest/gtest.h>
 

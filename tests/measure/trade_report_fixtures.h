@@ -4,7 +4,7 @@
 #include <limits>
 #include <string>
 
-#include "measure/tradeoff/report.h"
+#include "measure/tradeoff_report.h"
 
 namespace scumble {
 

@@ -14,7 +14,7 @@
 
 #include "core/image/color.h"
 #include "core/image/fragments.h"
-#include "measure/compare/flip.h"
+#include "measure/flip.h"
 #include "tests/support/guidegen_checks.h"
 #include "tests/support/guidegen_scenes.h"
 #include "tests/support/transfer_fixtures.h"

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "core/style/style_file.h"
-#include "measure/compare/flip.h"
+#include "measure/flip.h"
 #include "tests/support/light_path_scenes.h"
 #include "tests/support/transfer_fixtures.h"
 

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "measure/mosaic/explain.h"
+#include "measure/explain.h"
 #include "pipeline/frame/finish_layers.h"
 #include "pipeline/frame_range.h"
 #include "transfer/upsample_guides.h"

@@ -5,8 +5,8 @@
 #include "apps/cli/verbs/compare_verb.h"
 #include "core/io/guide_file.h"
 #include "core/io/picture_file.h"
-#include "measure/compare/flicker.h"
-#include "measure/compare/heat_map.h"
+#include "measure/flicker.h"
+#include "measure/heat_map.h"
 
 namespace scumble {
 namespace {

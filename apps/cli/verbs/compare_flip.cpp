@@ -8,8 +8,8 @@
 #include "apps/cli/verbs/compare_verb.h"
 #include "core/io/channel_file.h"
 #include "core/io/picture_file.h"
-#include "measure/compare/heat_map.h"
-#include "measure/report/json_number.h"
+#include "measure/heat_map.h"
+#include "measure/json_number.h"
 
 namespace scumble {
 namespace {

@@ -11,8 +11,8 @@
 #include "apps/cli/app/options.h"
 #include "apps/cli/verbs/compare_files.h"
 #include "core/io/picture_file.h"
-#include "measure/compare/compare.h"
-#include "measure/compare/heat_map.h"
+#include "measure/compare.h"
+#include "measure/heat_map.h"
 #include "pipeline/scene/run_inputs.h"
 
 namespace scumble {

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "apps/cli/app/command.h"
-#include "measure/compare/compare.h"
-#include "measure/compare/flip.h"
+#include "measure/compare.h"
+#include "measure/flip.h"
 
 namespace scumble {
 

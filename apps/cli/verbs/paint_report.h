@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "measure/painting/paint_faults.h"
-#include "measure/painting/paint_traits.h"
+#include "measure/paint_faults.h"
+#include "measure/paint_traits.h"
 
 namespace scumble {
 

@@ -10,7 +10,7 @@
 #include "apps/cli/app/json_text.h"
 #include "apps/cli/app/options.h"
 #include "apps/cli/verbs/paint_report.h"
-#include "measure/painting/paint_faults.h"
+#include "measure/paint_faults.h"
 #include "pipeline/frame/check_style.h"
 #include "pipeline/frame/prepare_frame.h"
 

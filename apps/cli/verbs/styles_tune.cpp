@@ -13,7 +13,7 @@
 #include "core/io/picture_file.h"
 #include "core/style/style_edit.h"
 #include "core/style/style_keys.h"
-#include "measure/report/html_page.h"
+#include "measure/html_page.h"
 #include "pipeline/style/style_locations.h"
 #include "pipeline/tradeoff/tune_style.h"
 

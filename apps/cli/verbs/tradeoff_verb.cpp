@@ -22,7 +22,7 @@
 #include "apps/cli/app/options.h"
 #include "core/io/atomic_file.h"
 #include "core/io/pending_temporaries.h"
-#include "measure/tradeoff/report.h"
+#include "measure/tradeoff_report.h"
 #include "pipeline/memory/memory_limit.h"
 #include "pipeline/run/sequence.h"
 #include "pipeline/scene/run_inputs.h"

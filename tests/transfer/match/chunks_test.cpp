@@ -8,7 +8,7 @@
 #include "guidegen/framing.h"
 #include "guidegen/guidegen.h"
 #include "guidegen/load_scene.h"
-#include "measure/mosaic/coherence.h"
+#include "measure/coherence.h"
 #include "tests/support/transfer_fixtures.h"
 #include "transfer/nearest/guide_distance.h"
 #include "transfer/seeds/seeds.h"

@@ -11,7 +11,7 @@
 
 #include "bench/wall_measures.h"
 #include "core/image/hash.h"
-#include "measure/energy/flat_surfaces.h"
+#include "measure/flat_surfaces.h"
 #include "tests/support/transfer_fixtures.h"
 #include "transfer/exemplar/paint_by_normal.h"
 #include "transfer/seeds/seeds.h"
@@ -210,7 +210,7 @@ TEST(Variety, APreviewShowsTheFinalPicturesPieces) {
   EXPECT_LT(other_seeds, 0.3 * same_seeds);
 }
 
-// What measures call a flat surface (measure/energy/flat_surfaces.h) is where the transfer finds one, there or a reach
+// What measures call a flat surface (measure/flat_surfaces.h) is where the transfer finds one, there or a reach
 // away.
 TEST(Variety, MeasuresFindTheSameFlatPlaces) {
   constexpr int kSide = 40, kReach = 3;

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "measure/painting/paint_traits.h"
+#include "measure/paint_traits.h"
 
 namespace scumble {
 

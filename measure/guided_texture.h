@@ -10,7 +10,7 @@
 //
 // Any arrangement that keeps the exemplar's strokes scores little, whatever pixel lies where. Flat, smeared, blurred,
 // noisy and rescaled paint does not have the distributions, and the borders of a mosaic add bars that the exemplar does
-// not have. That one place is repeated is not seen: see measure/mosaic/repetition.h.
+// not have. That one place is repeated is not seen: see measure/repetition.h.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@
 #include <span>
 
 #include "core/image/status.h"
-#include "measure/energy/energy.h"
+#include "measure/energy.h"
 
 namespace scumble {
 

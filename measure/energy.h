@@ -37,8 +37,8 @@
 #include <vector>
 
 #include "core/image/status.h"
-#include "measure/energy/stratified_sample.h"
-#include "measure/mosaic/coherence.h"
+#include "measure/coherence.h"
+#include "measure/mosaic/stratified_sample.h"
 #include "scumble/picture.h"
 
 namespace scumble {

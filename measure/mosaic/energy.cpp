@@ -1,4 +1,4 @@
-#include "measure/energy/energy.h"
+#include "measure/energy.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +10,8 @@
 
 #include "core/image/hash.h"
 #include "core/io/parallel.h"
-#include "measure/energy/patch_search.h"
-#include "measure/energy/stratified_sample.h"
+#include "measure/mosaic/patch_search.h"
+#include "measure/mosaic/stratified_sample.h"
 
 namespace scumble {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/image/status.h"
-#include "measure/crosscheck/crosscheck.h"
+#include "measure/crosscheck.h"
 
 namespace scumble {
 

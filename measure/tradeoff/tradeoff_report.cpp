@@ -1,4 +1,4 @@
-#include "measure/tradeoff/report.h"
+#include "measure/tradeoff_report.h"
 
 #include <fmt/format.h>
 

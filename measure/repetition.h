@@ -6,7 +6,7 @@
 #include <span>
 
 #include "core/image/guides.h"
-#include "measure/mosaic/coherence.h"
+#include "measure/coherence.h"
 #include "scumble/picture.h"
 
 namespace scumble {

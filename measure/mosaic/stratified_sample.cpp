@@ -1,4 +1,4 @@
-#include "measure/energy/stratified_sample.h"
+#include "measure/mosaic/stratified_sample.h"
 
 #include <cmath>
 #include <numeric>

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "measure/energy/energy.h"
+#include "measure/energy.h"
 
 namespace scumble {
 
@@ -32,11 +32,11 @@ struct TradeMeasure {
   double prepare_ms = 0.0;              // the style, once, with empty caches: tables, trees, exemplars at this size
   std::size_t memory_bytes = 0;         // the peak
   std::optional<double> texture;        // measure/texture/: paint and outlines; ranks
-  Estimate both, energy, missing;       // measure/energy/energy.h
+  Estimate both, energy, missing;       // measure/energy.h
   std::optional<double> guide_degrees;  // mean angle between a pixel's normal and that of its source, exact guides
   std::optional<double> coherence;      // 0 … 1
   std::optional<double> chunk_area;     // mean, pixels
-  std::optional<double> seam_excess;    // measure/mosaic/repetition.h
+  std::optional<double> seam_excess;    // measure/repetition.h
   std::optional<double> repetition;
   std::optional<double>
       guide_rms;  // of its guides against the converged ones: of normals, or of light where it is weighed

@@ -1,4 +1,4 @@
-#include "measure/crosscheck/baseline.h"
+#include "measure/crosscheck_baseline.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "measure/energy/flat_surfaces.h"
+#include "measure/flat_surfaces.h"
 
 #include <algorithm>
 #include <glm/glm.hpp>

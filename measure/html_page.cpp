@@ -1,4 +1,4 @@
-#include "measure/report/html_page.h"
+#include "measure/html_page.h"
 
 #include <cstdint>
 

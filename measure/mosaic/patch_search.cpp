@@ -1,4 +1,4 @@
-#include "measure/energy/patch_search.h"
+#include "measure/mosaic/patch_search.h"
 
 #include <algorithm>
 #include <cmath>

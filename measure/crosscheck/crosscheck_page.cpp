@@ -1,4 +1,4 @@
-#include "measure/crosscheck/html.h"
+#include "measure/crosscheck_page.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include "core/io/picture_file.h"
 #include "measure/crosscheck/chart.h"
 #include "measure/crosscheck/parts.h"
-#include "measure/report/html_page.h"
+#include "measure/html_page.h"
 
 namespace scumble {
 namespace {
