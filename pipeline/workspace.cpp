@@ -20,13 +20,13 @@
 #include "pipeline/frame/paint_picture.h"
 #include "pipeline/frame/provenance.h"
 #include "pipeline/frame_range.h"
-#include "pipeline/memory/memory_estimate.h"
+#include "pipeline/memory_estimate.h"
 #include "pipeline/run/picture_sequence.h"
-#include "pipeline/scene/run_inputs.h"
-#include "pipeline/scene/scene_guides.h"
+#include "pipeline/run_inputs.h"
 #include "pipeline/scene/scene_sequence.h"
+#include "pipeline/scene_guides.h"
 #include "pipeline/style/kept_pictures.h"
-#include "pipeline/style/style_set.h"
+#include "pipeline/style_set.h"
 
 namespace scumble {
 namespace {

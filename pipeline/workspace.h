@@ -25,12 +25,12 @@
 #include "core/image/guides.h"
 #include "core/image/status.h"
 #include "core/io/picture_file.h"
-#include "pipeline/frame/frame_report.h"
+#include "pipeline/budget_choice.h"
 #include "pipeline/frame/paint_picture.h"
-#include "pipeline/quality/budget_choice.h"
+#include "pipeline/frame_report.h"
 #include "pipeline/requests.h"
 #include "pipeline/run_context.h"
-#include "pipeline/style/style_set.h"
+#include "pipeline/style_set.h"
 #include "scumble/picture.h"
 
 namespace scumble {

@@ -12,7 +12,7 @@
 
 #include "core/io/picture_file.h"
 #include "finish/finish.h"
-#include "pipeline/guide_layers.h"
+#include "pipeline/api/guide_layers.h"
 #include "scumble/stylizer.h"
 #include "tests/support/finish_chains.h"
 

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "core/style/finish_keys.h"
-#include "pipeline/guide_layers.h"
+#include "pipeline/api/guide_layers.h"
 
 namespace scumble::bench {
 namespace {

@@ -1,4 +1,4 @@
-#include "pipeline/frame/check_style.h"
+#include "pipeline/check_style.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -14,10 +14,10 @@
 #include "core/style/place_sphere.h"
 #include "core/style/rectify.h"
 #include "core/style/sphere_template.h"
-#include "pipeline/file_cache.h"
-#include "pipeline/frame/prepare_frame.h"
+#include "pipeline/machine/file_cache.h"
+#include "pipeline/prepare_frame.h"
 #include "pipeline/style/kit_template.h"
-#include "pipeline/style/style_locations.h"
+#include "pipeline/style_locations.h"
 #include "transfer/transfer.h"
 
 namespace scumble {

@@ -1,4 +1,4 @@
-#include "pipeline/frame/finish_layers.h"
+#include "pipeline/finish_layers.h"
 
 #include <fmt/format.h>
 

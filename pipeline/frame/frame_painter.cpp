@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "core/image/stopwatch.h"
-#include "pipeline/file_cache.h"
+#include "pipeline/machine/file_cache.h"
 
 namespace scumble {
 

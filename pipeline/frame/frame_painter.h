@@ -11,10 +11,10 @@
 #include "core/image/guides.h"
 #include "core/image/progress.h"
 #include "finish/finish.h"
-#include "pipeline/frame/finish_layers.h"
+#include "pipeline/finish_layers.h"
 #include "pipeline/frame_rate.h"
 #include "pipeline/run_context.h"
-#include "pipeline/style/style_set.h"
+#include "pipeline/style_set.h"
 #include "scumble/picture.h"
 #include "transfer/transfer.h"
 

@@ -11,14 +11,14 @@
 #include "core/image/guides.h"
 #include "core/image/progress.h"
 #include "core/io/picture_file.h"
+#include "pipeline/finish_set.h"
 #include "pipeline/frame/frame_painter.h"
-#include "pipeline/frame/frame_report.h"
-#include "pipeline/frame/prepare_frame.h"
 #include "pipeline/frame/provenance.h"
+#include "pipeline/frame_report.h"
+#include "pipeline/prepare_frame.h"
 #include "pipeline/requests.h"
 #include "pipeline/run_context.h"
-#include "pipeline/style/finish_set.h"
-#include "pipeline/style/style_set.h"
+#include "pipeline/style_set.h"
 #include "transfer/transfer.h"
 
 namespace scumble {

@@ -1,4 +1,4 @@
-#include "pipeline/frame/prepare_frame.h"
+#include "pipeline/prepare_frame.h"
 
 #include <fmt/format.h>
 

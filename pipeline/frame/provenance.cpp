@@ -9,8 +9,8 @@
 #include "core/io/existing_output.h"
 #include "core/io/format_dispatch.h"
 #include "core/style/finish_keys.h"
-#include "pipeline/frame/finish_layers.h"
-#include "pipeline/style/finish_set.h"
+#include "pipeline/finish_layers.h"
+#include "pipeline/finish_set.h"
 
 namespace scumble {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "measure/explain.h"
 #include "pipeline/frame_rate.h"
-#include "pipeline/style/style_set.h"
+#include "pipeline/style_set.h"
 
 namespace scumble {
 

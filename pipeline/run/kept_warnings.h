@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "pipeline/run/run_requests.h"
+#include "pipeline/run_requests.h"
 
 namespace scumble {
 

@@ -8,8 +8,8 @@
 #include "core/io/picture_file.h"
 #include "core/style/style_keyframes.h"
 #include "finish/finish.h"
-#include "pipeline/style/finish_files.h"
-#include "pipeline/style/finish_set.h"
+#include "pipeline/finish_files.h"
+#include "pipeline/finish_set.h"
 
 namespace scumble {
 namespace {

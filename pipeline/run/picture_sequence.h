@@ -8,13 +8,13 @@
 
 #include "core/image/guides.h"
 #include "pipeline/frame/paint_picture.h"
-#include "pipeline/memory/memory_estimate.h"
+#include "pipeline/memory_estimate.h"
 #include "pipeline/requests.h"
-#include "pipeline/run/run_requests.h"
-#include "pipeline/run/sequence.h"
 #include "pipeline/run_context.h"
-#include "pipeline/scene/run_inputs.h"
-#include "pipeline/style/style_set.h"
+#include "pipeline/run_inputs.h"
+#include "pipeline/run_requests.h"
+#include "pipeline/sequence.h"
+#include "pipeline/style_set.h"
 
 namespace scumble {
 

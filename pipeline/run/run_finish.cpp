@@ -1,4 +1,4 @@
-#include "pipeline/run/run_finish.h"
+#include "pipeline/run_finish.h"
 
 #include <fmt/format.h>
 
@@ -18,16 +18,16 @@
 #include "core/style/finish_keys.h"
 #include "finish/finish.h"
 #include "finish/jitter.h"
-#include "pipeline/frame/finish_layers.h"
+#include "pipeline/finish_files.h"
+#include "pipeline/finish_layers.h"
+#include "pipeline/finish_set.h"
 #include "pipeline/frame/frame_painter.h"
 #include "pipeline/frame/paint_picture.h"
 #include "pipeline/frame/provenance.h"
-#include "pipeline/memory/memory_estimate.h"
+#include "pipeline/memory_estimate.h"
 #include "pipeline/run/kept_warnings.h"
-#include "pipeline/scene/run_inputs.h"
-#include "pipeline/style/finish_files.h"
+#include "pipeline/run_inputs.h"
 #include "pipeline/style/finish_order.h"
-#include "pipeline/style/finish_set.h"
 
 namespace scumble {
 namespace {

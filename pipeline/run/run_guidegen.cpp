@@ -8,13 +8,13 @@
 #include "core/io/atomic_file.h"
 #include "core/io/existing_output.h"
 #include "core/io/guide_file.h"
-#include "pipeline/memory/memory_estimate.h"
+#include "pipeline/memory_estimate.h"
 #include "pipeline/run/guide_casters.h"
 #include "pipeline/run/kept_warnings.h"
-#include "pipeline/run/run_requests.h"
-#include "pipeline/scene/run_inputs.h"
+#include "pipeline/run_inputs.h"
+#include "pipeline/run_requests.h"
 #include "pipeline/scene/scene_sequence.h"
-#include "pipeline/style/style_set.h"
+#include "pipeline/style_set.h"
 
 namespace scumble {
 namespace {

@@ -9,10 +9,10 @@
 #include "core/io/format_dispatch.h"
 #include "core/io/guide_file.h"
 #include "core/io/picture_file.h"
-#include "pipeline/memory/memory_estimate.h"
+#include "pipeline/memory_estimate.h"
 #include "pipeline/run/kept_warnings.h"
 #include "pipeline/run/picture_sequence.h"
-#include "pipeline/run/run_requests.h"
+#include "pipeline/run_requests.h"
 #include "pipeline/scene/scene_sequence.h"
 
 namespace scumble {

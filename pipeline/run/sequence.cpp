@@ -1,4 +1,4 @@
-#include "pipeline/run/sequence.h"
+#include "pipeline/sequence.h"
 
 #include <fmt/format.h>
 

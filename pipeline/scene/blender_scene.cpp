@@ -1,4 +1,4 @@
-#include "pipeline/scene/blender_scene.h"
+#include "pipeline/blender_scene.h"
 
 #include <unistd.h>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "guidegen/scene_textures.h"
-#include "pipeline/scene/scene_guides.h"
+#include "pipeline/scene_guides.h"
 
 namespace scumble {
 

@@ -1,4 +1,4 @@
-#include "pipeline/scene/run_inputs.h"
+#include "pipeline/run_inputs.h"
 
 #include <sys/stat.h>
 

@@ -1,4 +1,4 @@
-#include "pipeline/scene/scene_guides.h"
+#include "pipeline/scene_guides.h"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 #include "core/io/guide_file.h"
 #include "core/io/guide_precision.h"
 #include "pipeline/frame_range.h"
-#include "pipeline/memory/memory_estimate.h"
+#include "pipeline/memory_estimate.h"
 #include "pipeline/scene/needed_textures.h"
 
 namespace scumble {

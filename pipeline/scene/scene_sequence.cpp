@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "core/image/stopwatch.h"
-#include "pipeline/memory/memory_estimate.h"
+#include "pipeline/memory_estimate.h"
 #include "pipeline/scene/needed_textures.h"
 
 namespace scumble {

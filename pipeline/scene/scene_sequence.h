@@ -12,10 +12,10 @@
 
 #include "guidegen/framing.h"
 #include "guidegen/load_scene.h"
+#include "pipeline/blender_scene.h"
 #include "pipeline/requests.h"
-#include "pipeline/scene/blender_scene.h"
-#include "pipeline/scene/scene_guides.h"
-#include "pipeline/style/style_set.h"
+#include "pipeline/scene_guides.h"
+#include "pipeline/style_set.h"
 
 namespace scumble {
 

@@ -1,4 +1,4 @@
-#include "pipeline/style/finish_files.h"
+#include "pipeline/finish_files.h"
 
 #include <fmt/format.h>
 

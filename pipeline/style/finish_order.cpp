@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/style/finish_keys.h"
-#include "pipeline/style/finish_set.h"
+#include "pipeline/finish_set.h"
 
 namespace scumble {
 namespace {

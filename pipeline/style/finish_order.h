@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/image/finish_pass.h"
-#include "pipeline/style/style_set.h"
+#include "pipeline/style_set.h"
 
 namespace scumble {
 

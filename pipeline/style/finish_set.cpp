@@ -1,4 +1,4 @@
-#include "pipeline/style/finish_set.h"
+#include "pipeline/finish_set.h"
 
 #include <fmt/format.h>
 

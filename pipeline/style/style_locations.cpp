@@ -1,4 +1,4 @@
-#include "pipeline/style/style_locations.h"
+#include "pipeline/style_locations.h"
 
 #include <system_error>
 #include <vector>

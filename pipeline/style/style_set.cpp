@@ -1,4 +1,4 @@
-#include "pipeline/style/style_set.h"
+#include "pipeline/style_set.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -11,10 +11,10 @@
 #include "core/style/style_file.h"
 #include "core/style/style_keyframes.h"
 #include "core/style/style_keys.h"
+#include "pipeline/finish_files.h"
+#include "pipeline/finish_set.h"
 #include "pipeline/style/assignments.h"
-#include "pipeline/style/finish_files.h"
-#include "pipeline/style/finish_set.h"
-#include "pipeline/style/style_locations.h"
+#include "pipeline/style_locations.h"
 
 namespace scumble {
 namespace {

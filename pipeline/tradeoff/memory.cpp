@@ -1,6 +1,6 @@
 #include "pipeline/tradeoff/memory.h"
 
-#include "pipeline/memory/memory_estimate.h"
+#include "pipeline/memory_estimate.h"
 #include "transfer/prepared_exemplar.h"
 
 namespace scumble {

@@ -6,7 +6,7 @@
 
 #include "core/image/layers.h"
 #include "core/image/style.h"
-#include "pipeline/memory/memory_limit.h"
+#include "pipeline/memory_limit.h"
 #include "pipeline/run_context.h"
 #include "pipeline/tradeoff/stage.h"
 

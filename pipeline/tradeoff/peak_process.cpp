@@ -5,9 +5,9 @@
 #include <cstdio>
 #include <string_view>
 
+#include "pipeline/finish_set.h"
 #include "pipeline/scene/blender_process.h"
-#include "pipeline/scene/scene_guides.h"
-#include "pipeline/style/finish_set.h"
+#include "pipeline/scene_guides.h"
 
 namespace scumble {
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "pipeline/tradeoff/measure.h"
+#include "pipeline/tradeoff.h"
 
 namespace scumble {
 

@@ -6,8 +6,8 @@
 
 #include "pipeline/frame/frame_painter.h"
 #include "pipeline/scene/scene_sequence.h"
+#include "pipeline/tradeoff.h"
 #include "pipeline/tradeoff/grid.h"
-#include "pipeline/tradeoff/measure.h"
 #include "pipeline/variant/variant_guides.h"
 #include "transfer/transfer.h"
 

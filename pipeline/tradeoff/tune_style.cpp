@@ -1,4 +1,4 @@
-#include "pipeline/tradeoff/tune_style.h"
+#include "pipeline/tune_style.h"
 
 #include <fmt/format.h>
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/image/status.h"
-#include "pipeline/style/style_set.h"
+#include "pipeline/style_set.h"
 #include "pipeline/variant/variant.h"
 
 namespace scumble {

@@ -3,9 +3,9 @@
 #include "core/image/stopwatch.h"
 #include "core/io/picture_file.h"
 #include "core/style/style_keyframes.h"
+#include "pipeline/finish_set.h"
 #include "pipeline/frame/frame_painter.h"
 #include "pipeline/frame/paint_picture.h"
-#include "pipeline/style/finish_set.h"
 #include "pipeline/variant/quality_ladder.h"
 #include "transfer/upsample_guides.h"
 

@@ -10,7 +10,7 @@
 #include "core/image/status.h"
 #include "pipeline/requests.h"
 #include "pipeline/run_context.h"
-#include "pipeline/style/style_set.h"
+#include "pipeline/style_set.h"
 #include "pipeline/variant/variant.h"
 #include "transfer/transfer.h"
 

@@ -9,9 +9,9 @@
 #include "core/io/picture_file.h"
 #include "core/style/kit/print_page.h"
 #include "pipeline/frame_range.h"
-#include "pipeline/run/sequence.h"
+#include "pipeline/sequence.h"
 #include "pipeline/style/assignments.h"
-#include "pipeline/style/style_set.h"
+#include "pipeline/style_set.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace scumble::fuzz {

@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-#include "pipeline/tradeoff/measure.h"
+#include "pipeline/tradeoff.h"
 #include "tests/support/cli_harness.h"
 #include "tests/support/scoped_variable.h"
 

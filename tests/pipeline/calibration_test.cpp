@@ -1,5 +1,5 @@
 // The variant chosen by the times of a fake clock: nothing here depends on the machine.
-#include "pipeline/quality/calibration.h"
+#include "pipeline/variant/calibration.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "pipeline/quality/budget_choice.h"
+#include "pipeline/budget_choice.h"
 #include "tests/support/sphere_guides.h"
 
 namespace scumble {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/guide_layers.h"
+#include "pipeline/api/guide_layers.h"
 #include "scumble/stylizer.h"
 #include "tests/support/finish_chains.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/scene/scene_guides.h"
+#include "pipeline/scene_guides.h"
 #include "tests/support/light_path_scenes.h"
 
 namespace scumble::testing {

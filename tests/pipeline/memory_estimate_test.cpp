@@ -1,5 +1,5 @@
 // A run's estimate of its peak memory, against the system's count; and refusals before anything is allocated.
-#include "pipeline/memory/memory_estimate.h"
+#include "pipeline/memory_estimate.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The memory limit: its value, its source, and refusals.
-#include "pipeline/memory/memory_limit.h"
+#include "pipeline/memory_limit.h"
 
 #include <gtest/gtest.h>
 

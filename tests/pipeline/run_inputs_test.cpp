@@ -1,5 +1,5 @@
 // Outputs are checked before the work. Those of a range that is resumed may be kept: they need not be writable.
-#include "pipeline/scene/run_inputs.h"
+#include "pipeline/run_inputs.h"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/run/sequence.h"
+#include "pipeline/sequence.h"
 #include "tests/support/temporary_folder.h"
 
 namespace scumble {

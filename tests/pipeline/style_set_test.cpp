@@ -1,5 +1,5 @@
 // What the open styles read, and how to do without.
-#include "pipeline/style/style_set.h"
+#include "pipeline/style_set.h"
 
 #include <gtest/gtest.h>
 

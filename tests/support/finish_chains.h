@@ -17,8 +17,8 @@
 #include "guidegen/load_scene.h"
 #include "measure/flicker.h"
 #include "measure/flip.h"
+#include "pipeline/finish_files.h"
 #include "pipeline/run_context.h"
-#include "pipeline/style/finish_files.h"
 #include "transfer/transfer.h"
 
 namespace scumble {

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "apps/cli/app/command.h"
-#include "pipeline/frame/frame_report.h"
-#include "pipeline/run/run_requests.h"
-#include "pipeline/run/sequence.h"
+#include "pipeline/frame_report.h"
+#include "pipeline/run_requests.h"
+#include "pipeline/sequence.h"
 
 namespace scumble {
 

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "core/image/guides.h"
-#include "pipeline/memory/memory_limit.h"
+#include "pipeline/memory_limit.h"
 #include "pipeline/stage_clock.h"
 
 namespace scumble {

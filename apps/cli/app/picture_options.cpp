@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "measure/explain.h"
-#include "pipeline/frame/finish_layers.h"
+#include "pipeline/finish_layers.h"
 #include "pipeline/frame_range.h"
 #include "transfer/upsample_guides.h"
 

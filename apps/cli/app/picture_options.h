@@ -5,7 +5,7 @@
 #include <string>
 
 #include "apps/cli/app/options.h"
-#include "pipeline/quality/budget_choice.h"
+#include "pipeline/budget_choice.h"
 #include "pipeline/requests.h"
 
 namespace scumble {

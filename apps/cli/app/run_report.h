@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "guidegen/guidegen.h"
-#include "pipeline/memory/memory_limit.h"
-#include "pipeline/scene/scene_guides.h"
+#include "pipeline/memory_limit.h"
+#include "pipeline/scene_guides.h"
 #include "pipeline/stage_clock.h"
 
 namespace scumble {

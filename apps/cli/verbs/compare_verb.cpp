@@ -13,7 +13,7 @@
 #include "core/io/picture_file.h"
 #include "measure/compare.h"
 #include "measure/heat_map.h"
-#include "pipeline/scene/run_inputs.h"
+#include "pipeline/run_inputs.h"
 
 namespace scumble {
 namespace {

@@ -18,9 +18,9 @@
 #include "measure/crosscheck.h"
 #include "measure/crosscheck_baseline.h"
 #include "measure/crosscheck_page.h"
-#include "pipeline/crosscheck/crosscheck_scene.h"
-#include "pipeline/scene/run_inputs.h"
-#include "pipeline/scene/scene_guides.h"
+#include "pipeline/crosscheck_scene.h"
+#include "pipeline/run_inputs.h"
+#include "pipeline/scene_guides.h"
 #include "pipeline/shell_quote.h"
 
 namespace scumble {

@@ -11,9 +11,9 @@
 #include "apps/cli/app/options.h"
 #include "apps/cli/app/picture_options.h"
 #include "core/style/finish_keys.h"
+#include "pipeline/finish_set.h"
 #include "pipeline/frame_rate.h"
-#include "pipeline/run/run_finish.h"
-#include "pipeline/style/finish_set.h"
+#include "pipeline/run_finish.h"
 
 namespace scumble {
 namespace {

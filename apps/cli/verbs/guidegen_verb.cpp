@@ -7,7 +7,7 @@
 #include "apps/cli/app/options.h"
 #include "apps/cli/app/picture_options.h"
 #include "core/io/guide_file.h"
-#include "pipeline/run/run_requests.h"
+#include "pipeline/run_requests.h"
 
 namespace scumble {
 namespace {

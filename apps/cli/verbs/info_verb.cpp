@@ -19,10 +19,10 @@
 #include "core/style/style_file.h"
 #include "guidegen/load_scene.h"
 #include "guidegen/scene_textures.h"
-#include "pipeline/frame/prepare_frame.h"
-#include "pipeline/scene/scene_guides.h"
-#include "pipeline/style/style_locations.h"
-#include "pipeline/style/style_set.h"
+#include "pipeline/prepare_frame.h"
+#include "pipeline/scene_guides.h"
+#include "pipeline/style_locations.h"
+#include "pipeline/style_set.h"
 
 namespace scumble {
 namespace {

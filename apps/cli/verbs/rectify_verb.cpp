@@ -16,7 +16,7 @@
 #include "core/style/fiducials.h"
 #include "core/style/rectify.h"
 #include "core/style/sphere_kit.h"
-#include "pipeline/scene/run_inputs.h"
+#include "pipeline/run_inputs.h"
 
 namespace scumble {
 namespace {

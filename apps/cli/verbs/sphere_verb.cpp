@@ -18,7 +18,7 @@
 #include "core/style/fiducials.h"
 #include "core/style/sphere_kit.h"
 #include "guidegen/guidegen.h"
-#include "pipeline/memory/memory_estimate.h"
+#include "pipeline/memory_estimate.h"
 
 namespace scumble {
 namespace {

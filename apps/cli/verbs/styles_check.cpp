@@ -11,8 +11,8 @@
 #include "apps/cli/app/options.h"
 #include "apps/cli/verbs/paint_report.h"
 #include "measure/paint_faults.h"
-#include "pipeline/frame/check_style.h"
-#include "pipeline/frame/prepare_frame.h"
+#include "pipeline/check_style.h"
+#include "pipeline/prepare_frame.h"
 
 namespace scumble {
 namespace {

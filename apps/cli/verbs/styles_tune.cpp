@@ -14,8 +14,8 @@
 #include "core/style/style_edit.h"
 #include "core/style/style_keys.h"
 #include "measure/html_page.h"
-#include "pipeline/style/style_locations.h"
-#include "pipeline/tradeoff/tune_style.h"
+#include "pipeline/style_locations.h"
+#include "pipeline/tune_style.h"
 
 namespace scumble {
 namespace {

@@ -20,8 +20,8 @@
 #include "apps/studio/session/style_keys_json.h"
 #include "core/style/style_file.h"
 #include "core/style/style_keys.h"
-#include "pipeline/style/style_locations.h"
-#include "pipeline/tradeoff/tune_style.h"
+#include "pipeline/style_locations.h"
+#include "pipeline/tune_style.h"
 
 namespace scumble {
 namespace {

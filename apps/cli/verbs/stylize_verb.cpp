@@ -7,8 +7,8 @@
 #include "apps/cli/app/frame_report.h"
 #include "apps/cli/app/options.h"
 #include "apps/cli/app/picture_options.h"
-#include "pipeline/run/run_requests.h"
-#include "pipeline/scene/scene_guides.h"
+#include "pipeline/run_requests.h"
+#include "pipeline/scene_guides.h"
 
 namespace scumble {
 namespace {

@@ -23,11 +23,11 @@
 #include "core/io/atomic_file.h"
 #include "core/io/pending_temporaries.h"
 #include "measure/tradeoff_report.h"
-#include "pipeline/memory/memory_limit.h"
-#include "pipeline/run/sequence.h"
-#include "pipeline/scene/run_inputs.h"
-#include "pipeline/style/style_set.h"
-#include "pipeline/tradeoff/measure.h"
+#include "pipeline/memory_limit.h"
+#include "pipeline/run_inputs.h"
+#include "pipeline/sequence.h"
+#include "pipeline/style_set.h"
+#include "pipeline/tradeoff.h"
 
 namespace scumble {
 namespace {

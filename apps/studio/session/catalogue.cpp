@@ -8,9 +8,9 @@
 
 #include "core/style/finish_keys.h"
 #include "core/style/style_file.h"
-#include "pipeline/scene/scene_guides.h"
-#include "pipeline/style/finish_set.h"
-#include "pipeline/style/style_locations.h"
+#include "pipeline/finish_set.h"
+#include "pipeline/scene_guides.h"
+#include "pipeline/style_locations.h"
 
 namespace scumble {
 namespace {

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "apps/studio/session/state.h"
-#include "pipeline/scene/scene_guides.h"
+#include "pipeline/scene_guides.h"
 #include "pipeline/shell_quote.h"
 
 namespace scumble {

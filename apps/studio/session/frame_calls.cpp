@@ -12,9 +12,9 @@
 #include "core/image/stopwatch.h"
 #include "core/io/atomic_file.h"
 #include "core/io/picture_file.h"
+#include "pipeline/blender_scene.h"
 #include "pipeline/file_stamp.h"
-#include "pipeline/scene/blender_scene.h"
-#include "pipeline/scene/scene_guides.h"
+#include "pipeline/scene_guides.h"
 
 namespace scumble {
 namespace {

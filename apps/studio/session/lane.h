@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/quality/budget_choice.h"
+#include "pipeline/budget_choice.h"
 #include "pipeline/requests.h"
 #include "pipeline/workspace.h"
 

@@ -14,9 +14,9 @@
 #include "core/style/finish_chain.h"
 #include "core/style/style_file.h"
 #include "core/style/style_keyframes.h"
+#include "pipeline/blender_scene.h"
 #include "pipeline/file_stamp.h"
-#include "pipeline/scene/blender_scene.h"
-#include "pipeline/style/style_locations.h"
+#include "pipeline/style_locations.h"
 
 namespace scumble {
 namespace {

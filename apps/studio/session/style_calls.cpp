@@ -8,7 +8,7 @@
 #include "core/io/atomic_file.h"
 #include "core/io/picture_file.h"
 #include "core/style/finish_chain.h"
-#include "pipeline/frame/check_style.h"
+#include "pipeline/check_style.h"
 
 namespace scumble {
 namespace {

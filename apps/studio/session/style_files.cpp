@@ -5,7 +5,7 @@
 #include "core/io/atomic_file.h"
 #include "core/style/style_edit.h"
 #include "core/style/style_file.h"
-#include "pipeline/style/finish_files.h"
+#include "pipeline/finish_files.h"
 
 namespace scumble {
 namespace {

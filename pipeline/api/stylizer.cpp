@@ -9,7 +9,7 @@
 #include <string_view>
 #include <utility>
 
-#include "pipeline/guide_layers.h"
+#include "pipeline/api/guide_layers.h"
 #include "pipeline/workspace.h"
 
 namespace scumble {

@@ -11,11 +11,11 @@
 #include "core/image/style.h"
 #include "guidegen/guidegen.h"
 #include "guidegen/load_scene.h"
-#include "pipeline/memory/memory_limit.h"
+#include "pipeline/blender_scene.h"
+#include "pipeline/memory_limit.h"
 #include "pipeline/requests.h"
 #include "pipeline/run_context.h"
-#include "pipeline/scene/blender_scene.h"
-#include "pipeline/style/style_set.h"
+#include "pipeline/style_set.h"
 
 namespace scumble {
 

@@ -15,7 +15,7 @@
 #include "core/style/finish_preset.h"
 #include "finish/finish.h"
 #include "pipeline/run_context.h"
-#include "pipeline/style/style_set.h"
+#include "pipeline/style_set.h"
 #include "transfer/style_map.h"
 
 namespace scumble {

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "core/image/layers.h"
-#include "pipeline/memory/memory_limit.h"
-#include "pipeline/scene/scene_guides.h"
+#include "pipeline/memory_limit.h"
+#include "pipeline/scene_guides.h"
 
 namespace scumble {
 

@@ -1,4 +1,4 @@
-#include "pipeline/crosscheck/crosscheck_scene.h"
+#include "pipeline/crosscheck_scene.h"
 
 #include <fmt/format.h>
 
@@ -10,8 +10,8 @@
 #include "guidegen/cycles_version.h"
 #include "guidegen/path_layers.h"
 #include "guidegen/pure_materials.h"
-#include "pipeline/crosscheck/cycles_reference.h"
-#include "pipeline/scene/scene_guides.h"
+#include "pipeline/run/cycles_reference.h"
+#include "pipeline/scene_guides.h"
 
 namespace scumble {
 namespace {

@@ -12,7 +12,7 @@
 #include "core/style/finish_chain.h"
 #include "guidegen/scene.h"
 #include "guidegen/scene_textures.h"
-#include "pipeline/memory/memory_limit.h"
+#include "pipeline/memory_limit.h"
 #include "pipeline/requests.h"
 
 namespace scumble {

@@ -1,4 +1,4 @@
-#include "pipeline/quality/budget_choice.h"
+#include "pipeline/budget_choice.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -15,14 +15,14 @@
 #include "core/image/hash.h"
 #include "core/image/stopwatch.h"
 #include "core/style/style_keyframes.h"
-#include "pipeline/file_cache.h"
 #include "pipeline/frame/paint_picture.h"
-#include "pipeline/machine.h"
-#include "pipeline/memory/memory_estimate.h"
-#include "pipeline/quality/calibration.h"
+#include "pipeline/machine/file_cache.h"
+#include "pipeline/machine/machine.h"
+#include "pipeline/memory_estimate.h"
 #include "pipeline/scene/needed_textures.h"
 #include "pipeline/scene/scene_sequence.h"
 #include "pipeline/stage_clock.h"
+#include "pipeline/variant/calibration.h"
 #include "pipeline/variant/quality_ladder.h"
 #include "pipeline/variant/trial_painter.h"
 #include "pipeline/variant/variant_guides.h"

@@ -10,11 +10,11 @@
 
 #include "core/image/status.h"
 #include "core/io/guide_file.h"
-#include "pipeline/frame/frame_report.h"
-#include "pipeline/quality/budget_choice.h"
+#include "pipeline/budget_choice.h"
+#include "pipeline/frame_report.h"
 #include "pipeline/requests.h"
-#include "pipeline/run/sequence.h"
 #include "pipeline/run_context.h"
+#include "pipeline/sequence.h"
 
 namespace scumble {
 

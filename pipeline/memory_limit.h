@@ -13,7 +13,7 @@
 namespace scumble {
 
 // A run's memory, added up in the order in which it is taken. docs/memory.md explains the parts,
-// pipeline/memory/memory_estimate.h its terms.
+// pipeline/memory_estimate.h its terms.
 class MemoryNeed {
  public:
   struct Part {

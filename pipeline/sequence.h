@@ -10,9 +10,9 @@
 
 #include "core/image/progress.h"
 #include "core/image/status.h"
-#include "pipeline/frame/frame_report.h"
 #include "pipeline/frame/paint_picture.h"
 #include "pipeline/frame_range.h"
+#include "pipeline/frame_report.h"
 #include "pipeline/requests.h"
 #include "pipeline/run_context.h"
 

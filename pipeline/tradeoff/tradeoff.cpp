@@ -1,4 +1,4 @@
-#include "pipeline/tradeoff/measure.h"
+#include "pipeline/tradeoff.h"
 
 #include <fmt/format.h>
 #include <malloc.h>
@@ -13,10 +13,10 @@
 
 #include "core/io/picture_file.h"
 #include "core/style/style_keyframes.h"
-#include "pipeline/machine.h"
-#include "pipeline/memory/memory_estimate.h"
-#include "pipeline/memory/memory_limit.h"
-#include "pipeline/scene/blender_scene.h"
+#include "pipeline/blender_scene.h"
+#include "pipeline/machine/machine.h"
+#include "pipeline/memory_estimate.h"
+#include "pipeline/memory_limit.h"
 #include "pipeline/shell_quote.h"
 #include "pipeline/tradeoff/memory.h"
 #include "pipeline/tradeoff/peak_process.h"

@@ -9,11 +9,11 @@
 #include "core/image/guides.h"
 #include "core/image/status.h"
 #include "core/image/style.h"
+#include "pipeline/finish_set.h"
 #include "pipeline/frame/provenance.h"
 #include "pipeline/requests.h"
 #include "pipeline/run_context.h"
-#include "pipeline/style/finish_set.h"
-#include "pipeline/style/style_set.h"
+#include "pipeline/style_set.h"
 #include "scumble/picture.h"
 #include "transfer/transfer.h"
 

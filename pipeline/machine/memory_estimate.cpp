@@ -1,4 +1,4 @@
-#include "pipeline/memory/memory_estimate.h"
+#include "pipeline/memory_estimate.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "pipeline/quality/calibration.h"
+#include "pipeline/variant/calibration.h"
 
 #include <fmt/format.h>
 

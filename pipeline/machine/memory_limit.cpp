@@ -1,4 +1,4 @@
-#include "pipeline/memory/memory_limit.h"
+#include "pipeline/memory_limit.h"
 
 #include <fmt/format.h>
 #include <sys/resource.h>

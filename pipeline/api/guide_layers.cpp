@@ -1,4 +1,4 @@
-#include "pipeline/guide_layers.h"
+#include "pipeline/api/guide_layers.h"
 
 #include <fmt/format.h>
 

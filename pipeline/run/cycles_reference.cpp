@@ -1,4 +1,4 @@
-#include "pipeline/crosscheck/cycles_reference.h"
+#include "pipeline/run/cycles_reference.h"
 
 #include <fmt/format.h>
 
@@ -9,8 +9,8 @@
 #include <thread>
 
 #include "core/io/guide_file.h"
+#include "pipeline/blender_scene.h"
 #include "pipeline/scene/blender_process.h"
-#include "pipeline/scene/blender_scene.h"
 
 namespace scumble {
 namespace {

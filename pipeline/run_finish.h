@@ -7,9 +7,9 @@
 
 #include "core/image/status.h"
 #include "pipeline/requests.h"
-#include "pipeline/run/run_requests.h"
-#include "pipeline/run/sequence.h"
 #include "pipeline/run_context.h"
+#include "pipeline/run_requests.h"
+#include "pipeline/sequence.h"
 
 namespace scumble {
 

@@ -10,7 +10,7 @@
 
 #include "core/image/status.h"
 #include "guidegen/file_listener.h"
-#include "pipeline/style/style_set.h"
+#include "pipeline/style_set.h"
 
 namespace scumble {
 

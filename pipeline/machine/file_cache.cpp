@@ -1,4 +1,4 @@
-#include "pipeline/file_cache.h"
+#include "pipeline/machine/file_cache.h"
 
 #include <algorithm>
 #include <cstdlib>
