@@ -17,7 +17,7 @@
 #include "apps/cli/app/options.h"
 #include "apps/cli/verbs/styles_check.h"
 #include "apps/cli/verbs/styles_tune.h"
-#include "apps/studio/session/style_keys_json.h"
+#include "apps/studio/style_keys_json.h"
 #include "core/style/style_file.h"
 #include "core/style/style_keys.h"
 #include "pipeline/style_locations.h"

@@ -4,7 +4,7 @@
 #include <charconv>
 
 #include "apps/studio/session/session_state.h"
-#include "apps/studio/session/style_keys_json.h"
+#include "apps/studio/style_keys_json.h"
 #include "core/image/hash.h"
 
 namespace scumble {

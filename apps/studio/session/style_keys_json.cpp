@@ -1,4 +1,4 @@
-#include "apps/studio/session/style_keys_json.h"
+#include "apps/studio/style_keys_json.h"
 
 #include <cmath>
 
