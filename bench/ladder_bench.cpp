@@ -104,7 +104,7 @@ void Measure(const std::string& scene_name, const std::string& style_name, const
   }
   std::vector<PreparedStyle> prepared;
   for (const Candidate& candidate : candidates) {
-    Style one = OrStop(LoadStyle(folder, candidate.settings));
+    Style one = OrStop(LoadStyle(folder, OrStop(ParseStyleOverrides(candidate.settings))));
     one.paper = {};
     prepared.push_back(OrStop(Prepare(one, arguments.height / candidate.upscale)));
   }

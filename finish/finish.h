@@ -31,6 +31,8 @@ struct FinishMeasures {
   double near = 0.0, middle = 0.0, far = 0.0;  // the 2nd, 50th and 98th percentile of depth, metres
   double bright = 1.0;                         // the 90th percentile of luminance; 1 without light
   double full = 1.0;                           // that of the luminance of lpe.full
+
+  bool operator==(const FinishMeasures&) const = default;
 };
 
 // Whether any of the passes looks at them.

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/image/color.h"
+#include "core/image/exact_math.h"
 #include "finish/finish.h"
 
 namespace scumble {
@@ -47,11 +48,7 @@ bool Looks(const FillPass&) { return false; }
 
 }  // namespace
 
-double AsPrinted(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return std::strtod(text, nullptr);
-}
+double AsPrinted(double value) { return RoundToDigits(value, 6); }
 
 bool LooksAtMeasures(std::span<const FinishPass> passes) {
   return std::any_of(passes.begin(), passes.end(), [](const FinishPass& pass) {

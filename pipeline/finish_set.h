@@ -31,7 +31,7 @@ Expected<std::vector<FinishPreset>> FinishPresets(const RunContext& context);
 Expected<FinishChain> OpenFinish(const std::vector<std::string>& names, const RunContext& context);
 
 // Applies "finish.NAME.KEY=VALUE" to the passes; an error where none has that name.
-Status SetFinish(const std::vector<std::string>& sets, FinishChain& chain);
+Status SetFinish(const std::vector<StyleOverride>& sets, FinishChain& chain);
 
 // What was given, or is measured on these guides where a pass looks at it.
 FinishMeasures MeasuresOf(std::span<const FinishPass> passes, const std::optional<FinishMeasures>& given,

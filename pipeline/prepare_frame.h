@@ -27,9 +27,9 @@ struct PictureState {
   PaletteColors palette_colors;
   TransferScratch scratch;
   ExemplarHashes hashes;
-  std::string over_file;        // that `over` is from
-  std::optional<Picture> over;  // one picture underneath all frames is read once
-  int width = 0, height = 0;    // of the first frame's guides
+  std::string over_file, over_view_layer;  // that `over` is from
+  std::optional<Picture> over;             // one picture underneath all frames is read once
+  int width = 0, height = 0;               // of the first frame's guides
   FinishRemarks finish_remarks;
   bool warned = false;  // of options that change nothing
   bool warned_of_size = false;

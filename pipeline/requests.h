@@ -12,6 +12,7 @@
 #include "core/image/layers.h"
 #include "core/image/status.h"
 #include "core/style/style_file.h"
+#include "core/style/style_override.h"
 #include "finish/finish.h"
 #include "guidegen/file_listener.h"
 #include "guidegen/framing.h"
@@ -88,7 +89,7 @@ struct SceneRequest {
 // A style and what a run changes of it.
 struct StyleRequest {
   std::string style;                       // a folder, a style.toml, a picture of a sphere, or a bundled style's name
-  std::vector<std::string> sets;           // "[NAME:]KEY=VALUE", the later wins
+  std::vector<StyleOverride> sets;         // the later wins
   std::vector<std::string> assigned;       // "NAME=STYLE", or "@FILE" of such lines
   bool scene_styles = true;                // follow the property scumble_style of objects and materials
   std::vector<std::string> finishes = {};  // effects and presets after the styles' own; "none" drops those

@@ -21,7 +21,7 @@ struct FinishRequest {
   std::string camera;                      // likewise
   std::vector<std::string> finishes;       // as StyleRequest has it; at least one
   std::optional<FinishMeasures> measures;  // instead of those of the first picture
-  std::vector<std::string> sets;           // "finish.NAME.KEY=VALUE"
+  std::vector<StyleOverride> sets;         // of finish and dials alone
   std::string output;
   std::string show_finish;  // as PictureRequest has it
   std::string layers_out;   // likewise

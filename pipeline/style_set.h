@@ -12,6 +12,7 @@
 #include "guidegen/scene.h"
 #include "pipeline/requests.h"
 #include "pipeline/run_context.h"
+#include "pipeline/style/assignments.h"
 #include "transfer/style_map.h"
 
 namespace scumble {
@@ -20,7 +21,7 @@ struct SceneStyleRequests;
 
 struct StyleSet {
   struct Assigned {
-    std::string pattern;  // name of an object or material; * stands for any text
+    NamePattern pattern;  // of an object or material
     std::uint16_t style = 0;
     std::string where;       // the option, or the file and its line, for messages
     bool named = false;      // some frame so far has such an object or material
@@ -28,10 +29,8 @@ struct StyleSet {
     std::size_t pixels = 0;  // that it has painted in all frames so far
   };
   // One --set. "finish." keys without a style's name are those of all styles and of `finish`.
-  struct Override {
-    std::string style;  // name as it was given; empty: for all
-    std::string path;   // of that style
-    std::string text;   // KEY=VALUE
+  struct Override : StyleOverride {
+    std::string path;  // of its style
   };
   std::vector<Style> styles;       // the default first, never empty
   std::vector<std::string> given;  // by style: its name as the user or the scene gives it
@@ -62,7 +61,7 @@ SceneStyleRequests SceneStyleRequestsOf(const GuideSet& guides);
 
 // The names of the styles that StyleLayers opens for these requests, in its order, where `patterns` are those of
 // --assign.
-std::vector<std::string> StylesAskedFor(const SceneStyleRequests& requests, std::span<const std::string> patterns);
+std::vector<std::string> StylesAskedFor(const SceneStyleRequests& requests, std::span<const NamePattern> patterns);
 
 // Opens the styles that are asked for, unless --assign decides or StyleRequest::scene_styles is off. Returns the layers
 // that the user's styles and these read, in any frame. Paths are relative to the folder of `file`, the scene or guide

@@ -20,10 +20,10 @@ struct TuneRequest {
 };
 
 struct TunedStyle {
-  std::vector<std::string> settings;  // KEY=VALUE, as --set takes them; empty: the style as it is
-  double texture = 1.0;               // guided texture distance, of the style's own: geometric mean over the scenes
-  double time = 1.0;                  // of the transfer and its finishing effects, likewise
-  std::vector<Picture> pictures;      // by scene, as stylize paints them
+  std::vector<StyleOverride> settings;  // empty: the style as it is
+  double texture = 1.0;                 // guided texture distance, of the style's own: geometric mean over the scenes
+  double time = 1.0;                    // of the transfer and its finishing effects, likewise
+  std::vector<Picture> pictures;        // by scene, as stylize paints them
 };
 
 struct TuneReport {

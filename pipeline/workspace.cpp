@@ -10,6 +10,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -98,9 +99,14 @@ FileStamps StampsAsRead(const StyleSet& styles, const FileStamps& before, std::c
   return stamps;
 }
 
-std::string TextOf(const StyleRequest& request) {
-  return fmt::format("{}\n{}\n{}\n{}\n{}", request.style, fmt::join(request.sets, "\n"),
-                     fmt::join(request.assigned, "\n"), request.scene_styles, fmt::join(request.finishes, "\n"));
+// Whether two requests open the same styles. All fields are named, so that a new one does not compile unnoticed;
+// `reading` is the workspace's own.
+bool AreSame(const StyleRequest& a, const StyleRequest& b) {
+  const auto key = [](const StyleRequest& request) {
+    const auto& [style, sets, assigned, scene_styles, finishes, finish_measures, reading] = request;
+    return std::tie(style, sets, assigned, scene_styles, finishes, finish_measures);
+  };
+  return key(a) == key(b);
 }
 
 Status CheckArguments(const SceneRequest& scene, std::optional<int> frame, bool motion = false) {
@@ -168,7 +174,7 @@ struct Workspace::State {
 
   // The styles, and what was prepared of them.
   KeptPictures pictures;
-  std::string style_text;
+  std::string choice_text;  // that the step of the ladder was chosen by
   FileStamps style_stamps;
   std::optional<StyleSet> styles, replaced;  // `replaced`: those that picture.prepared is of, where it is not `styles`
   PictureState picture;
@@ -186,7 +192,7 @@ struct Workspace::State {
   Choice choice;
 
   using Choose = std::function<Expected<Choice>(StyleSet&)>;
-  Status LoadStyles(StyleRequest request, const std::string& choice_text, const Choose& choose);
+  Status LoadStyles(StyleRequest request, const std::string& choose_by, const Choose& choose);
   Expected<Choice> ChooseStep(const BudgetRequest& budget, SceneRequest scene, PictureRequest asked, StyleSet& set);
   void KeepPrepared();
   void CloseStylesOfScene();
@@ -200,9 +206,10 @@ struct Workspace::State {
   Expected<SceneSphere> SphereSeen(std::optional<int> frame);
 };
 
-Status Workspace::State::LoadStyles(StyleRequest request, const std::string& choice_text, const Choose& choose) {
-  const std::string text = TextOf(request) + "\n" + choice_text;
-  if (styles && text == style_text && style_stamps == StyleStamps(*styles)) return Ok();
+Status Workspace::State::LoadStyles(StyleRequest request, const std::string& choose_by, const Choose& choose) {
+  if (styles && AreSame(request, styles->options) && choose_by == choice_text && style_stamps == StyleStamps(*styles)) {
+    return Ok();
+  }
   const StyleRoom room = RoomForStyles(context);
   request.reading = {room, [this, room](const std::filesystem::path& file) -> Expected<Picture> {
                        const std::size_t kept = pictures.bytes();
@@ -217,7 +224,7 @@ Status Workspace::State::LoadStyles(StyleRequest request, const std::string& cho
   ++counters.styles_loaded;
   SCUMBLE_ASSIGN(choice, choose(loaded));
   if (!replaced) replaced = std::move(styles);
-  styles = std::move(loaded), style_text = text, style_stamps = StampsAsRead(*styles, before, begun);
+  styles = std::move(loaded), choice_text = choose_by, style_stamps = StampsAsRead(*styles, before, begun);
   picture.exposure.reset(), picture.finish_measures.reset(), picture.hashes.clear(), picture.warned = false;
   return Ok();
 }

@@ -4,7 +4,8 @@
 //   changed                          made again
 //   a key of the style, the painting style; exemplars where the key concerns them; the picture. No ray is cast, unless
 //                                    the style now reads a layer that the guides lack. Pictures stay decoded.
-//   size, layers, anti-aliasing …    guides and picture. The acceleration structure stays.
+//   size, layers, anti-aliasing …    guides and picture. The acceleration structure stays, but is built once more if a
+//                                    layer first needs light: views without light do not pay for what that takes.
 //   light, samples, seed             likewise if a layer depends on light; else the picture alone
 //   camera, view                     guides, picture and the acceleration structure, which is relative to the camera.
 //                                    No file is loaded.

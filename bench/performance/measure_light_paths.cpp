@@ -23,7 +23,8 @@ Style LightPathStyle() {
   settings.insert(settings.end(), {"threshold=0.25", "blend_radius=1", "hybrid=0", "variety=0", "edge_aware=false",
                                    "reference_height=0", "paper=\"\""});
   for (std::string& setting : settings) setting.insert(0, "transfer.");
-  return OrStop(LoadStyle(std::string(SCUMBLE_SOURCE_DIR) + "/exemplars/scene-oil", settings));
+  return OrStop(
+      LoadStyle(std::string(SCUMBLE_SOURCE_DIR) + "/exemplars/scene-oil", OrStop(ParseStyleOverrides(settings))));
 }
 
 // Points in nanoflann's form: its own Euclidean metric in floats, dimensions known at compile time.

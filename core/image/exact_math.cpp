@@ -1,6 +1,7 @@
 #include "core/image/exact_math.h"
 
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <numbers>
 
@@ -57,6 +58,27 @@ double Log2(double x) {
   double power = t, sum = 0.0;
   for (int n = 3; n <= 27; n += 2) sum += (power *= square) / n;
   return exponent + 2.0 * (t + sum) / std::numbers::ln2;
+}
+
+double RoundToDigits(double x, int digits) {
+  const double size = std::fabs(x);
+  if (!(size > 1e-280 && size < 1e280)) return x;
+  const auto power_of_ten = [](int n) {  // exact up to 10^22
+    double power = 1.0;
+    for (; n > 0; --n) power *= 10.0;
+    return power;
+  };
+  int exponent = 0;
+  while (size >= power_of_ten(exponent + 1)) ++exponent;
+  while (size * power_of_ten(-exponent) < 1.0) --exponent;
+  const int places = digits - 1 - exponent;  // that are kept after the point
+  const double scale = power_of_ten(std::abs(places)), scaled = places < 0 ? size / scale : size * scale;
+  // What the rounding of `scaled` took away decides at a half.
+  const double rest = places < 0 ? std::fma(-scaled, scale, size) : std::fma(size, scale, -scaled);
+  double whole = std::floor(scaled);
+  const double part = scaled - whole;
+  if (part > 0.5 || (part == 0.5 && (rest > 0.0 || (rest == 0.0 && std::fmod(whole, 2.0) == 1.0)))) whole += 1.0;
+  return std::copysign(places < 0 ? whole * scale : whole / scale, x);
 }
 
 }  // namespace scumble

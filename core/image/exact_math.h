@@ -22,6 +22,11 @@ double Exp2(double x);
 // -infinity, negative numbers and NaN give NaN.
 double Log2(double x);
 
+// The number nearest to x that has so many significant decimal digits, 1 … 15; ties as printf has them. From 1e-7 to
+// 1e22 it is the very double of that decimal, as strtod gives it; others, down to 1e-280 and up to 1e280, are within
+// 1e-14 of it, relative. Beyond these x stays.
+double RoundToDigits(double x, int digits);
+
 // e^x is Exp2(x * kLog2OfE).
 inline constexpr double kLog2OfE = 1.4426950408889634;
 

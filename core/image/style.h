@@ -167,10 +167,12 @@ struct Paper {
 // A key of style.toml that changes over time, as core/style/style_keyframes.h defines it. Without tracks a style is the
 // same in every frame.
 struct StyleTrack {
-  using Value = std::variant<bool, std::int64_t, double, std::string>;
+  // A plain value as TOML has it, a colour, or a list of names.
+  using Value = std::variant<bool, std::int64_t, double, std::string, Rgb16, std::vector<std::string>>;
   struct Key {
     std::int64_t frame = 0;
     Value value;
+    bool operator==(const Key&) const = default;
   };
   std::string name;              // "transfer.threshold"
   std::vector<Key> keys;         // by rising frame, never empty

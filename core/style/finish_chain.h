@@ -12,6 +12,7 @@
 #include "core/image/layers.h"
 #include "core/image/status.h"
 #include "core/image/style.h"
+#include "core/style/style_override.h"
 
 namespace scumble {
 
@@ -44,20 +45,14 @@ std::vector<FinishPass> MomentsOf(const FinishChain& chain, std::size_t pass);
 // The layers that the passes read at one frame or another.
 LayerSet LayersOverTime(const FinishChain& chain);
 
-// Whether a --set is one of OverrideFinish.
-bool IsOfFinish(const std::string& set);
+// Of a key IsOfFinish: sets a "finish.NAME.KEY" in every pass of that name, or its key frames; returns how many there
+// are. A "dial.NAME" turns a dial of all passes, and returns how many they are; it is refused where a key changes over
+// time. Mistakes are kUsage.
+Expected<std::size_t> OverrideFinish(FinishChain& chain, const StyleOverride& set);
+Expected<std::size_t> OverrideFinish(Style& style, const StyleOverride& set);
 
-// "finish.NAME.KEY=VALUE": sets the key in every pass of that name; returns how many there are. "dial.NAME=VALUE" turns
-// a dial of all passes, and returns how many they are. Values are TOML's; quotes may be left off. Mistakes are kUsage.
-Expected<std::size_t> OverrideFinish(std::span<FinishPass> passes, const std::string& text);
-// Likewise, and "finish.NAME.KEY=[[FRAME, VALUE], …]" sets the key frames. A dial is refused where a key changes over
-// time.
-Expected<std::size_t> OverrideFinish(FinishChain& chain, const std::string& text);
-Expected<std::size_t> OverrideFinish(Style& style, const std::string& text);
-
-// The error where OverrideFinish sets nothing: which names there are.
-// `style`: that the text named before a colon.
-Error NoSuchFinish(const std::string& text, std::span<const FinishPass> passes, const std::string& style = {});
+// The error where OverrideFinish sets nothing: which names there are. `style`: that it is named by before the key.
+Error NoSuchFinish(const StyleOverride& set, std::span<const FinishPass> passes, const std::string& style = {});
 
 // "[[1, 0], [12, 4]]"
 std::string ToText(const StyleTrack& track);

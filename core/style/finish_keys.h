@@ -20,6 +20,10 @@ inline constexpr const char* kColorForm =
     "a colour is # and six hexadecimal digits, two each of red, green and blue: \"#f4efe6\"";
 // "#f4efe6"; none for any other text.
 std::optional<Rgb16> ParseColor(const std::string& text);
+// "#f4efe6"; where 8 bits a channel do not hold it, four digits each.
+std::string ColorText(const Rgb16& color);
+// Of a colour, or of a text that is one; of others none.
+std::optional<Rgb16> AsColor(const KeyValue& value);
 
 // A key of one effect.
 struct FinishKey {

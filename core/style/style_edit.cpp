@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "core/image/check.h"
-#include "core/style/toml/toml_keys.h"
+#include "core/style/toml_values.h"
 
 namespace scumble {
 namespace {
@@ -55,12 +55,16 @@ const toml::node* Find(const toml::table& table, const std::string& name) {
   return nullptr;
 }
 
-std::optional<KeyValue> EditedValue(const toml::node* node) {
-  if (!node) return std::nullopt;
-  if (const auto* flag = node->as_boolean()) return KeyValue(flag->get());
-  if (const auto* text = node->as_string()) return KeyValue(text->get());
-  if (const auto number = node->value<double>()) return KeyValue(*number);
-  return std::nullopt;
+// Whole numbers as any others: a file may write either.
+KeyValue WithoutKind(const KeyValue& value) {
+  const auto number = AsNumber(value);
+  return number ? KeyValue(*number) : value;
+}
+
+bool Holds(const toml::table& table, const std::string& name, const KeyValue& value) {
+  const toml::node* const node = Find(table, name);
+  const auto held = node ? internal::ValueOf(*node) : std::nullopt;
+  return held && WithoutKind(*held) == WithoutKind(value);
 }
 
 // Below the last of the keys that stand before all tables, or at the beginning.
@@ -101,13 +105,6 @@ std::vector<std::string> WaysToAdd(const toml::table& all, const std::string& na
   return ways;
 }
 
-// The name and the value of "transfer.paper=\"a = b\"".
-std::pair<std::string, std::string> Split(const std::string& setting) {
-  const std::size_t equals = setting.find('=');
-  SCUMBLE_CHECK(equals != std::string::npos);
-  return {setting.substr(0, equals), setting.substr(equals + 1)};
-}
-
 }  // namespace
 
 std::string TomlText(const KeyValue& value) {
@@ -131,19 +128,14 @@ std::string TomlText(const KeyValue& value) {
   return std::string(text, std::to_chars(text, text + sizeof text, *number).ptr);
 }
 
-Expected<std::string> WithSettings(std::string text, const std::vector<std::string>& settings,
+Expected<std::string> WithSettings(std::string text, const std::vector<StyleOverride>& settings,
                                    const std::string& file) {
-  for (const std::string& setting : settings) {
-    const auto parts = Split(setting);
-    const auto& name = parts.first;
-    const auto& value = parts.second;
+  for (const StyleOverride& setting : settings) {
+    const std::string& name = setting.key;
     if (!FindStyleKey(name)) return UsageError(name + " is no key of a style");
-    const std::string line = "value = " + value;
-    const auto wanted = Parse(line);
-    const toml::node* const node = wanted ? Find(*wanted, "value") : nullptr;
-    const auto wanted_value = EditedValue(node);
-    if (!wanted_value || PlaceOf(line, node->source().end) != line.size())
-      return UsageError(setting + ": expected a number, true, false or a text in quotes");
+    const auto* const wanted = std::get_if<KeyValue>(&setting.value);
+    if (!wanted) return UsageError(setting.text + ": expected a number, true, false or a text in quotes");
+    const std::string value = TomlText(*wanted);
     const auto all = Parse(text);
     if (!all) return InputError(file + " is no TOML: fix it first, `scumble styles check` says where");
     std::vector<std::string> ways;
@@ -155,10 +147,10 @@ Expected<std::string> WithSettings(std::string text, const std::vector<std::stri
     }
     const auto fits = std::find_if(ways.begin(), ways.end(), [&](const std::string& way) {
       const auto made = Parse(way);
-      return made && EditedValue(Find(*made, name)) == wanted_value;
+      return made && Holds(*made, name, *wanted);
     });
     if (fits == ways.end()) {
-      return InputError(file + " is written in a form that cannot be changed here; set " + setting + " by hand");
+      return InputError(file + " is written in a form that cannot be changed here; set " + setting.text + " by hand");
     }
     text = *fits;
   }

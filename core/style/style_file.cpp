@@ -18,7 +18,7 @@
 #include "core/style/sphere_template.h"
 #include "core/style/style_keyframes.h"
 #include "core/style/style_keys.h"
-#include "core/style/toml/toml_values.h"
+#include "core/style/toml_values.h"
 
 namespace scumble {
 namespace {
@@ -50,26 +50,8 @@ std::string KnownKeys(const std::string& section) {
   return names;
 }
 
-// [[frame, value], …]
-Status SetTrack(Style& style, const StyleKey& key, const toml::array& pairs, const std::string& where,
-                const fs::path& folder) {
-  StyleTrack track;
-  track.folder = folder;
-  std::optional<std::vector<StyleTrack::Key>> keys = internal::FramesOf(pairs);
-  if (!keys) {
-    return UsageError(where + ": " + key.name + ": expected a plain value, or frames with their values as " +
-                      "[[1, 0.1], [24, 0.3]]");
-  }
-  track.keys = *std::move(keys);
-  if (auto done = AddTrack(style, key, std::move(track)); !done) {
-    return Error{done.error().kind, where + ": " + done.error().message};
-  }
-  return Ok();
-}
-
 // `where` is the file and line, or the option, that holds the value. A wrong key or value is kUsage.
-Status SetKey(Style& style, const std::string& name, const toml::node& node, const std::string& where,
-              const fs::path& folder) {
+Expected<const StyleKey*> KnownKey(const std::string& name, const std::string& where) {
   const StyleKey* key = FindStyleKey(name);
   if (!key && FindStyleKey("transfer." + name)) {
     return UsageError(where + ": unknown key " + name + "; it belongs to [transfer]: transfer." + name);
@@ -81,17 +63,45 @@ Status SetKey(Style& style, const std::string& name, const toml::node& node, con
     return UsageError(where + ": unknown key " + name + "; there are " + KnownKeys(section) +
                       (section.empty() ? ", [transfer], [[exemplar]] and [[finish]]" : ""));
   }
-  if (const auto* pairs = node.as_array()) return SetTrack(style, *key, *pairs, where, folder);
-  const auto value = ValueOf(node);
-  if (!value) return UsageError(where + ": " + name + " must be a plain value");
-  RemoveTrack(style, name);
-  if (auto done = key->set(style, *value, folder); !done) return Explain(done.error(), where, name, *value);
+  return key;
+}
+
+// `frames`: none where a list is no list of frames with their values.
+Status SetTrack(Style& style, const StyleKey& key, std::optional<std::vector<StyleTrack::Key>> frames,
+                const std::string& where, const fs::path& folder) {
+  if (!frames) {
+    return UsageError(where + ": " + key.name + ": expected a plain value, or frames with their values as " +
+                      "[[1, 0.1], [24, 0.3]]");
+  }
+  StyleTrack track;
+  track.keys = *std::move(frames), track.folder = folder;
+  if (auto done = AddTrack(style, key, std::move(track)); !done) {
+    return Error{done.error().kind, where + ": " + done.error().message};
+  }
   return Ok();
 }
 
-// SetKey for a file, where a mistake is the file's and not the caller's.
+Status SetKey(Style& style, const StyleKey& key, const KeyValue& value, const std::string& where,
+              const fs::path& folder) {
+  RemoveTrack(style, key.name);
+  if (auto done = key.set(style, value, folder); !done) return Explain(done.error(), where, key.name, value);
+  return Ok();
+}
+
+Status SetKeyByNode(Style& style, const std::string& name, const toml::node& node, const fs::path& file) {
+  const std::string where = Where(file.string(), node);
+  SCUMBLE_ASSIGN(const StyleKey* const key, KnownKey(name, where));
+  if (const auto* pairs = node.as_array()) {
+    return SetTrack(style, *key, internal::FramesOf(*pairs), where, file.parent_path());
+  }
+  const auto value = ValueOf(node);
+  if (!value) return UsageError(where + ": " + name + " must be a plain value");
+  return SetKey(style, *key, *value, where, file.parent_path());
+}
+
+// In a file a mistake is the file's and not the caller's.
 Status SetKeyInFile(Style& style, const std::string& name, const toml::node& node, const fs::path& file) {
-  auto done = SetKey(style, name, node, Where(file.string(), node), file.parent_path());
+  auto done = SetKeyByNode(style, name, node, file);
   if (done || done.error().kind != ErrorKind::kUsage) return done;
   return InputError(done.error().message);
 }
@@ -213,8 +223,8 @@ struct StyleSource {
   const StyleReading& reading;
 };
 
-std::optional<double> LuminanceOf(const toml::node& node) {
-  const auto luminance = node.value<double>();
+std::optional<double> LuminanceOf(const std::optional<KeyValue>& value) {
+  const auto luminance = value ? AsNumber(*value) : std::nullopt;
   return luminance && *luminance >= 0.0 && std::isfinite(*luminance) ? luminance : std::nullopt;
 }
 
@@ -228,7 +238,7 @@ Expected<Exemplar> ReadExemplar(const toml::table& table, const StyleSource& sou
     const std::string name(key.str());
     const std::string where = Where(file, node);
     if (name == "luminance") {
-      exemplar.luminance = LuminanceOf(node);
+      exemplar.luminance = LuminanceOf(ValueOf(node));
       if (!exemplar.luminance) return InputError(where + ": exemplar.luminance: expected a number, 0 or more");
       continue;
     }
@@ -307,7 +317,8 @@ Status ReadFinish(const toml::node& node, const fs::path& path, Style& style) {
   SCUMBLE_ASSIGN(style.finish, internal::ReadFinishTables(node, path.string(), frames));
   for (const internal::FinishFrames& one : frames) {
     const std::string where = Where(path.string(), *one.pairs);
-    const auto done = SetTrack(style, *KeyOfTrack(style, one.key), *one.pairs, where, path.parent_path());
+    const auto done =
+        SetTrack(style, *KeyOfTrack(style, one.key), internal::FramesOf(*one.pairs), where, path.parent_path());
     if (!done) return InputError(done.error().message);
   }
   return Ok();
@@ -345,7 +356,7 @@ Expected<Style> ReadStyleFile(const fs::path& path, const StyleReading& reading)
 }
 
 // "exemplar.2.luminance" or "exemplar.2.fills", the keys of an exemplar that can change after its files are read.
-Status SetExemplarKey(Style& style, const std::string& name, const toml::node& node) {
+Status SetExemplarKey(Style& style, const std::string& name, const std::optional<KeyValue>& value) {
   const std::string where = "--set " + name + ": ";
   const std::string last = std::to_string(style.exemplars.size());
   const std::size_t begin = std::string_view("exemplar.").size(), dot = name.find('.', begin);
@@ -368,37 +379,29 @@ Status SetExemplarKey(Style& style, const std::string& name, const toml::node& n
   }
   Exemplar& exemplar = style.exemplars[index - 1];
   if (key == "fills") {
-    const auto* flag = node.as_boolean();
+    const auto* flag = value ? std::get_if<bool>(&*value) : nullptr;
     if (!flag) return UsageError(where + "expected true or false");
-    exemplar.fills = flag->get();
+    exemplar.fills = *flag;
     return Ok();
   }
-  exemplar.luminance = LuminanceOf(node);
+  exemplar.luminance = LuminanceOf(value);
   if (!exemplar.luminance) return UsageError(where + "expected a number, 0 or more");
   return Ok();
 }
 
-// "key=value" with TOML's values; a bare word is text.
-Status ApplyOverride(Style& style, const std::string& text) {
-  const std::size_t equals = text.find('=');
-  if (equals == std::string::npos || equals == 0) {
-    return UsageError("--set " + text + ": expected KEY=VALUE, as in transfer.blend_radius=0");
+Status ApplyOverride(Style& style, const StyleOverride& set) {
+  if (IsOfFinish(set.key)) {
+    SCUMBLE_ASSIGN(const std::size_t count, OverrideFinish(style, set));
+    return count > 0 ? Ok() : Status(NoSuchFinish(set, style.finish, style.name));
   }
-  const std::string name = text.substr(0, equals), value_text = text.substr(equals + 1);
-  auto parsed = internal::ParseSetValue(value_text);
-  toml::table table = parsed ? std::move(*parsed) : toml::table();
-  const toml::array* pairs = table.size() == 1 ? table.get("value")->as_array() : nullptr;
-  const bool is_track = pairs && !pairs->empty() && pairs->is_homogeneous(toml::node_type::array);
-  if (table.size() != 1 || !(ValueOf(*table.get("value")) || is_track)) {
-    table.clear();
-    table.insert("value", value_text);
+  const auto* value = std::get_if<KeyValue>(&set.value);
+  if (set.key.rfind("exemplar.", 0) == 0) {
+    return SetExemplarKey(style, set.key, value ? std::optional(*value) : std::nullopt);
   }
-  if (IsOfFinish(name)) {
-    SCUMBLE_ASSIGN(const std::size_t count, OverrideFinish(style, text));
-    return count > 0 ? Ok() : Status(NoSuchFinish(text, style.finish, style.name));
-  }
-  if (name.rfind("exemplar.", 0) == 0) return SetExemplarKey(style, name, *table.get("value"));
-  return SetKey(style, name, *table.get("value"), "--set", fs::path());
+  SCUMBLE_ASSIGN(const StyleKey* const key, KnownKey(set.key, "--set"));
+  if (value) return SetKey(style, *key, *value, "--set", fs::path());
+  const auto& frames = std::get<StyleOverride::Frames>(set.value);
+  return SetTrack(style, *key, frames.empty() ? std::nullopt : std::optional(frames), "--set", fs::path());
 }
 
 // Of a method without a painting: the effect that makes the picture, over plain paint that asks for nothing.
@@ -426,16 +429,16 @@ Status MakeUnpainted(Style& style) {
 }
 
 // Keys of finishing effects last: the method brings one.
-Status ApplyOverrides(Style& style, const std::vector<std::string>& overrides) {
-  for (const std::string& text : overrides) {
-    if (!IsOfFinish(text)) SCUMBLE_RETURN_IF_ERROR(ApplyOverride(style, text));
+Status ApplyOverrides(Style& style, const std::vector<StyleOverride>& overrides) {
+  for (const StyleOverride& set : overrides) {
+    if (!IsOfFinish(set.key)) SCUMBLE_RETURN_IF_ERROR(ApplyOverride(style, set));
   }
   if (style.exemplars.empty() && style.unpainted.empty()) {
     return UsageError("style " + style.name + " has no painting: transfer.method must be toon or render");
   }
   SCUMBLE_RETURN_IF_ERROR(MakeUnpainted(style));
-  for (const std::string& text : overrides) {
-    if (IsOfFinish(text)) SCUMBLE_RETURN_IF_ERROR(ApplyOverride(style, text));
+  for (const StyleOverride& set : overrides) {
+    if (IsOfFinish(set.key)) SCUMBLE_RETURN_IF_ERROR(ApplyOverride(style, set));
   }
   return Ok();
 }
@@ -530,7 +533,7 @@ Expected<std::map<std::string, KeyValue>> StyleValues(const fs::path& path) {
   return values;
 }
 
-Expected<Style> LoadStyle(const fs::path& path, const std::vector<std::string>& overrides,
+Expected<Style> LoadStyle(const fs::path& path, const std::vector<StyleOverride>& overrides,
                           const StyleReading& reading) {
   std::error_code failed;
   const fs::file_status kind = fs::status(path, failed);

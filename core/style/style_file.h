@@ -11,6 +11,7 @@
 #include "core/image/status.h"
 #include "core/image/style.h"
 #include "core/style/style_keys.h"
+#include "core/style/style_override.h"
 
 namespace scumble {
 
@@ -28,9 +29,8 @@ struct StyleReading {
 };
 
 // Reads a style and its pictures. The names "toon" and "render", where no file has them, are styles of these methods.
-// `overrides` are "key=value" texts with the keys of style.toml and values as TOML writes them (quotes may be left off:
-// transfer.method=litsphere); they win over the file. Of [[exemplar]] the luminance and fills can be overridden, by
-// number from 1: exemplar.2.luminance=0.1. Every key is applied, or refused by name: unknown ones with the list of
+// `overrides` are all of this style, and win over the file. Of [[exemplar]] the luminance and fills can be overridden,
+// by number from 1: exemplar.2.luminance. Every key is applied, or refused by name: unknown ones with the list of
 // known ones, missing features as kUnavailable.
 //
 // A key of [transfer] may also have one value for each of several frames: threshold = [[1, 0.1], [24, 0.3]]; see
@@ -42,7 +42,7 @@ struct StyleReading {
 // wrote, the picture may also be the whole painted template: its margin is cut off. Any other guides with A and normal,
 // of the picture's size, make it an exemplar of that scene, of any shape. A picture that is wholly transparent is
 // refused.
-Expected<Style> LoadStyle(const std::filesystem::path& path, const std::vector<std::string>& overrides = {},
+Expected<Style> LoadStyle(const std::filesystem::path& path, const std::vector<StyleOverride>& overrides = {},
                           const StyleReading& reading = {});
 
 // The value of every key of StyleKeys() in the style's file, or the default; of key frames that of frame 0. Only its

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <iterator>
 #include <optional>
 #include <set>
 #include <string_view>
+#include <utility>
 
 #include "core/image/color.h"
 #include "core/image/oklab.h"
@@ -26,38 +26,35 @@ bool MayNameFile(const std::string& finish_key) {
   return std::find(std::begin(kFileKeys), std::end(kFileKeys), last) != std::end(kFileKeys);
 }
 
-// The colour at a share of the way from one to the other, straight in Oklab. Both are colours.
-std::string MixOfColors(const std::string& from, const std::string& to, double share) {
-  const auto lab_of = [](const std::string& text) {
-    const Rgb16 color = *ParseColor(text);
+// The colour at a share of the way from one to the other, straight in Oklab.
+Rgb16 MixOfColors(const Rgb16& from, const Rgb16& to, double share) {
+  const auto lab_of = [](const Rgb16& color) {
     return OklabFromLinear({Srgb16ToLinear(color[0]), Srgb16ToLinear(color[1]), Srgb16ToLinear(color[2])});
   };
   const glm::vec3 begin = lab_of(from), end = lab_of(to);
   const glm::vec3 linear = LinearFromOklab(begin + (end - begin) * static_cast<float>(share));
-  unsigned code[3];
-  for (int c = 0; c < 3; ++c) code[c] = (Srgb16FromLinear(linear[c]) + 128u) / 257u;
-  char text[8];
-  std::snprintf(text, sizeof text, "#%02x%02x%02x", code[0], code[1], code[2]);
-  return text;
+  return {Srgb16FromLinear(linear[0]), Srgb16FromLinear(linear[1]), Srgb16FromLinear(linear[2])};
 }
 
-const std::string* ColorText(const KeyValue& value) {
-  const auto* text = std::get_if<std::string>(&value);
-  return text && ParseColor(*text) ? text : nullptr;
-}
-
-// Whether it is a colour of a finishing pass: all its values are, and nothing else is taken.
-bool TakesColors(const Style& style, const StyleKey& key, const StyleTrack& track) {
+// Makes colours of texts where the key is a colour of a finishing pass: all its values are, and nothing else is taken.
+// Returns whether it is.
+bool MakeColors(const Style& style, const StyleKey& key, StyleTrack& track) {
   Style scratch;
   scratch.finish = style.finish;
-  return key.name.rfind(kFinishKeys, 0) == 0 && !key.set(scratch, KeyValue(std::string("none")), {}) &&
-         std::all_of(track.keys.begin(), track.keys.end(), [](const auto& one) { return ColorText(one.value); });
+  if (key.name.rfind(kFinishKeys, 0) != 0 || key.set(scratch, KeyValue(std::string("none")), {})) return false;
+  std::vector<StyleTrack::Key> keys = track.keys;
+  for (StyleTrack::Key& one : keys) {
+    const std::optional<Rgb16> color = AsColor(one.value);
+    if (!color) return false;
+    one.value = *color;
+  }
+  track.keys = std::move(keys);
+  return true;
 }
 
 // Whether the key takes all values between two of the track's: whole numbers, flags and words have none.
 bool TakesFractions(const Style& style, const StyleKey& key, const StyleTrack& track) {
   if (key.name.ends_with(".jitter_fps")) return false;  // each change would redraw
-  if (TakesColors(style, key, track)) return true;
   Style scratch;
   scratch.finish = style.finish;
   for (const auto& [frame, value] : track.keys) {
@@ -99,11 +96,11 @@ std::optional<StyleKey> KeyOfTrack(const Style& style, const std::string& name) 
   return key;
 }
 
-Status CheckDial(const Style& style, const std::string& set) {
-  if (set.rfind(kDialKeys, 0) != 0) return Ok();
+Status CheckDial(const Style& style, const StyleOverride& set) {
+  if (set.key.rfind(kDialKeys, 0) != 0) return Ok();
   for (const StyleTrack& track : style.tracks) {
     if (track.name.rfind(kFinishKeys, 0) != 0) continue;
-    return UsageError("--set " + set + ": " + track.name + " of style " + style.name +
+    return UsageError("--set " + set.text + ": " + track.name + " of style " + style.name +
                       " changes over time, which a dial would undo: change its key frames");
   }
   return Ok();
@@ -146,7 +143,7 @@ Status AddTrack(Style& style, const StyleKey& key, StyleTrack track) {
     }
   }
   track.name = key.name;
-  track.straight = TakesFractions(style, key, track);
+  track.straight = MakeColors(style, key, track) || TakesFractions(style, key, track);
   SCUMBLE_RETURN_IF_ERROR(Set(style, key, track, ValueAt(track, 0)));
   RemoveTrack(style, key.name);
   style.tracks.push_back(std::move(track));
@@ -164,9 +161,7 @@ KeyValue ValueAt(const StyleTrack& track, std::int64_t frame) {
   const auto& [from, value] = *std::prev(next);
   if (next == track.keys.end() || from == frame || !track.straight) return value;
   const double share = static_cast<double>(frame - from) / static_cast<double>(next->frame - from);
-  if (const auto* color = std::get_if<std::string>(&value)) {
-    return MixOfColors(*color, std::get<std::string>(next->value), share);
-  }
+  if (const auto* color = std::get_if<Rgb16>(&value)) return MixOfColors(*color, std::get<Rgb16>(next->value), share);
   const double low = *AsNumber(value), high = *AsNumber(next->value);
   if (std::isinf(low) || std::isinf(high)) return value;
   // Rounding must not lead out of the range that both ends keep.

@@ -11,6 +11,7 @@
 #include "core/image/status.h"
 #include "core/image/style.h"
 #include "core/style/style_keys.h"
+#include "core/style/style_override.h"
 
 namespace scumble {
 
@@ -23,7 +24,7 @@ inline constexpr std::int64_t kMaxTrackFrame = 999'999'999;
 std::optional<StyleKey> KeyOfTrack(const Style& style, const std::string& name);
 
 // Ok, or a kUsage error where a dial (finish_keys.h) turns keys of the style that change over time.
-Status CheckDial(const Style& style, const std::string& set);
+Status CheckDial(const Style& style, const StyleOverride& set);
 
 // Checks the track's keys and adds it to the style, replacing an earlier one of that name. The style gets the values of
 // frame 0. Frames must rise and lie within kMaxTrackFrame, and the key must accept every value: kUsage names the one

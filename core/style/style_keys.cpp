@@ -311,6 +311,12 @@ std::string ToText(const KeyValue& value) {
   if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
   if (const auto* whole = std::get_if<std::int64_t>(&value)) return std::to_string(*whole);
   if (const auto* text = std::get_if<std::string>(&value)) return '"' + *text + '"';
+  if (const auto* color = std::get_if<Rgb16>(&value)) return '"' + ColorText(*color) + '"';
+  if (const auto* names = std::get_if<std::vector<std::string>>(&value)) {
+    std::string list;
+    for (const std::string& name : *names) list += (list.empty() ? "\"" : ", \"") + name + '"';
+    return "[" + list + "]";
+  }
   char number[40];
   std::snprintf(number, sizeof number, "%g", std::get<double>(value));
   return number;

@@ -18,8 +18,7 @@ namespace scumble {
 // The prefix of the keys that weigh guide layers; the layer's name follows.
 inline constexpr const char* kGuideWeights = "transfer.guide_weights.";
 
-// A value as TOML has it.
-using KeyValue = std::variant<bool, std::int64_t, double, std::string>;
+using KeyValue = StyleTrack::Value;
 
 // Of a number, whole or not; of others none.
 std::optional<double> AsNumber(const KeyValue& value);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <numbers>
 #include <sstream>
@@ -75,20 +76,28 @@ double HalfHeightOf(const Camera& camera, double aspect) {
   return std::atan(half * VerticalShare(camera, aspect));
 }
 
+Error WrongMember(const char* member, const char* expected, double found) {
+  char text[120];
+  std::snprintf(text, sizeof text, "%s must be %s, found %g", member, expected, found);
+  return UsageError(text);
+}
+
 }  // namespace
 
 Status CheckView(const ViewAngles& view) {
-  if (!std::isfinite(view.azimuth)) return UsageError("azimuth must be finite");
-  if (!(view.elevation >= -90.0 && view.elevation <= 90.0)) return UsageError("elevation must be -90 to 90");
-  if (!(view.distance >= 0.0 && std::isfinite(view.distance))) return UsageError("distance must be 0 or more, finite");
-  if (!std::isfinite(view.right) || !std::isfinite(view.up)) return UsageError("right and up must be finite");
-  if (!(view.fov >= 0.0 && view.fov < 180.0)) return UsageError("fov must be 0 to below 180");
+  SCUMBLE_RETURN_IF_ERROR(CheckLight({view.azimuth, view.elevation}));
+  if (!(view.distance >= 0.0 && std::isfinite(view.distance)))
+    return WrongMember("distance", "0 or more, finite", view.distance);
+  if (!std::isfinite(view.right)) return WrongMember("right", "finite", view.right);
+  if (!std::isfinite(view.up)) return WrongMember("up", "finite", view.up);
+  if (!(view.fov >= 0.0 && view.fov < 180.0)) return WrongMember("fov", "0 to below 180", view.fov);
   return Ok();
 }
 
 Status CheckLight(const LightAngles& light) {
-  if (!std::isfinite(light.azimuth)) return UsageError("azimuth must be finite");
-  if (!(light.elevation >= -90.0 && light.elevation <= 90.0)) return UsageError("elevation must be -90 to 90");
+  if (!std::isfinite(light.azimuth)) return WrongMember("azimuth", "finite", light.azimuth);
+  if (!(light.elevation >= -90.0 && light.elevation <= 90.0))
+    return WrongMember("elevation", "-90 to 90", light.elevation);
   return Ok();
 }
 

@@ -18,8 +18,8 @@ enum class ErrorKind {
   kMemory,       // the machine, or a limit such as ulimit's, gives no more memory or threads
 };
 
-// `message` is one sentence or two: the file, what was found, what was expected, and how to fix it. Settings are called
-// by the option of the command line that sets them, as --size.
+// `message` is one sentence or two: the file, what was found, what was expected, and how to fix it. A Stylizer calls
+// settings by the members that set them, as coverage_samples or view.elevation.
 struct Error {
   ErrorKind kind = ErrorKind::kInput;
   std::string message;

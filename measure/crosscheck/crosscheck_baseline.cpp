@@ -7,6 +7,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/image/exact_math.h"
+
 namespace scumble {
 namespace {
 
@@ -97,8 +99,8 @@ Expected<BaselineScene> ReadScene(const nlohmann::json& json, const std::string&
 double RoundedUp(double value) {
   if (!(value > 0.0) || !std::isfinite(value)) return value;
   const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
-  // By way of text, so that 0.0007 is written and not 0.0007000000000000001.
-  return std::stod(fmt::format("{:.1e}", std::ceil(value / unit * (1.0 - 1e-12)) * unit));
+  // 0.0007 and not 0.0007000000000000001.
+  return RoundToDigits(std::ceil(value / unit * (1.0 - 1e-12)) * unit, 2);
 }
 
 }  // namespace

@@ -3,7 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <string_view>
 #include <utility>
 
 #include "pipeline/api/guide_layers.h"
@@ -11,6 +14,55 @@
 
 namespace scumble {
 namespace {
+
+// What the pipeline calls by the command line's options, and the members that set it.
+constexpr std::pair<std::string_view, std::string_view> kMembers[] = {
+    {"--size", "width and height"},
+    {"--camera", "camera"},
+    {"--view", "view"},
+    {"--light", "light"},
+    {"--frame", "frame"},
+    {"--fps", "frames_per_second"},
+    {"--animation", "animation"},
+    {"--scene", "blender_scene"},
+    {"--view-layer", "view_layer"},
+    {"--auto-smooth", "auto_smooth"},
+    {"--aa", "coverage_samples"},
+    {"--samples", "light_samples"},
+    {"--raw-normals", "raw_normals"},
+    {"--isa", "instruction_set"},
+    {"--style", "style"},
+    {"--set", "overrides"},
+    {"--assign", "assignments"},
+    {"--finish", "finishes"},
+    {"--no-scene-styles", "follow_scene = false"},
+    {"--seed", "seed"},
+    {"--exposure", "exposure"},
+    {"--upsample", "upsample"},
+    {"--upscale", "upscale"},
+    {"--threads", "threads"},
+    {"--max-memory", "max_memory"},
+};
+
+// A message with members in place of options.
+std::string WithMembers(std::string text) {
+  if (text.starts_with("isa \"")) text.replace(0, 3, "instruction_set");
+  for (std::size_t at = text.find("--"); at != std::string::npos; at = text.find("--", at + 1)) {
+    const std::size_t end = std::min(text.find_first_not_of("abcdefghijklmnopqrstuvwxyz-", at), text.size());
+    const std::string_view option(text.data() + at, end - at);
+    const auto is_it = [&](const auto& one) { return one.first == option; };
+    const auto found = std::find_if(std::begin(kMembers), std::end(kMembers), is_it);
+    const bool begins = at == 0 || std::string_view(" '(`").find(text[at - 1]) != std::string_view::npos;
+    if (begins && found != std::end(kMembers)) text.replace(at, option.size(), found->second);
+  }
+  return text;
+}
+
+template <class T>
+Expected<T> WithMembers(Expected<T> result) {
+  if (result) return result;
+  return Error{result.error().kind, WithMembers(result.error().message)};
+}
 
 RunContext ContextOf(const StylizerOptions& options) {
   RunContext context;
@@ -25,7 +77,7 @@ RunContext ContextOf(const StylizerOptions& options) {
   }
   if (options.message) {
     context.on_message = [tell = options.message](const Message& message) {
-      tell(message.text, message.kind == Message::Kind::kWarning);
+      tell(WithMembers(message.text), message.kind == Message::Kind::kWarning);
     };
   }
   if (options.progress) {
@@ -49,6 +101,8 @@ Expected<SceneRequest> RequestOf(const SceneSettings& settings) {
   SceneRequest request;
   request.scene = settings.file;
   request.size = {settings.width, settings.height};
+  SCUMBLE_RETURN_IF_ERROR(CheckWithin("width", settings.width, 1, kMaxImageSide));
+  SCUMBLE_RETURN_IF_ERROR(CheckWithin("height", settings.height, 1, kMaxImageSide));
   SCUMBLE_RETURN_IF_ERROR(CheckSize(request.size, SizeToText(request.size)));
   request.camera = settings.camera;
   if (const auto& view = settings.view) {
@@ -86,8 +140,35 @@ Expected<SceneRequest> RequestOf(const SceneSettings& settings) {
 
 struct Stylizer::State {
   explicit State(const StylizerOptions& options) : workspace(ContextOf(options)) {}
+  Expected<Picture> Paint(const SceneSettings& scene, const StyleSettings& style, const PaintSettings& paint);
+  Expected<GuideLayers> Guides(const SceneSettings& scene, const LayerSet& layers);
   Workspace workspace;
 };
+
+Expected<Picture> Stylizer::State::Paint(const SceneSettings& scene, const StyleSettings& style,
+                                         const PaintSettings& paint) {
+  SCUMBLE_ASSIGN(const SceneRequest request, RequestOf(scene));
+  if (paint.exposure && !(std::fabs(*paint.exposure) <= 64.0)) {
+    return UsageError(fmt::format("exposure {} is out of range; expected -64 to 64 stops", *paint.exposure));
+  }
+  StyleRequest style_request;
+  style_request.style = style.style;
+  SCUMBLE_ASSIGN(style_request.sets, ParseStyleOverrides(style.overrides));
+  style_request.assigned = style.assignments, style_request.scene_styles = style.follow_scene;
+  style_request.finishes = style.finishes;
+  PictureRequest picture;
+  picture.seed = paint.seed, picture.exposure = paint.exposure, picture.upsample = paint.upsample;
+  picture.upscale = paint.upscale;
+  picture.frame = scene.frame, picture.fps = request.fps;
+  SCUMBLE_ASSIGN(PaintedFrame painted, workspace.Paint(request, style_request, picture));
+  return std::move(painted.picture);
+}
+
+Expected<GuideLayers> Stylizer::State::Guides(const SceneSettings& scene, const LayerSet& layers) {
+  SCUMBLE_ASSIGN(const SceneRequest request, RequestOf(scene));
+  SCUMBLE_ASSIGN(auto guides, workspace.Guides(request, scene.frame, layers));
+  return GuideLayers(std::make_shared<const GuideLayers::State>(GuideLayers::State{std::move(guides)}));
+}
 
 Stylizer::Stylizer(StylizerOptions options) : state_(std::make_unique<State>(options)) {}
 Stylizer::~Stylizer() = default;
@@ -95,26 +176,11 @@ Stylizer::Stylizer(Stylizer&&) noexcept = default;
 Stylizer& Stylizer::operator=(Stylizer&&) noexcept = default;
 
 Expected<Picture> Stylizer::Paint(const SceneSettings& scene, const StyleSettings& style, const PaintSettings& paint) {
-  SCUMBLE_ASSIGN(const SceneRequest request, RequestOf(scene));
-  if (paint.exposure && !(std::fabs(*paint.exposure) <= 64.0)) {
-    return UsageError(fmt::format("exposure {} is out of range; expected -64 to 64 stops", *paint.exposure));
-  }
-  StyleRequest style_request;
-  style_request.style = style.style, style_request.sets = style.overrides;
-  style_request.assigned = style.assignments, style_request.scene_styles = style.follow_scene;
-  style_request.finishes = style.finishes;
-  PictureRequest picture;
-  picture.seed = paint.seed, picture.exposure = paint.exposure, picture.upsample = paint.upsample;
-  picture.upscale = paint.upscale;
-  picture.frame = scene.frame, picture.fps = request.fps;
-  SCUMBLE_ASSIGN(PaintedFrame painted, state_->workspace.Paint(request, style_request, picture));
-  return std::move(painted.picture);
+  return WithMembers(state_->Paint(scene, style, paint));
 }
 
 Expected<GuideLayers> Stylizer::Guides(const SceneSettings& scene, const LayerSet& layers) {
-  SCUMBLE_ASSIGN(const SceneRequest request, RequestOf(scene));
-  SCUMBLE_ASSIGN(auto guides, state_->workspace.Guides(request, scene.frame, layers));
-  return GuideLayers(std::make_shared<const GuideLayers::State>(GuideLayers::State{std::move(guides)}));
+  return WithMembers(state_->Guides(scene, layers));
 }
 
 void Stylizer::Cancel() {

@@ -239,10 +239,10 @@ Expected<Picture> ReadUnderneath(const std::string& file, const std::string& vie
 }
 
 Status ReadOver(const PictureRequest& request, PictureState& state) {
-  if (state.over && state.over_file == request.over) return Ok();
+  if (state.over && state.over_file == request.over && state.over_view_layer == request.over_view_layer) return Ok();
   state.over.reset();
   SCUMBLE_ASSIGN(state.over, ReadUnderneath(request.over, request.over_view_layer));
-  state.over_file = request.over;
+  state.over_file = request.over, state.over_view_layer = request.over_view_layer;
   return Ok();
 }
 

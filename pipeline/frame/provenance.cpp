@@ -93,7 +93,7 @@ std::uint64_t HashOfStyles(const StyleSet& styles, std::size_t count, ExemplarHa
     for (const FinishPass& pass : style.finish) hash = Hash(hash, HashText(FinishText(pass)));
   }
   for (const FinishPass& pass : styles.finish.passes) hash = Hash(hash, HashText(FinishText(pass)));
-  for (const StyleSet::Assigned& one : styles.assigned) hash = Hash(hash, HashText(one.pattern), one.style);
+  for (const StyleSet::Assigned& one : styles.assigned) hash = Hash(hash, HashText(one.pattern.text()), one.style);
   return hash;
 }
 

@@ -84,10 +84,10 @@ void RunInputs::ReadsStyles(const StyleSet& styles) {
     Reads(what, file.string());
     ReadsQuoted(what, file.string(), file.parent_path().string());
   }
-  for (const std::string& set : styles.options.sets) {
-    std::string value = set.substr(std::min(set.find('=') + 1, set.size()));
-    std::erase_if(value, [](char c) { return c == '"' || c == '\''; });
-    Reads("--set " + set, value);
+  for (const StyleOverride& set : styles.options.sets) {
+    const auto* value = std::get_if<KeyValue>(&set.value);
+    const auto* file = value ? std::get_if<std::string>(value) : nullptr;
+    if (file) Reads("--set " + ToText(set), *file);
   }
 }
 

@@ -57,9 +57,9 @@ std::string Lower(std::string text) {
 
 // The name that the pattern fits but for upper and lower case, or the one nearest to it; empty: none is near.
 std::string ProbablyMeant(const std::string& pattern, const std::set<std::string>& names) {
-  const std::string lower = Lower(pattern);
+  const NamePattern lower(Lower(pattern));
   for (const std::string& name : names) {
-    if (FitsPattern(Lower(name), lower)) return name;
+    if (lower.Fits(Lower(name))) return name;
   }
   return NearestName(pattern, std::vector<std::string>(names.begin(), names.end()));
 }
@@ -87,20 +87,25 @@ Expected<std::vector<Assignment>> ReadAssignments(const std::vector<std::string>
   return assignments;
 }
 
-bool FitsPattern(const std::string& name, const std::string& pattern) {
-  std::size_t n = 0, p = 0, star = std::string::npos, resume = 0;
-  while (n < name.size()) {
-    if (p < pattern.size() && pattern[p] == '*') {
-      star = p++, resume = n;
-    } else if (p < pattern.size() && pattern[p] == name[n]) {
-      ++p, ++n;
-    } else if (star != std::string::npos) {
-      p = star + 1, n = ++resume;
-    } else {
-      return false;
-    }
+NamePattern::NamePattern(const std::string& text) : text_(text) {
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find('*', begin), text.size());
+    parts_.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
   }
-  return std::all_of(pattern.begin() + std::ptrdiff_t(p), pattern.end(), [](char c) { return c == '*'; });
+}
+
+bool NamePattern::Fits(std::string_view name) const {
+  if (parts_.size() == 1) return name == text_;
+  const std::string &first = parts_.front(), &last = parts_.back();
+  if (name.size() < first.size() + last.size() || !name.starts_with(first) || !name.ends_with(last)) return false;
+  name = name.substr(first.size(), name.size() - first.size() - last.size());
+  for (std::size_t i = 1; i + 1 < parts_.size(); ++i) {  // each as far left as it can be
+    const std::size_t at = name.find(parts_[i]);
+    if (at == std::string_view::npos) return false;
+    name.remove_prefix(at + parts_[i].size());
+  }
+  return true;
 }
 
 std::string SomeOf(const std::vector<std::string>& names) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/image/status.h"
@@ -21,8 +22,17 @@ struct Assignment {
 // kInput.
 Expected<std::vector<Assignment>> ReadAssignments(const std::vector<std::string>& options);
 
-// Whether the name fits a pattern in which * stands for any text.
-bool FitsPattern(const std::string& name, const std::string& pattern);
+// A name in which * stands for any text.
+class NamePattern {
+ public:
+  explicit NamePattern(const std::string& text);
+  bool Fits(std::string_view name) const;
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+  std::vector<std::string> parts_;  // between the stars; one: there is none
+};
 
 // Up to 12 of them, in their order, with commas between; "none" if there are none.
 std::string SomeOf(const std::vector<std::string>& names);

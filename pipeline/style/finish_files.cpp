@@ -96,7 +96,6 @@ std::map<std::string, fs::path> HatchFiles(const RunContext& context) {
 }
 
 Expected<ColorRamp> RampOf(const std::string& source) {
-  if (IsRampText(source)) return ParseColorRamp(source);
   SCUMBLE_ASSIGN(const Picture picture, ReadPicture(source));
   Expected<ColorRamp> ramp = ColorRampOf(picture);
   if (!ramp) return InputError(source + ": " + ramp.error().message);
@@ -136,8 +135,7 @@ Status ReadFinishFiles(const Style* style, const RunContext& context, std::vecto
       }
     }
     if (auto* const toon = std::get_if<ToonPass>(&pass.effect)) {
-      toon->ramp_colors.reset();
-      if (!toon->ramp.empty()) {  // a pass may come to show it at a later frame
+      if (!toon->ramp.empty() && !IsRampText(toon->ramp)) {  // a pass may come to show it at a later frame
         Expected<ColorRamp> ramp = RampOf(toon->ramp);
         if (!ramp) return of_key("ramp", ramp.error());
         toon->ramp_colors = std::make_shared<const ColorRamp>(*std::move(ramp));

@@ -57,9 +57,11 @@ Expected<FinishChain> PassesOf(const std::string& name, const RunContext& contex
 std::set<std::uint32_t> IdsThatFit(const std::vector<std::string>& patterns,
                                    const std::map<std::uint32_t, std::string>& names) {
   std::set<std::uint32_t> ids;
-  for (const auto& [id, name] : names) {
-    if (std::any_of(patterns.begin(), patterns.end(), [&](const auto& one) { return FitsPattern(name, one); }))
-      ids.insert(id);
+  for (const std::string& text : patterns) {
+    const NamePattern pattern(text);
+    for (const auto& [id, name] : names) {
+      if (pattern.Fits(name)) ids.insert(id);
+    }
   }
   return ids;
 }
@@ -192,10 +194,10 @@ Expected<FinishChain> OpenFinish(const std::vector<std::string>& names, const Ru
   return chain;
 }
 
-Status SetFinish(const std::vector<std::string>& sets, FinishChain& chain) {
-  for (const std::string& text : sets) {
-    SCUMBLE_ASSIGN(const std::size_t count, OverrideFinish(chain, text));
-    if (count == 0) return NoSuchFinish(text, chain.passes);
+Status SetFinish(const std::vector<StyleOverride>& sets, FinishChain& chain) {
+  for (const StyleOverride& set : sets) {
+    SCUMBLE_ASSIGN(const std::size_t count, OverrideFinish(chain, set));
+    if (count == 0) return NoSuchFinish(set, chain.passes);
   }
   return Ok();
 }

@@ -11,6 +11,16 @@ namespace scumble {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+std::string DataRootsText(const RunContext& context) {
+  std::string text;
+  for (const fs::path& root : context.data_roots) text += (text.empty() ? "" : " and ") + root.string();
+  return text.empty() ? "any folder, since none is named" : text;
+}
+
+}  // namespace
+
 std::vector<fs::path> StyleFolders(const RunContext& context) { return context.DataFolders("exemplars"); }
 
 Expected<Style> OpenStyle(const StyleRequest& request, const RunContext& context) {
@@ -47,7 +57,7 @@ Expected<fs::path> FindStyle(const std::string& name, const RunContext& context,
   const std::string where = base.empty() || fs::path(name).is_absolute() ? "" : " in " + base.string();
   return InputError("there is no style '" + name + "'" + where + ": expected a file, a folder, or " +
                     (bundled.empty()
-                         ? "a bundled style, of which none are found beside this program"
+                         ? "a bundled style, of which there are none in " + DataRootsText(context)
                          : "one of the bundled styles " + bundled + ", or toon or render, which need no painting") +
                     (meant.empty() ? "" : "; did you mean " + meant + "?"));
 }

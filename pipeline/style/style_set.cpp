@@ -43,14 +43,14 @@ Expected<std::uint16_t> PlaceOf(StyleSet& set, const std::string& name, const st
   if (const auto known = set.opened.find(path); known != set.opened.end()) return known->second;
   if (set.styles.size() >= std::size_t(StyleMap::kMaxStyles)) return UsageError("too many styles in one picture");
   SCUMBLE_RETURN_IF_ERROR(set.context.CheckNotCancelled());
-  std::vector<std::string> overrides;
+  std::vector<StyleOverride> overrides;
   for (const StyleSet::Override& one : set.overrides) {
-    if ((one.style.empty() && !IsOfFinish(one.text)) || one.path == path) overrides.push_back(one.text);
+    if ((one.style.empty() && !IsOfFinish(one.key)) || one.path == path) overrides.push_back(one);
   }
   SCUMBLE_ASSIGN(Style style, LoadStyle(found, overrides, set.options.reading));
   for (const StyleSet::Override& one : set.overrides) {
-    if (!one.style.empty() || !IsOfFinish(one.text)) continue;
-    SCUMBLE_RETURN_IF_ERROR(OverrideFinish(style, one.text));
+    if (!one.style.empty() || !IsOfFinish(one.key)) continue;
+    SCUMBLE_RETURN_IF_ERROR(OverrideFinish(style, one));
   }
   const auto& finishes = set.options.finishes;
   if (std::find(finishes.begin(), finishes.end(), kNoFinish) != finishes.end()) {
@@ -74,7 +74,7 @@ Expected<std::uint16_t> PlaceOrWord(StyleSet& set, const std::string& name, cons
 
 bool IsAssigned(const StyleSet& set, const std::string& name) {
   return std::any_of(set.assigned.begin(), set.assigned.end(),
-                     [&](const StyleSet::Assigned& one) { return FitsPattern(name, one.pattern); });
+                     [&](const StyleSet::Assigned& one) { return one.pattern.Fits(name); });
 }
 
 // What a request means depends on the folder of the file that it is from.
@@ -154,12 +154,12 @@ SceneStyleRequests SceneStyleRequestsOf(const GuideSet& guides) {
   return requests;
 }
 
-std::vector<std::string> StylesAskedFor(const SceneStyleRequests& requests, std::span<const std::string> patterns) {
+std::vector<std::string> StylesAskedFor(const SceneStyleRequests& requests, std::span<const NamePattern> patterns) {
   std::vector<std::string> styles;
   for (const auto* const list : {&requests.objects, &requests.materials}) {
     for (const auto& [name, style] : *list) {
-      const bool is_assigned = std::any_of(patterns.begin(), patterns.end(),
-                                           [&](const std::string& pattern) { return FitsPattern(name, pattern); });
+      const bool is_assigned =
+          std::any_of(patterns.begin(), patterns.end(), [&](const NamePattern& pattern) { return pattern.Fits(name); });
       if (!is_assigned && !IsWord(style)) styles.push_back(style);
     }
   }
@@ -236,42 +236,14 @@ std::string SetsWithout(const StyleSet& set, const LayerSet& layers) {
 
 namespace {
 
-// Whether a known key and '=' begin there.
-bool HasKeyAt(const std::string& text, std::size_t begin) {
-  const std::size_t equals = text.find('=', begin);
-  if (equals == std::string::npos) return false;
-  const std::string key = text.substr(begin, equals - begin);
-  const bool is_of_list = key.rfind("exemplar.", 0) == 0 || IsOfFinish(key);
-  return FindStyleKey(key) || (is_of_list && key.find(':') == std::string::npos);
-}
-
-// The colon between name and key; none: npos. No key holds a colon; names may, and '=' too.
-std::size_t ColonOf(const std::string& text) {
-  if (HasKeyAt(text, 0)) return std::string::npos;
-  for (std::size_t colon = text.find(':'); colon != std::string::npos; colon = text.find(':', colon + 1)) {
-    if (HasKeyAt(text, colon + 1)) return colon;
-  }
-  return text.substr(0, text.find('=')).rfind(':');
-}
-
-// "NAME:KEY=VALUE" or "KEY=VALUE".
-Expected<StyleSet::Override> ParseOverride(const std::string& text, const RunContext& context) {
-  const std::size_t colon = ColonOf(text);
-  if (colon == std::string::npos) return StyleSet::Override{"", "", text};
-  StyleSet::Override one{text.substr(0, colon), "", text.substr(colon + 1)};
-  if (one.style.empty()) return UsageError("--set " + text + ": expected a style's name before the colon");
-  if (const auto found = FindStyle(one.style, context)) one.path = PathOf(*found);
-  return one;
-}
-
 // An override of a style that nothing is painted in is a slip.
 Status CheckOverrides(const StyleSet& set) {
   for (const StyleSet::Override& one : set.overrides) {
     if (one.style.empty() || set.opened.count(one.path)) continue;
     std::string names;
     for (const std::string& name : set.given) names += (names.empty() ? "" : ", ") + name;
-    return UsageError("--set " + one.style + ":" + one.text + ": --style and --assign give no style '" + one.style +
-                      "'; they give " + names);
+    return UsageError("--set " + ToText(one) + ": --style and --assign give no style '" + one.style + "'; they give " +
+                      names);
   }
   return Ok();
 }
@@ -282,13 +254,13 @@ Status SetFinishOfRun(StyleSet& set) {
   std::vector<FinishPass> all;
   for (const Style& style : set.styles) all.insert(all.end(), style.finish.begin(), style.finish.end());
   for (const StyleSet::Override& one : set.overrides) {
-    if (!one.style.empty() || !IsOfFinish(one.text)) continue;
-    SCUMBLE_ASSIGN(std::size_t count, OverrideFinish(set.finish, one.text));
+    if (!one.style.empty() || !IsOfFinish(one.key)) continue;
+    SCUMBLE_ASSIGN(std::size_t count, OverrideFinish(set.finish, one));
     FinishChain copy{all, {}};  // they are set already
-    SCUMBLE_ASSIGN(const std::size_t of_styles, OverrideFinish(copy, one.text));
+    SCUMBLE_ASSIGN(const std::size_t of_styles, OverrideFinish(copy, one));
     if (count + of_styles > 0) continue;
     all.insert(all.end(), set.finish.passes.begin(), set.finish.passes.end());
-    return NoSuchFinish(one.text, all);
+    return NoSuchFinish(one, all);
   }
   return Ok();
 }
@@ -298,9 +270,9 @@ Status SetFinishOfRun(StyleSet& set) {
 Expected<StyleSet> OpenStyles(const StyleRequest& options, const RunContext& context) {
   StyleSet set;
   set.options = options, set.context = context;
-  for (const std::string& text : options.sets) {
-    SCUMBLE_ASSIGN(StyleSet::Override one, ParseOverride(text, context));
-    set.overrides.push_back(std::move(one));
+  for (const StyleOverride& one : options.sets) {
+    const auto found = one.style.empty() ? Expected<std::filesystem::path>("") : FindStyle(one.style, context);
+    set.overrides.push_back({one, found && !found->empty() ? PathOf(*found) : ""});
   }
   SCUMBLE_RETURN_IF_ERROR(PlaceOf(set, options.style, {}));
   SCUMBLE_ASSIGN(const std::vector<Assignment> assignments, ReadAssignments(options.assigned));
@@ -315,7 +287,7 @@ Expected<StyleSet> OpenStyles(const StyleRequest& options, const RunContext& con
       by_name[name] = *place;
     }
     const std::uint16_t place = by_name[name];
-    set.assigned.push_back({pattern, place, where});
+    set.assigned.push_back({NamePattern(pattern), place, where});
     if (place == StyleMap::kShadowCatcher && !PaintsShadows(set.first())) {
       return UsageError(where + ": the style paints no shadows that it could catch; give --set " +
                         "transfer.shadow=paint, or " + pattern + "=rendered to leave it out");
@@ -348,7 +320,7 @@ Expected<StyleMap> MapStyles(StyleSet& set, const GuideSet& guides, const std::s
     for (const auto& [names, styles] :
          {std::pair(&objects, &assignment.of_object), {&materials, &assignment.of_material}}) {
       for (const auto& [id, name] : *names) {
-        if (!FitsPattern(name, one.pattern)) continue;
+        if (!one.pattern.Fits(name)) continue;
         (*styles)[id] = {rank, one.style};
         fits = true;
       }
@@ -358,13 +330,13 @@ Expected<StyleMap> MapStyles(StyleSet& set, const GuideSet& guides, const std::s
                                 : has_materials ? "layer object"
                                                 : "layers object and material";
       return InputError(one.where + ": " + file + " names no such object or material: " +
-                        DescribeNames(one.pattern, objects, materials) + "; it lacks the " + lacks +
+                        DescribeNames(one.pattern.text(), objects, materials) + "; it lacks the " + lacks +
                         ", which may know more: make guides with scumble guidegen, or render with that Cryptomatte");
     }
     if (!fits && !one.named && !one.warned) {
       one.warned = true;
       set.context.Warn(one.where + ": the scene has no such object or material; " +
-                       DescribeNames(one.pattern, objects, materials));
+                       DescribeNames(one.pattern.text(), objects, materials));
     }
     one.named = one.named || fits;
   }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/image/exact_math.h"
 #include "pipeline/style/assignments.h"
 #include "transfer/transfer.h"
 
@@ -53,15 +54,15 @@ class Grid {
   bool HalfFits() const { return options_.width % 2 == 0 && options_.height % 2 == 0; }
   bool IsPlain() const { return style_.guide_weights.ArePlain(); }
 
-  Variant& Add(const std::string& axis, const std::string& value, std::vector<std::string> settings = {}) {
+  Variant& Add(const std::string& axis, const std::string& value, std::vector<StyleOverride> settings = {}) {
     Variant variant;
     variant.name = axis + " " + value, variant.axis = axis, variant.value = value,
     variant.settings = std::move(settings);
     return grid_.variants.emplace_back(std::move(variant));
   }
   // One key, which gives the axis its name.
-  void AddKey(const std::string& axis, const std::string& value) {
-    Add(axis, value, {"transfer." + axis + "=" + value});
+  void AddKey(const std::string& axis, const KeyValue& value) {
+    Add(axis, BareText(value), {MakeOverride("transfer." + axis, value)});
   }
 
   void AddExact() {
@@ -69,16 +70,17 @@ class Grid {
     variant.name = "the exact variant", variant.axis = kExactAxis, variant.value = "";
     if (style_.method == Method::kStyleBlit) {
       if (BruteForceFits()) {
-        variant.settings.push_back("transfer.method=bruteforce");
+        variant.settings.push_back(MakeOverride("transfer.method", std::string("bruteforce")));
       } else {
         grid_.left_out.push_back(fmt::format(
             "brute force in the exact variant, which is for pictures of at most {} pixels", kMostBruteForcePixels));
       }
     }
     // The nearest by comparison: a ball's formula is exact to a pixel only.
-    if (IsPlain() && style_.nearest != NearestSearch::kTree) variant.settings.push_back("transfer.nearest=tree");
-    if (style_.nearest_error > 0.0) variant.settings.push_back("transfer.nearest_error=0");
-    if (style_.match_step > 1) variant.settings.push_back("transfer.match_step=1");
+    if (IsPlain() && style_.nearest != NearestSearch::kTree)
+      variant.settings.push_back(MakeOverride("transfer.nearest", std::string("tree")));
+    if (style_.nearest_error > 0.0) variant.settings.push_back(MakeOverride("transfer.nearest_error", 0.0));
+    if (style_.match_step > 1) variant.settings.push_back(MakeOverride("transfer.match_step", std::int64_t(1)));
     if (options_.chance && options_.samples < kConverged) variant.samples = kConverged;
     grid_.variants.push_back(std::move(variant));
   }
@@ -93,7 +95,7 @@ class Grid {
         }
         continue;
       }
-      AddKey("method", NameOf(method));
+      AddKey("method", std::string(NameOf(method)));
     }
   }
 
@@ -102,34 +104,34 @@ class Grid {
     if (style_.method == Method::kLitSphere) return;
     if (style_.method == Method::kStyleBlit) {
       for (int levels = 1; levels <= 9; ++levels) {
-        if (levels != style_.levels && (!options_.quick || levels % 2)) AddKey("levels", std::to_string(levels));
+        if (levels != style_.levels && (!options_.quick || levels % 2)) AddKey("levels", std::int64_t(levels));
       }
     }
     for (const double factor : {0.25, 0.5, 2.0, 4.0}) {
       const double threshold = factor * style_.threshold;
       if (!(threshold > 0.0) || !std::isfinite(threshold) || (options_.quick && (factor < 0.5 || factor > 2.0)))
         continue;
-      AddKey("threshold", fmt::format("{:.6g}", threshold));
+      AddKey("threshold", RoundToDigits(threshold, 6));
     }
   }
 
   void AddVotes() {
     for (const int radius : {0, 1, 2, 4, 8}) {
       if (radius != style_.blend_radius && (!options_.quick || radius % 4 == 0))
-        AddKey("blend_radius", std::to_string(radius));
+        AddKey("blend_radius", std::int64_t(radius));
     }
-    if (!options_.quick) AddKey("edge_aware", style_.edge_aware ? "false" : "true");
+    if (!options_.quick) AddKey("edge_aware", !style_.edge_aware);
     for (const int step : {1, 2, 4}) {
-      if (step != style_.match_step && (!options_.quick || step != 4)) AddKey("match_step", std::to_string(step));
+      if (step != style_.match_step && (!options_.quick || step != 4)) AddKey("match_step", std::int64_t(step));
     }
   }
 
   // Of a tree, which may be off by such shares.
-  void AddErrors(const std::vector<std::string>& settings) {
+  void AddErrors(const std::vector<StyleOverride>& settings) {
     for (const double error : {0.1, 0.5, 2.0}) {
       if (error == style_.nearest_error || (options_.quick && error != 0.5)) continue;
-      std::vector<std::string> all = settings;
-      all.push_back(fmt::format("transfer.nearest_error={:g}", error));
+      std::vector<StyleOverride> all = settings;
+      all.push_back(MakeOverride("transfer.nearest_error", error));
       Add("nearest", fmt::format("tree within {:g}%", 100.0 * error), std::move(all));
     }
   }
@@ -139,15 +141,16 @@ class Grid {
     if (!IsPlain()) return AddErrors({});
     NearestSearch own = style_.nearest;
     if (own == NearestSearch::kAuto) own = sphere_ ? NearestSearch::kAnalytic : NearestSearch::kTable;
-    if (sphere_ && own != NearestSearch::kAnalytic) AddKey("nearest", "analytic");
+    if (sphere_ && own != NearestSearch::kAnalytic) AddKey("nearest", std::string("analytic"));
     for (const int resolution : {32, 64, 128, 256, 512, 1024}) {
       const bool usual = resolution == LookUpTable::kResolution;
       if ((own == NearestSearch::kTable && usual) || (options_.quick && resolution != 64 && !usual)) continue;
-      Variant& variant = Add("nearest", fmt::format("table {}", resolution), {"transfer.nearest=table"});
+      Variant& variant =
+          Add("nearest", fmt::format("table {}", resolution), {MakeOverride("transfer.nearest", std::string("table"))});
       variant.table_resolution = resolution;
     }
-    if (own != NearestSearch::kTree) AddKey("nearest", "tree");
-    AddErrors({"transfer.nearest=tree"});
+    if (own != NearestSearch::kTree) AddKey("nearest", std::string("tree"));
+    AddErrors({MakeOverride("transfer.nearest", std::string("tree"))});
   }
 
   void AddGuides() {
@@ -195,9 +198,9 @@ class Grid {
     const int differences =
         (scale < 1.0) + (method != style_.method) + (blit && levels != style_.levels) + (radius != style_.blend_radius);
     if (differences < 2) return;
-    std::vector<std::string> settings = {fmt::format("transfer.method={}", NameOf(method))};
-    if (blit) settings.push_back(fmt::format("transfer.levels={}", levels));
-    settings.push_back(fmt::format("transfer.blend_radius={}", radius));
+    std::vector<StyleOverride> settings = {MakeOverride("transfer.method", std::string(NameOf(method)))};
+    if (blit) settings.push_back(MakeOverride("transfer.levels", std::int64_t(levels)));
+    settings.push_back(MakeOverride("transfer.blend_radius", std::int64_t(radius)));
     std::string value = NameOf(method);
     if (blit) value += fmt::format(" {} levels", levels);
     value += fmt::format(" radius {}", radius);
@@ -244,8 +247,9 @@ Expected<std::vector<Variant>> ChooseVariants(const std::vector<Variant>& varian
     const std::string part = only.substr(begin, end - begin);
     begin = end + 1;
     bool any = false;
+    const NamePattern pattern(part);
     for (std::size_t i = 0; i < variants.size(); ++i) {
-      if (variants[i].axis != part && !FitsPattern(variants[i].name, part)) continue;
+      if (variants[i].axis != part && !pattern.Fits(variants[i].name)) continue;
       chosen[i] = any = true;
     }
     if (!any) {

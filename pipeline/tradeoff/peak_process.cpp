@@ -60,7 +60,7 @@ std::vector<std::string> TradeArguments(const TradeSetup& setup, const RunContex
   words.push_back(scene.starts_with("-") ? "./" + scene : scene);
   add("--style", setup.style.style);
   for (const auto& [option, value] : FinishArguments(setup)) add(option, value);
-  for (const std::string& set : setup.style.sets) add("--set", set);
+  for (const StyleOverride& set : setup.style.sets) add("--set", ToText(set));
   add("--size", SizeToText(setup.scene.size));
   for (const auto& [option, value] : SceneArguments(setup)) words.push_back(option + "=" + value);
   if (setup.scene.samples_given) add("--samples", std::to_string(setup.scene.samples));

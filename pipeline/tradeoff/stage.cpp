@@ -20,9 +20,9 @@
 namespace scumble {
 namespace {
 
-constexpr const char* kNoPaper = "transfer.paper=";
+StyleOverride NoPaper() { return MakeOverride("transfer.paper", std::string()); }
 
-Expected<Style> OpenStyleWith(const TradeSetup& setup, const std::vector<std::string>& settings,
+Expected<Style> OpenStyleWith(const TradeSetup& setup, const std::vector<StyleOverride>& settings,
                               const RunContext& context) {
   StyleRequest one = setup.style;
   one.scene_styles = false;
@@ -65,8 +65,8 @@ Expected<Style> StyleOnPaper(const TradeSetup& setup, const Variant& variant, co
 }
 
 Expected<Style> StyleOfVariant(const TradeSetup& setup, const Variant& variant, const RunContext& context) {
-  std::vector<std::string> settings = variant.settings;
-  settings.push_back(kNoPaper);
+  std::vector<StyleOverride> settings = variant.settings;
+  settings.push_back(NoPaper());
   return OpenStyleWith(setup, settings, context);
 }
 
@@ -108,9 +108,9 @@ RepeatOptions RepeatVariant(const TradeSetup& setup, const TradeStage& stage, co
     text += " " + option + " " + Quoted(value);
   };
   for (const auto& [option, value] : FinishArguments(setup)) add(option, value);
-  for (const std::string& set : setup.style.sets) add("--set", set);
-  for (const std::string& set : variant.settings) add("--set", set);
-  if (stage.has_paper) add("--set", kNoPaper);
+  for (const StyleOverride& set : setup.style.sets) add("--set", ToText(set));
+  for (const StyleOverride& set : variant.settings) add("--set", set.text);
+  if (stage.has_paper) add("--set", NoPaper().text);
   add("--size", fmt::format("{}x{}", stage.width, stage.height));
   for (const auto& [option, value] : SceneArguments(setup)) add(option, value);
   if (UpsampleOf(variant) > 1) add("--upsample", std::to_string(UpsampleOf(variant)));

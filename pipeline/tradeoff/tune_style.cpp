@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/image/exact_math.h"
 #include "pipeline/tradeoff/stage.h"
 #include "pipeline/variant/variant_error.h"
 
@@ -22,21 +23,21 @@ constexpr double kThresholds[] = {0.5, 0.7, 1.4, 2.0};  // times the style's own
 
 struct TunedKey {
   std::string key;
-  std::vector<std::string> values;
+  std::vector<KeyValue> values;
 };
 
 // The values to try, the style's own ones left out.
-std::vector<TunedKey> KeysOf(const Style& style, const std::vector<std::string>& sets) {
+std::vector<TunedKey> KeysOf(const Style& style, const std::vector<StyleOverride>& sets) {
   const TransferSettings& own = style.transfer;
   const auto other_than = [](double value, const std::vector<int>& values) {
-    std::vector<std::string> others;
+    std::vector<KeyValue> others;
     for (const int one : values) {
-      if (one != value) others.push_back(std::to_string(one));
+      if (one != value) others.emplace_back(std::int64_t(one));
     }
     return others;
   };
   TunedKey threshold{"transfer.threshold", {}};
-  for (const double factor : kThresholds) threshold.values.push_back(fmt::format("{:.3g}", factor * own.threshold));
+  for (const double factor : kThresholds) threshold.values.emplace_back(RoundToDigits(factor * own.threshold, 3));
   std::vector<TunedKey> keys = {std::move(threshold),
                                 {"transfer.hybrid", other_than(own.hybrid, {0, 4, 8, 16})},
                                 {"transfer.variety", other_than(own.variety, {0, 8, 15, 25})},
@@ -45,7 +46,7 @@ std::vector<TunedKey> KeysOf(const Style& style, const std::vector<std::string>&
     const bool moves = std::any_of(style.tracks.begin(), style.tracks.end(),
                                    [&](const StyleTrack& track) { return track.name == one.key; });
     return moves || std::any_of(sets.begin(), sets.end(),
-                                [&](const std::string& set) { return set.starts_with(one.key + "="); });
+                                [&](const StyleOverride& set) { return set.style.empty() && set.key == one.key; });
   });
   return keys;
 }
@@ -123,7 +124,7 @@ class Tuner {
   }
 
  private:
-  using Settings = std::map<std::string, std::string>;  // by key
+  using Settings = std::map<std::string, KeyValue>;  // by key
 
   Status Open() {
     StyleRequest plain = request_.style;
@@ -152,7 +153,7 @@ class Tuner {
 
   static Variant VariantOf(const Settings& settings, int more_seed) {
     Variant variant;
-    for (const auto& [key, value] : settings) variant.settings.push_back(key + "=" + value);
+    for (const auto& [key, value] : settings) variant.settings.push_back(MakeOverride(key, value));
     variant.more_seed = more_seed;
     return variant;
   }
@@ -213,7 +214,7 @@ class Tuner {
       for (Settings one : ways) {
         one.erase(key.key);
         more.push_back(one);
-        for (const std::string& value : key.values) {
+        for (const KeyValue& value : key.values) {
           one[key.key] = value;
           more.push_back(one);
         }

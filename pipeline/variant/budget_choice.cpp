@@ -1,6 +1,7 @@
 #include "pipeline/budget_choice.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -52,7 +53,7 @@ std::vector<std::string> OptionsListOf(const Variant& variant) {
   if (UpsampleOf(variant) > 1) add("--upsample", std::to_string(UpsampleOf(variant)));
   if (variant.upscale) options.emplace_back("--upscale");
   if (variant.samples > 0) add("--samples", std::to_string(variant.samples));
-  for (const std::string& setting : variant.settings) add("--set", setting);
+  for (const StyleOverride& setting : variant.settings) add("--set", setting.text);
   return options;
 }
 

@@ -14,35 +14,27 @@
 namespace scumble {
 namespace {
 
-// A key of the style that a step may set, and where that would change something.
+// What a step may set of the style, and where that would change something.
 struct VariantSetting {
-  const char* key;
-  const char* text;
-  KeyValue value;
+  StyleOverride set;
   bool (*changes)(const TransferSettings& settings);
   bool (*raises)(const TransferSettings& settings) = nullptr;  // to more than the style itself has; null: never
 };
 
-std::span<const VariantSetting> VariantSettings() {
+enum SettingName { kStyleBlit, kLitSphere, kCrisp, kUnsplit };
+
+const VariantSetting& SettingOf(SettingName name) {
   static const std::vector<VariantSetting> kSettings = {
-      {"transfer.method", "styleblit", std::string("styleblit"),
+      {MakeOverride("transfer.method", std::string("styleblit")),
        [](const TransferSettings& settings) { return settings.method == Method::kBruteForce; },
        [](const TransferSettings& settings) { return settings.method == Method::kLitSphere; }},
-      {"transfer.method", "litsphere", std::string("litsphere"),
+      {MakeOverride("transfer.method", std::string("litsphere")),
        [](const TransferSettings& settings) { return settings.method != Method::kLitSphere; }},
-      {"transfer.blend_radius", "0", std::int64_t(0),
+      {MakeOverride("transfer.blend_radius", std::int64_t(0)),
        [](const TransferSettings& settings) { return settings.blend_radius != 0; }},
-      {"transfer.hybrid", "0", 0.0, [](const TransferSettings& settings) { return settings.hybrid != 0.0; }},
+      {MakeOverride("transfer.hybrid", 0.0), [](const TransferSettings& settings) { return settings.hybrid != 0.0; }},
   };
-  return kSettings;
-}
-
-const VariantSetting& SettingOf(const std::string& text) {
-  for (const VariantSetting& setting : VariantSettings()) {
-    if (text == fmt::format("{}={}", setting.key, setting.text)) return setting;
-  }
-  SCUMBLE_CHECK(false);
-  return VariantSettings().front();
+  return kSettings[name];
 }
 
 // Of a pixel. Fewer samples cost noise that hardly shows in paint, so they are dropped first, but for those that the
@@ -51,13 +43,10 @@ constexpr int kManySamples = std::numeric_limits<int>::max(), kSomeSamples = 16,
 
 struct LadderStep {
   int upsample;
-  std::vector<std::string> settings;
+  std::vector<SettingName> settings;
   int samples = kFewSamples;  // at most
   bool upscale = false;       // of the picture, not of its guides
 };
-
-constexpr const char *kStyleBlit = "transfer.method=styleblit", *kLitSphere = "transfer.method=litsphere",
-                     *kUnsplit = "transfer.hybrid=0", *kCrisp = "transfer.blend_radius=0";
 
 // By rising texture, the mean over scenes and styles: docs/budget.md. The Lit Sphere comes last, where nothing else is
 // quick enough.
@@ -83,7 +72,7 @@ const std::vector<LadderStep>& LadderSteps() {
 
 bool IsSetByUser(const StyleSet& styles, std::size_t style, const std::string& key) {
   return std::any_of(styles.overrides.begin(), styles.overrides.end(), [&](const StyleSet::Override& one) {
-    if (one.text.substr(0, one.text.find('=')) != key) return false;
+    if (one.key != key) return false;
     if (one.style.empty()) return true;
     const auto place = styles.opened.find(one.path);
     return place != styles.opened.end() && place->second == style;
@@ -96,15 +85,15 @@ bool HasTrack(const Style& style, const std::string& key) {
 
 bool ChangesSomething(const VariantSetting& setting, const StyleSet& styles) {
   for (std::size_t i = 0; i < styles.styles.size(); ++i) {
-    if (IsSetByUser(styles, i, setting.key)) continue;
-    if (HasTrack(styles.styles[i], setting.key) || setting.changes(styles.styles[i].transfer)) return true;
+    if (IsSetByUser(styles, i, setting.set.key)) continue;
+    if (HasTrack(styles.styles[i], setting.set.key) || setting.changes(styles.styles[i].transfer)) return true;
   }
   return false;
 }
 
 bool RaisesSomething(const VariantSetting& setting, const StyleSet& styles) {
   for (std::size_t i = 0; i < styles.styles.size(); ++i) {
-    if (setting.raises && !IsSetByUser(styles, i, setting.key) && setting.raises(styles.styles[i].transfer))
+    if (setting.raises && !IsSetByUser(styles, i, setting.set.key) && setting.raises(styles.styles[i].transfer))
       return true;
   }
   return false;
@@ -128,12 +117,12 @@ Variant MakeVariant(const LadderStep& step, const StyleSet& styles, const Ladder
   variant.guide_scale = 1.0 / SmallerBy(step.upsample, frame);
   variant.upscale = step.upscale && variant.guide_scale < 1.0 && !frame.full_size;
   if (step.samples < frame.samples) variant.samples = step.samples;
-  for (std::string setting : step.settings) {
+  for (SettingName setting : step.settings) {
     if (setting == kLitSphere && WeighGuides(styles)) setting = kStyleBlit;
     if (!ChangesSomething(SettingOf(setting), styles)) continue;
     // All styles take one setting, and none may come to more than it has: then all take the least.
     if (RaisesSomething(SettingOf(setting), styles)) setting = kLitSphere;
-    variant.settings.push_back(std::move(setting));
+    variant.settings.push_back(SettingOf(setting).set);
   }
   variant.name = variant.value = OptionsOf(variant);
   variant.axis = "quality";
@@ -174,23 +163,22 @@ std::string OptionsOf(const Variant& variant) {
   if (UpsampleOf(variant) > 1) add(fmt::format("--upsample {}", UpsampleOf(variant)));
   if (variant.upscale) add("--upscale");
   if (variant.samples > 0) add(fmt::format("--samples {}", variant.samples));
-  for (const std::string& setting : variant.settings) add("--set " + setting);
+  for (const StyleOverride& setting : variant.settings) add("--set " + setting.text);
   return text;
 }
 
 Status ApplyVariant(const Variant& variant, StyleSet& styles) {
-  for (const std::string& text : variant.settings) {
-    const VariantSetting& setting = SettingOf(text);
+  for (const StyleOverride& setting : variant.settings) {
     const StyleKey* const key = FindStyleKey(setting.key);
     SCUMBLE_CHECK(key != nullptr);
     for (std::size_t i = 0; i < styles.styles.size(); ++i) {
       if (IsSetByUser(styles, i, setting.key)) continue;
       RemoveTrack(styles.styles[i], setting.key);
-      SCUMBLE_RETURN_IF_ERROR(key->set(styles.styles[i], setting.value, {}));
+      SCUMBLE_RETURN_IF_ERROR(key->set(styles.styles[i], std::get<KeyValue>(setting.value), {}));
     }
   }
   std::vector<StyleSet::Override> first;
-  for (const std::string& setting : variant.settings) first.push_back({"", "", setting});
+  for (const StyleOverride& setting : variant.settings) first.push_back({setting, ""});
   styles.overrides.insert(styles.overrides.begin(), first.begin(), first.end());
   return Ok();
 }

@@ -7,15 +7,16 @@
 #include <vector>
 
 #include "core/io/guide_precision.h"
+#include "core/style/style_override.h"
 #include "transfer/lookup_table.h"
 
 namespace scumble {
 
 struct Variant {
-  std::string name;                   // unique in its list, "levels 3"; "the style" changes nothing
-  std::string axis;                   // what it changes, "levels"
-  std::string value;                  // to what, "3"
-  std::vector<std::string> settings;  // KEY=VALUE, as --set takes them, in this order
+  std::string name;                     // unique in its list, "levels 3"; "the style" changes nothing
+  std::string axis;                     // what it changes, "levels"
+  std::string value;                    // to what, "3"
+  std::vector<StyleOverride> settings;  // of all styles, in this order
   GuidePrecision precision = GuidePrecision::kFloat;
   double guide_scale = 1.0;  // width and height of the guides against the picture's: 0.5 is upsampled, 2 is thinned out
   bool upscale = false;      // with guide_scale < 1: painted at the guides' size and scaled up

@@ -55,10 +55,12 @@ void ReadValue(const std::string& text) {
   CheckRefusal(name, 1000 + 2 * text.size());
   if (name) SCUMBLE_CHECK(!name->At(-5).empty() || text.empty());
   StyleRequest style;
-  style.style = SmallStyle(), style.sets = {text, SmallStyle() + ":" + text};
-  if (text.find('=') != text.npos)
-    CheckRefusal(OpenStyles(style, RunContext()), 3000 + 3 * text.size() + 3 * SmallStyle().size());
-  static_cast<void>(FitsPattern(text.substr(0, text.size() / 2), text.substr(text.size() / 2)));
+  style.style = SmallStyle();
+  const std::size_t most = 3000 + 3 * text.size() + 3 * SmallStyle().size();
+  const auto sets = ParseStyleOverrides({text, SmallStyle() + ":" + text});
+  CheckRefusal(sets, most);
+  if (sets) style.sets = *sets, CheckRefusal(OpenStyles(style, RunContext()), most);
+  static_cast<void>(NamePattern(text.substr(text.size() / 2)).Fits(text.substr(0, text.size() / 2)));
 }
 
 void FuzzOptions(Bytes input) {

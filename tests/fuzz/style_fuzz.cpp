@@ -44,7 +44,10 @@ void FuzzStyle(Bytes input) {
   const std::string_view text = AsText(input);
   const std::size_t end = std::min(text.find('\0'), text.size());
   const auto path = InFile("style.toml", input.first(end));
-  Expected<Style> style = LoadStyle(path, Lines(text.substr(std::min(end + 1, text.size()))));
+  const auto sets = ParseStyleOverrides(Lines(text.substr(std::min(end + 1, text.size()))));
+  CheckRefusal(sets, 40000);
+  if (!sets) return;
+  Expected<Style> style = LoadStyle(path, *sets);
   CheckRefusal(style, 40000);  // a value is quoted as it stands
   if (!style) return;
   CheckRefusal(LayersOverTime(*style));

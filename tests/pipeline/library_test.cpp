@@ -86,12 +86,53 @@ TEST(Library, ViewsAndLightsOutsideTheirRangeAreRefused) {
   };
   refuses("frame -2147483648", [&](SceneSettings& scene) { scene.frame = std::numeric_limits<int>::min(); });
   refuses("view.azimuth", [&](SceneSettings& scene) { scene.view->azimuth = kNaN; });
-  refuses("view.elevation", [&](SceneSettings& scene) { scene.view->elevation = 90.5; });
+  refuses("view.elevation must be -90 to 90, found 90.5", [&](SceneSettings& scene) { scene.view->elevation = 90.5; });
   refuses("view.distance", [&](SceneSettings& scene) { scene.view->distance = kInfinity; });
-  refuses("view.right", [&](SceneSettings& scene) { scene.view->up = kNaN; });
+  refuses("view.up must be finite, found nan", [&](SceneSettings& scene) { scene.view->up = kNaN; });
   refuses("view.fov", [&](SceneSettings& scene) { scene.view->fov = 180.0; });
+  refuses("width 0 is out of range; expected 1 to 32768", [&](SceneSettings& scene) { scene.width = 0; });
+  refuses("width and height 32768x32768: expected at most",
+          [&](SceneSettings& scene) { scene.width = scene.height = 32768; });
+  refuses("coverage_samples 17 is out of range; expected 1 to 16",
+          [&](SceneSettings& scene) { scene.coverage_samples = 17; });
+  refuses("instruction_set \"foo\" is unknown: expected one of",
+          [&](SceneSettings& scene) { scene.instruction_set = "foo"; });
+  refuses("view_layer is for .blend scenes", [&](SceneSettings& scene) { scene.view_layer = "a"; });
+  refuses("blender_scene is for .blend scenes", [&](SceneSettings& scene) { scene.blender_scene = "a"; });
+  refuses("animation plays with the frames' numbers: give frame N",
+          [&](SceneSettings& scene) { scene.animation = "a"; });
   refuses("light.azimuth", [&](SceneSettings& scene) { scene.light->azimuth = kInfinity; });
   refuses("light.elevation", [&](SceneSettings& scene) { scene.light->elevation = kNaN; });
+}
+
+// No option of the command line is named, neither as what is wrong nor as what to do.
+TEST(Library, ErrorsNameMembers) {
+  StylizerOptions options;
+  options.data_folder = SCUMBLE_SOURCE_DIR;
+  Stylizer stylizer(options);
+  const auto refusal = [&](const StyleSettings& style, const PaintSettings& paint = {}) {
+    SceneSettings scene;
+    scene.file = std::string(SCUMBLE_SOURCE_DIR) + "/scenes/ball.glb";
+    scene.width = 17, scene.height = 16;
+    const auto painted = stylizer.Paint(scene, style, paint);
+    EXPECT_FALSE(painted);
+    const std::string message = painted ? "" : painted.error().message;
+    EXPECT_EQ(message.find("--"), std::string::npos) << message;
+    return message.substr(0, message.find_first_of(":;"));
+  };
+  EXPECT_EQ(refusal({.style = "oil", .overrides = {"transfer.scale"}}), "overrides transfer.scale");
+  EXPECT_EQ(refusal({.style = "oil", .overrides = {"finish.pen.width=2"}}), "overrides finish.pen.width=2");
+  EXPECT_EQ(refusal({.style = "oil", .assignments = {"Ball"}}), "assignments Ball");
+  EXPECT_EQ(refusal({.style = "oil", .assignments = {"Ball=catcher"}}), "assignments Ball=catcher");
+  EXPECT_EQ(refusal({.style = "oil", .finishes = {"nothing"}}), "finishes nothing");
+  EXPECT_EQ(refusal({.style = "oil"}, {.exposure = {}, .upsample = 2}), "width and height 17x16 with upsample 2");
+  EXPECT_EQ(refusal({.style = "oil"}, {.exposure = {}, .upsample = 9}), "upsample 9");
+  EXPECT_EQ(refusal({.style = "oil"}, {.exposure = {}, .upscale = true}), "upscale");
+  options.data_folder = "/nowhere";
+  Stylizer moved(options);
+  const auto none = moved.Paint({.file = "a.obj"}, {.style = "oil"});
+  ASSERT_FALSE(none);
+  EXPECT_NE(none.error().message.find("there are none in /nowhere"), std::string::npos) << none.error().message;
 }
 
 TEST(Library, MotionIsThatOfGuidegen) {

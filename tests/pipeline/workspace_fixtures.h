@@ -33,9 +33,9 @@ inline SceneRequest SceneOf(const std::string& name) {
   return request;
 }
 
-inline StyleRequest StyleOf(const std::string& style, std::vector<std::string> sets = {}) {
+inline StyleRequest StyleOf(const std::string& style, const std::vector<std::string>& sets = {}) {
   StyleRequest request;
-  request.style = style, request.sets = std::move(sets);
+  request.style = style, request.sets = *ParseStyleOverrides(sets);
   return request;
 }
 

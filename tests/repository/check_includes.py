@@ -20,7 +20,7 @@ LIBRARIES = {
     "painting": ("core/painting", {"public", "image"}, []),
     "io": ("core/io", {"public", "image"}, ["file", "png", "exr", "picture", "guides", "blender", "oiio"]),
     "filter": ("core/filter", {"public", "image"}, []),
-    "style": ("core/style", {"public", "image", "painting", "io"}, ["toml", "finish", "kit", "scan"]),
+    "style": ("core/style", {"public", "image", "painting", "io"}, ["finish", "kit", "scan"]),
     "guidegen": ("guidegen", {"public", "image", "io", "filter"},
                  ["scene", "load", "load/gltf", "load/obj", "surface", "rays", "light", "cast"]),
     "transfer": ("transfer", {"public", "image", "painting", "filter"},

@@ -260,13 +260,20 @@ Expected<SceneRequest> ToRequest(const SceneOptions& options) {
   return request;
 }
 
-void AddOneStyleOptions(CLI::App& verb, StyleRequest& request, bool required) {
+Expected<StyleRequest> ToRequest(const StyleOptions& options) {
+  StyleRequest request = options.request;
+  SCUMBLE_ASSIGN(request.sets, ParseStyleOverrides(options.sets));
+  return request;
+}
+
+void AddOneStyleOptions(CLI::App& verb, StyleOptions& options, bool required) {
   const std::string what = "style folder, style.toml, picture of a painted sphere, or a bundled style's name";
-  auto* style = verb.add_option("--style", request.style, required ? what : what + "; adds the layers that it needs");
+  auto* style =
+      verb.add_option("--style", options.request.style, required ? what : what + "; adds the layers that it needs");
   style->type_name("STYLE");
   if (required) style->required();
   verb.add_option(
-          "--set", request.sets,
+          "--set", options.sets,
           "overrides a key of style.toml, as transfer.blend_radius=0, in all styles of the picture; "
           "NAME:transfer.scale=0.5 only in the one that --style or --assign gives as NAME; repeatable, the later "
           "wins. scumble styles --keys lists them")
@@ -297,8 +304,9 @@ void AddFinishOptions(CLI::App& verb, std::vector<std::string>& finishes, std::o
       });
 }
 
-void AddStyleOptions(CLI::App& verb, StyleRequest& request, bool required) {
-  AddOneStyleOptions(verb, request, required);
+void AddStyleOptions(CLI::App& verb, StyleOptions& options, bool required) {
+  StyleRequest& request = options.request;
+  AddOneStyleOptions(verb, options, required);
   verb.add_option("--assign", request.assigned,
                   "another style for an object or material, * stands for any text, as 'Tree*=charcoal'; "
                   "NAME=rendered leaves it as it is, for --over; NAME=catcher shows only the shadows on it, with "

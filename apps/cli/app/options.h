@@ -77,9 +77,16 @@ void AddSceneOptions(CLI::App& verb, SceneOptions& options);
 // --finish and --finish-measures.
 void AddFinishOptions(CLI::App& verb, std::vector<std::string>& finishes, std::optional<FinishMeasures>& measures);
 
+// The options of styles: a request, and the texts of --set that complete it.
+struct StyleOptions {
+  StyleRequest request;
+  std::vector<std::string> sets;
+};
+Expected<StyleRequest> ToRequest(const StyleOptions& options);
+
 // --style and --set alone, for one style.
-void AddOneStyleOptions(CLI::App& verb, StyleRequest& request, bool required);
+void AddOneStyleOptions(CLI::App& verb, StyleOptions& options, bool required);
 // One group for commands that paint and for those that make their guides, so that two steps have the options of one.
-void AddStyleOptions(CLI::App& verb, StyleRequest& request, bool required);
+void AddStyleOptions(CLI::App& verb, StyleOptions& options, bool required);
 
 }  // namespace scumble

@@ -22,6 +22,7 @@ struct FinishVerb {
   FinishRequest request;
   SequenceOptions sequence;
   bool list = false;
+  std::vector<std::string> sets;
   std::string show, fps;
 };
 
@@ -111,6 +112,10 @@ Expected<ExitCode> RunFinishVerb(const FinishVerb& verb, const Globals& globals)
   }
   if (verb.request.output.empty()) return UsageError("scumble finish: -o FILE is required");
   FinishRequest request = verb.request;
+  for (const std::string& text : verb.sets) {
+    SCUMBLE_ASSIGN(StyleOverride set, ParseOverride(text));
+    request.sets.push_back(std::move(set));
+  }
   request.show_finish = ShownFinish(verb.show);
   if (!verb.fps.empty()) {
     SCUMBLE_ASSIGN(request.fps, ParseFrameRate(verb.fps));
@@ -131,7 +136,7 @@ void AddFinishVerb(CLI::App& app, Globals& globals, Action& chosen) {
   sub->add_option("guides", request.guides, "its guides, of the same size: .exr; for effects that read none left out")
       ->type_name("GUIDES");
   AddFinishOptions(*sub, request.finishes, request.measures);
-  sub->add_option("--set", request.sets, "change a key of an effect, as finish.outline.width=4; repeatable")
+  sub->add_option("--set", verb->sets, "change a key of an effect, as finish.outline.width=4; repeatable")
       ->type_name("KEY=VALUE")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);

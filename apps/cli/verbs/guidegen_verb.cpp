@@ -14,7 +14,7 @@ namespace {
 
 struct GuidegenVerb {
   SceneOptions scene;
-  StyleRequest style;
+  StyleOptions style;
   std::string layers;
   std::string compression = "zip";
   bool fast_io = false;
@@ -29,17 +29,19 @@ Expected<GuidegenRequest> ToRequest(const GuidegenVerb& verb) {
   if (verb.output.empty() && !verb.scene.explain) {
     return UsageError("scumble guidegen: -o FILE is required; with --explain and no -o the plan is printed alone");
   }
-  if (verb.style.style.empty() && !verb.style.sets.empty())
+  if (verb.style.request.style.empty() && !verb.style.sets.empty())
     return UsageError("--set changes a style: give --style too");
-  if (verb.style.style.empty() && !verb.style.assigned.empty()) {
+  if (verb.style.request.style.empty() && !verb.style.request.assigned.empty()) {
     return UsageError("--assign goes with a style for all the rest: give --style too");
   }
-  if (verb.style.style.empty() && !verb.style.finishes.empty()) {
+  if (verb.style.request.style.empty() && !verb.style.request.finishes.empty()) {
     return UsageError("--finish comes after a style: give --style too, or ask for --layers");
   }
   SCUMBLE_ASSIGN(request.scene, ToRequest(verb.scene));
   SCUMBLE_ASSIGN(request.sequence, ToRequest(verb.sequence));
-  if (!verb.style.style.empty()) request.style = verb.style;
+  if (!verb.style.request.style.empty()) {
+    SCUMBLE_ASSIGN(request.style, ToRequest(verb.style));
+  }
   request.write = {request.scene.half, verb.fast_io ? kFastCompression : verb.compression, verb.cryptomatte};
   request.output = verb.output;
   request.explain = verb.scene.explain;

@@ -120,6 +120,7 @@ struct InfoVerb {
 };
 
 Json ToJson(const KeyValue& value) {
+  if (const auto* color = std::get_if<Rgb16>(&value)) return ColorText(*color);
   return std::visit([](const auto& held) { return Json(held); }, value);
 }
 

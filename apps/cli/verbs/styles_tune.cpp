@@ -42,7 +42,7 @@ Expected<std::vector<std::string>> SampleScenes(const RunContext& context) {
 
 std::string OptionsOf(const TunedStyle& style) {
   std::string text;
-  for (const std::string& setting : style.settings) text += (text.empty() ? "--set " : " --set ") + setting;
+  for (const StyleOverride& setting : style.settings) text += (text.empty() ? "--set " : " --set ") + setting.text;
   return text;
 }
 
@@ -102,7 +102,9 @@ nlohmann::ordered_json JsonOf(const TuneReport& report) {
                               {"chance", report.chance},
                               {"proposals", nlohmann::ordered_json::array()}};
   for (const TunedStyle& one : report.proposals) {
-    json["proposals"].push_back({{"settings", one.settings}, {"texture", one.texture}, {"time", one.time}});
+    std::vector<std::string> settings;
+    for (const StyleOverride& setting : one.settings) settings.push_back(setting.text);
+    json["proposals"].push_back({{"settings", settings}, {"texture", one.texture}, {"time", one.time}});
   }
   return json;
 }
@@ -122,53 +124,48 @@ Expected<fs::path> StyleFileOf(const StyleRequest& style, const RunContext& cont
   return file;
 }
 
-// A key given by --set, as WithSettings takes it.
-Expected<std::string> SettingOf(const std::string& set) {
-  const std::size_t equals = set.find('=');
-  const StyleKey* const key = equals == std::string::npos ? nullptr : FindStyleKey(set.substr(0, equals));
-  const std::string value = key ? set.substr(equals + 1) : "";
-  const bool is_text =
-      key && (key->kind == KeyKind::kChoice || key->kind == KeyKind::kText || key->kind == KeyKind::kFile);
+// Whether a key given by --set can be written to style.toml.
+Status CheckCanBeWritten(const StyleOverride& set) {
+  const StyleKey* const key = set.style.empty() ? FindStyleKey(set.key) : nullptr;
+  const std::string value = key ? set.text.substr(set.key.size() + 1) : "";
   const bool is_quoted = value.starts_with('"') || value.starts_with('\'');
   // The file is found from another folder there.
   const bool is_file = key && key->kind == KeyKind::kFile && !value.empty() && !value.starts_with('#') && !is_quoted;
-  if (!key || is_file) {
-    return UsageError("--set " + set +
-                      ": --write cannot put that into style.toml; write it there yourself and leave it out here");
-  }
-  return is_text && !is_quoted ? key->name + "=" + TomlText(KeyValue(value)) : set;
+  if (key && !is_file) return Ok();
+  return UsageError("--set " + ToText(set) +
+                    ": --write cannot put that into style.toml; write it there yourself and leave it out here");
 }
 
 // The text of a style.toml with the keys that were given, with which the proposals were made, and with `more`.
-Expected<std::string> NewText(const fs::path& file, const std::vector<std::string>& sets,
-                              const std::vector<std::string>& more, std::vector<std::string>* written = nullptr) {
-  std::vector<std::string> settings;
-  for (const std::string& set : sets) {
-    SCUMBLE_ASSIGN(std::string setting, SettingOf(set));
-    settings.push_back(std::move(setting));
-  }
-  settings.insert(settings.end(), more.begin(), more.end());
+Expected<std::string> NewText(const fs::path& file, std::vector<StyleOverride> sets,
+                              const std::vector<StyleOverride>& more) {
+  for (const StyleOverride& set : sets) SCUMBLE_RETURN_IF_ERROR(CheckCanBeWritten(set));
+  sets.insert(sets.end(), more.begin(), more.end());
   SCUMBLE_ASSIGN(const std::vector<std::byte> bytes, ReadWholeFile(file));
-  if (written) *written = settings;
-  return WithSettings(std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()), settings, file.string());
+  return WithSettings(std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()), sets, file.string());
 }
 
-Status Write(const std::vector<std::string>& sets, const TunedStyle& chosen, const fs::path& file,
+Status Write(const std::vector<StyleOverride>& sets, const TunedStyle& chosen, const fs::path& file,
              const Globals& globals) {
-  std::vector<std::string> written;
-  SCUMBLE_ASSIGN(const std::string text, NewText(file, sets, chosen.settings, &written));
+  SCUMBLE_ASSIGN(const std::string text, NewText(file, sets, chosen.settings));
   SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(file, text));
+  std::vector<std::string> written;
+  for (const auto* list : {&sets, &chosen.settings}) {
+    for (const StyleOverride& one : *list) written.push_back(one.key + "=" + TomlText(std::get<KeyValue>(one.value)));
+  }
   globals.Note(fmt::format("{}: {}", file.string(), fmt::join(written, ", ")));
   return Ok();
 }
 
 // Before minutes of work.
-Status CheckTargets(const StylesTune& tune, const fs::path& style_file) {
+Status CheckTargets(const StylesTune& tune, const std::vector<StyleOverride>& sets, const fs::path& style_file) {
   if (!style_file.empty()) {
-    SCUMBLE_RETURN_IF_ERROR(NewText(style_file, tune.style.sets, {}));
+    SCUMBLE_RETURN_IF_ERROR(NewText(style_file, sets, {}));
     // Whether the keys of proposals can be written there; values do not matter.
-    if (!NewText(style_file, {},
-                 {"transfer.threshold=0", "transfer.hybrid=0", "transfer.variety=0", "transfer.blend_radius=0"})) {
+    std::vector<StyleOverride> tuned;
+    for (const char* key : {"transfer.threshold", "transfer.hybrid", "transfer.variety", "transfer.blend_radius"})
+      tuned.push_back(MakeOverride(key, std::int64_t(0)));
+    if (!NewText(style_file, {}, tuned)) {
       return InputError(style_file.string() +
                         ": --write cannot put keys into [transfer] as it is written there; write [transfer] and each "
                         "of its keys on a line of its own");
@@ -188,7 +185,8 @@ Status CheckTargets(const StylesTune& tune, const fs::path& style_file) {
 }  // namespace
 
 Expected<ExitCode> RunStylesTune(const StylesTune& tune, const Globals& globals) {
-  TuneRequest request{tune.style, tune.scenes, {}, tune.seed};
+  TuneRequest request{{}, tune.scenes, {}, tune.seed};
+  SCUMBLE_ASSIGN(request.style, ToRequest(tune.style));
   request.style.scene_styles = false;
   SCUMBLE_ASSIGN(request.size, ParseSize(tune.size));
   if (request.scenes.empty()) {
@@ -196,9 +194,9 @@ Expected<ExitCode> RunStylesTune(const StylesTune& tune, const Globals& globals)
   }
   fs::path style_file;
   if (tune.write > 0) {
-    SCUMBLE_ASSIGN(style_file, StyleFileOf(tune.style, globals));
+    SCUMBLE_ASSIGN(style_file, StyleFileOf(request.style, globals));
   }
-  SCUMBLE_RETURN_IF_ERROR(CheckTargets(tune, style_file));
+  SCUMBLE_RETURN_IF_ERROR(CheckTargets(tune, request.style.sets, style_file));
   SCUMBLE_ASSIGN(const TuneReport report, TuneStyle(request, globals));
   Print(globals.json ? JsonText(JsonOf(report)) : TextOf(report));
   if (!tune.folder.empty()) {
@@ -213,7 +211,7 @@ Expected<ExitCode> RunStylesTune(const StylesTune& tune, const Globals& globals)
         fmt::format("--write {}: there are {} proposals, nothing was written", tune.write, report.proposals.size()));
   }
   const TunedStyle& chosen = report.proposals[static_cast<std::size_t>(tune.write) - 1];
-  SCUMBLE_RETURN_IF_ERROR(Write(tune.style.sets, chosen, style_file, globals));
+  SCUMBLE_RETURN_IF_ERROR(Write(request.style.sets, chosen, style_file, globals));
   return ExitCode::kOk;
 }
 

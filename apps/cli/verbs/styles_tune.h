@@ -6,12 +6,13 @@
 #include <vector>
 
 #include "apps/cli/app/command.h"
+#include "apps/cli/app/options.h"
 #include "pipeline/requests.h"
 
 namespace scumble {
 
 struct StylesTune {
-  StyleRequest style;
+  StyleOptions style;
   std::vector<std::string> scenes;  // empty: the sample scenes
   std::string size = "640x360";
   std::uint64_t seed = 0;

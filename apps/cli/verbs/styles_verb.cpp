@@ -131,7 +131,7 @@ void AddStylesVerb(CLI::App& app, Globals& globals, Action& chosen) {
       "threshold and hybrid are varied together, then variety and blend_radius. The measure is not the eye: look "
       "at\n"
       "the contact sheet of -o in full size before you take one. Takes a minute or two on four scenes.\n");
-  tune->add_option("style", tuned->style.style, "a style's folder, style.toml, or a bundled style's name")
+  tune->add_option("style", tuned->style.request.style, "a style's folder, style.toml, or a bundled style's name")
       ->type_name("STYLE")
       ->required();
   tune->add_option("--scene", tuned->scenes, "a scene to tune on, as often as you like; left out: the sample scenes")
@@ -156,7 +156,7 @@ void AddStylesVerb(CLI::App& app, Globals& globals, Action& chosen) {
   sub->callback([=, &globals, &chosen] {
     chosen = [=, &globals]() -> Expected<ExitCode> {
       if (!checked->styles.empty()) return CheckStyles(*checked, globals);
-      if (!tuned->style.style.empty()) return RunStylesTune(*tuned, globals);
+      if (!tuned->style.request.style.empty()) return RunStylesTune(*tuned, globals);
       return *keys ? ListKeys(globals) : ListStyles(globals);
     };
   });

@@ -15,7 +15,7 @@ namespace {
 
 struct StylizeVerb {
   SceneOptions scene;
-  StyleRequest style;
+  StyleOptions style;
   PictureOptions picture;
   BudgetOptions budget;
   SequenceOptions sequence;
@@ -24,7 +24,7 @@ struct StylizeVerb {
 Expected<StylizeRequest> ToRequest(const CLI::App& sub, const StylizeVerb& verb, const Globals& globals) {
   StylizeRequest request;
   SCUMBLE_ASSIGN(request.scene, ToRequest(verb.scene));
-  request.style = verb.style;
+  SCUMBLE_ASSIGN(request.style, ToRequest(verb.style));
   request.explain = verb.scene.explain;
   SCUMBLE_ASSIGN(request.picture, ToRequest(verb.picture, globals));
   SCUMBLE_ASSIGN(request.budget, ToRequest(sub, verb.budget));

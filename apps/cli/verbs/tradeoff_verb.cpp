@@ -38,6 +38,7 @@ namespace fs = std::filesystem;
 struct TradeoffVerb {
   TradeSetup setup;
   SceneOptions scene;             // becomes setup.scene
+  StyleOptions style;             // becomes setup.style
   std::string exposure = "auto";  // becomes setup.exposure
   std::string folder;
   std::string peak_of;  // a variant's name: its memory alone, for the process that AskForPeak starts
@@ -157,6 +158,7 @@ Expected<ExitCode> RunTradeoffVerb(TradeoffVerb verb, const Globals& globals) {
   SCUMBLE_ASSIGN(verb.setup.scene, ToRequest(verb.scene));
   verb.setup.scene.seed = seed;
   SCUMBLE_RETURN_IF_ERROR(CheckSceneRequest(verb.setup.scene));
+  SCUMBLE_ASSIGN(verb.setup.style, ToRequest(verb.style));
   SCUMBLE_ASSIGN(verb.setup.exposure, ParseExposure(verb.exposure));
   verb.setup.writes = !verb.folder.empty();
   if (!verb.peak_of.empty()) {
@@ -222,8 +224,8 @@ void AddTradeoffVerb(CLI::App& app, Globals& globals, Action& chosen) {
       ->capture_default_str();
   AddCastOptions(*sub, verb->scene);
   AddSampleOptions(*sub, verb->scene);
-  AddOneStyleOptions(*sub, verb->setup.style, true);
-  AddFinishOptions(*sub, verb->setup.style.finishes, verb->setup.style.finish_measures);
+  AddOneStyleOptions(*sub, verb->style, true);
+  AddFinishOptions(*sub, verb->style.request.finishes, verb->style.request.finish_measures);
   sub->add_option(
          "--only", verb->setup.only,
          "these axes alone, as levels,nearest, or variants by name, * stands for any text: 'levels*'; the style itself "

@@ -15,7 +15,7 @@ namespace {
 
 struct TransferVerb {
   std::string guides, view_layer, light_layer, camera;
-  StyleRequest style;
+  StyleOptions style;
   PictureOptions picture;
   BudgetOptions budget;
   SequenceOptions sequence;
@@ -26,7 +26,8 @@ Expected<TransferRequest> ToRequest(const CLI::App& sub, const TransferVerb& ver
     return InputError(verb.guides +
                       " is a scene: transfer takes guides; use `scumble stylize`, or `scumble guidegen` first");
   }
-  TransferRequest request{verb.guides, verb.view_layer, verb.light_layer, verb.camera, verb.style, {}, {}, {}};
+  TransferRequest request{verb.guides, verb.view_layer, verb.light_layer, verb.camera, {}, {}, {}, {}};
+  SCUMBLE_ASSIGN(request.style, ToRequest(verb.style));
   SCUMBLE_ASSIGN(request.picture, ToRequest(verb.picture, globals));
   request.picture.over_view_layer = verb.view_layer;
   SCUMBLE_ASSIGN(request.budget, ToRequest(sub, verb.budget));

@@ -53,7 +53,7 @@ std::string CommandOf(const PictureJob& job, const std::vector<std::string>& cho
   line.Word(job.scene.scene);
   line.Option("--style", job.style.style);
   for (const std::string& word : chosen) line.Word(word);  // a later --set of the style's keys wins over it
-  for (const std::string& set : job.style.sets) line.Option("--set", set);
+  for (const StyleOverride& set : job.style.sets) line.Option("--set", ToText(set));
   for (const std::string& assigned : job.style.assigned) line.Option("--assign", assigned);
   for (const std::string& finish : job.style.finishes) line.Option("--finish", finish);
   AddScene(job.scene, line);

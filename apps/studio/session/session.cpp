@@ -221,8 +221,8 @@ std::vector<StyleEntry> Session::State::StylesOf(const Moment& moment) {
   const Expected<SceneDescription> now = Describe(moment);
   const std::optional<SceneDescription> described = now ? std::optional(*now) : LastDescription(moment.state);
   if (!described) return styles;
-  std::vector<std::string> patterns;
-  for (const StudioAssignment& one : moment.state.assignments) patterns.push_back(one.name);
+  std::vector<NamePattern> patterns;
+  for (const StudioAssignment& one : moment.state.assignments) patterns.emplace_back(one.name);
   const std::lock_guard lock(mutex);
   const SceneEntry* const scene = catalogue.FindScene(moment.state.scene);
   for (const std::string& name : StylesAskedFor(described->style_requests, patterns)) {

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "core/style/finish_keys.h"
-#include "core/style/style_edit.h"
 
 namespace scumble {
 namespace {
@@ -293,9 +292,10 @@ PictureJob JobOf(const StudioState& state, const Catalogue& catalogue, const Sce
   job.scene.size = state.size;
   const StyleEntry* const style = catalogue.FindStyle(state.style);
   if (style) job.style.style = style->given;
-  const std::string of = is_alone ? "" : job.style.style + ":";
-  for (const auto& [key, value] : state.keys)
-    job.style.sets.push_back(of + key + "=" + TomlText(ForCommand(key, value, style)));
+  for (const auto& [key, value] : state.keys) {
+    job.style.sets.push_back(MakeExactOverride(key, ForCommand(key, value, style)));
+    if (!is_alone) job.style.sets.back().style = job.style.style;
+  }
   for (const StudioAssignment& one : state.assignments) {
     if (const StyleEntry* entry = catalogue.FindStyle(one.style)) {
       job.style.assigned.push_back(one.name + "=" + entry->given);
@@ -304,7 +304,7 @@ PictureJob JobOf(const StudioState& state, const Catalogue& catalogue, const Sce
   if (state.finish) {
     job.style.finishes.push_back(state.finish->name);
     for (const auto& [dial, turned] : state.finish->dials)
-      job.style.sets.push_back(kDialKeys + dial + "=" + TomlText(KeyValue(turned)));
+      job.style.sets.push_back(MakeExactOverride(kDialKeys + dial, turned));
   }
   job.picture.frame = state.frame, job.picture.seed = state.seed, job.picture.fps = scene.fps;
   job.budget.quality = state.quality, job.budget.budget_ms = state.budget_ms;

@@ -74,7 +74,8 @@ HttpResponse Session::State::Check(const HttpRequest& request) {
   if (*index == 0) {
     style.sets = JobOf(moment.state, KnownCatalogue(), options.scene, true).style.sets;
   }
-  const std::string key = fmt::format("{} {}\n{}", moment.generation, style.style, fmt::join(style.sets, "\n"));
+  std::string key = fmt::format("{} {}", moment.generation, style.style);
+  for (const StyleOverride& set : style.sets) key += "\n" + set.text;
   {
     const std::lock_guard lock(mutex);
     const auto found = checks.find(key);

@@ -12,9 +12,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<std::string> SettingsOf(const std::map<std::string, KeyValue>& keys) {
-  std::vector<std::string> settings;
-  for (const auto& [key, value] : keys) settings.push_back(key + "=" + TomlText(value));
+std::vector<StyleOverride> SettingsOf(const std::map<std::string, KeyValue>& keys) {
+  std::vector<StyleOverride> settings;
+  for (const auto& [key, value] : keys) settings.push_back(MakeExactOverride(key, value));
   return settings;
 }
 
@@ -55,7 +55,7 @@ Expected<std::vector<fs::path>> FilesOf(const StyleEntry& style, const std::map<
   }
   if (!read.unpainted.empty()) {
     // A method without a painting leaves out those that the file names.
-    auto painted = LoadStyle(style.path, {"transfer.method=litsphere"});
+    auto painted = LoadStyle(style.path, {MakeOverride("transfer.method", std::string("litsphere"))});
     read.exemplars = painted ? std::move(painted->exemplars) : std::vector<Exemplar>();
   }
   for (const Exemplar& one : read.exemplars) {

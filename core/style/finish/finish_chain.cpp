@@ -9,7 +9,6 @@
 #include "core/image/check.h"
 #include "core/style/finish_keys.h"
 #include "core/style/style_keyframes.h"
-#include "core/style/toml/toml_values.h"
 
 namespace scumble {
 namespace {
@@ -29,32 +28,37 @@ Status SetAt(const StyleTrack& keys, std::int64_t frame, FinishPass& pass) {
   return Error{done.error().kind, keys.name + " = " + ToText(value) + ": " + done.error().message};
 }
 
-// The key frames of a text KEY=[[FRAME, VALUE], …]; none of any other text.
-Expected<std::optional<StyleTrack>> FramesIn(const std::string& text) {
-  const std::size_t equals = text.find('=');
-  if (equals == std::string::npos) return std::optional<StyleTrack>();
-  const auto parsed = internal::ParseSetValue(text.substr(equals + 1));
-  const auto* pairs = parsed && parsed->size() == 1 ? parsed->get("value")->as_array() : nullptr;
-  if (!pairs || pairs->empty() || !pairs->is_homogeneous(toml::node_type::array)) return std::optional<StyleTrack>();
+Error AtSet(const StyleOverride& set, const Error& error) {
+  return Error{error.kind, "--set " + set.text + ": " + error.message};
+}
+
+// The key frames of an override; none where it is a value.
+Expected<std::optional<StyleTrack>> FramesIn(const StyleOverride& set) {
+  const auto* frames = std::get_if<StyleOverride::Frames>(&set.value);
+  if (!frames) return std::optional<StyleTrack>();
+  if (frames->empty()) return AtSet(set, UsageError("expected frames with their values, as [[1, 0.1], [24, 0.3]]"));
   StyleTrack track;
-  track.name = text.substr(0, equals);
-  std::optional<std::vector<StyleTrack::Key>> keys = internal::FramesOf(*pairs);
-  if (!keys) return UsageError("--set " + text + ": expected frames with their values, as [[1, 0.1], [24, 0.3]]");
-  track.keys = *std::move(keys);
+  track.name = set.key, track.keys = *frames;
   return std::optional(std::move(track));
 }
 
 // What the user sets himself is refused where it has no effect.
-void NoteGiven(const std::string& text, std::span<FinishPass> passes) {
-  const std::string key = text.substr(0, text.find('='));
+void NoteGiven(const std::string& key, std::span<FinishPass> passes) {
   for (FinishPass& pass : passes) {
     auto* const outline = std::get_if<OutlinePass>(&pass.effect);
     if (outline && IsOfPass(key, pass) && LastOf(key) == "thin") outline->thin_is_given = true;
   }
 }
 
-Error AtSet(const std::string& text, const Error& error) {
-  return Error{error.kind, "--set " + text + ": " + error.message};
+// Sets a value in passes.
+Expected<std::size_t> SetInPasses(std::span<FinishPass> passes, const StyleOverride& set) {
+  const KeyValue& value = std::get<KeyValue>(set.value);
+  if (set.key.rfind(kDialKeys, 0) == 0) {
+    const Status turned = TurnFinishDial(passes, set.key, value);
+    return turned ? Expected<std::size_t>(passes.size()) : AtSet(set, turned.error());
+  }
+  Expected<std::size_t> count = SetFinishKeys(passes, set.key, value);
+  return count ? count : AtSet(set, UsageError(count.error().message));
 }
 
 }  // namespace
@@ -130,67 +134,49 @@ LayerSet LayersOverTime(const FinishChain& chain) {
   return layers;
 }
 
-bool IsOfFinish(const std::string& set) { return set.rfind(kFinishKeys, 0) == 0 || set.rfind(kDialKeys, 0) == 0; }
-
-Expected<std::size_t> OverrideFinish(std::span<FinishPass> passes, const std::string& text) {
-  const std::size_t equals = text.find('=');
-  if (equals == std::string::npos) return UsageError("--set " + text + ": expected KEY=VALUE");
-  const std::string value_text = text.substr(equals + 1);
-  const auto parsed = internal::ParseSetValue(value_text);
-  const auto value = parsed && parsed->size() == 1 ? internal::ValueOf(*parsed->get("value")) : std::nullopt;
-  const std::string key = text.substr(0, equals);
-  if (key.rfind(kDialKeys, 0) == 0) {
-    const Status turned = TurnFinishDial(passes, key, value ? *value : KeyValue(value_text));
-    return turned ? Expected<std::size_t>(passes.size()) : UsageError("--set " + text + ": " + turned.error().message);
-  }
-  Expected<std::size_t> count = SetFinishKeys(passes, key, value ? *value : KeyValue(value_text));
-  if (!count) return UsageError("--set " + text + ": " + count.error().message);
-  return count;
-}
-
-Expected<std::size_t> OverrideFinish(FinishChain& chain, const std::string& text) {
-  NoteGiven(text, chain.passes);
-  SCUMBLE_ASSIGN(const std::optional<StyleTrack> frames, FramesIn(text));
+Expected<std::size_t> OverrideFinish(FinishChain& chain, const StyleOverride& set) {
+  NoteGiven(set.key, chain.passes);
+  SCUMBLE_ASSIGN(const std::optional<StyleTrack> frames, FramesIn(set));
+  const bool is_dial = set.key.rfind(kDialKeys, 0) == 0;
   if (!frames) {
-    if (text.rfind(kDialKeys, 0) == 0 && !chain.tracks.empty()) {
-      return UsageError("--set " + text + ": " + chain.tracks.front().keys.name +
-                        " changes over time, which a dial would undo: change its key frames");
+    if (is_dial && !chain.tracks.empty()) {
+      return AtSet(set, UsageError(chain.tracks.front().keys.name +
+                                   " changes over time, which a dial would undo: change its key frames"));
     }
-    const std::string key = text.substr(0, text.find('='));
-    std::erase_if(chain.tracks, [&](const FinishChain::Track& track) { return track.keys.name == key; });
-    return OverrideFinish(std::span<FinishPass>(chain.passes), text);
+    std::erase_if(chain.tracks, [&](const FinishChain::Track& track) { return track.keys.name == set.key; });
+    return SetInPasses(chain.passes, set);
   }
   std::size_t count = 0;
   for (std::size_t i = 0; i < chain.passes.size(); ++i) {
     if (!IsOfPass(frames->name, chain.passes[i])) continue;
-    if (const Status added = AddFinishTrack(chain, i, *frames); !added) return AtSet(text, added.error());
+    if (const Status added = AddFinishTrack(chain, i, *frames); !added) return AtSet(set, added.error());
     ++count;
   }
-  if (count == 0 && text.rfind(kDialKeys, 0) == 0) return UsageError("--set " + text + ": expected a number, 0 to 1");
+  if (count == 0 && is_dial) return AtSet(set, UsageError("expected a number, 0 to 1"));
   return count;
 }
 
-Expected<std::size_t> OverrideFinish(Style& style, const std::string& text) {
-  NoteGiven(text, style.finish);
-  SCUMBLE_ASSIGN(const std::optional<StyleTrack> frames, FramesIn(text));
+Expected<std::size_t> OverrideFinish(Style& style, const StyleOverride& set) {
+  NoteGiven(set.key, style.finish);
+  SCUMBLE_ASSIGN(const std::optional<StyleTrack> frames, FramesIn(set));
   if (!frames) {
-    SCUMBLE_RETURN_IF_ERROR(CheckDial(style, text));
-    SCUMBLE_ASSIGN(const std::size_t count, OverrideFinish(std::span<FinishPass>(style.finish), text));
-    RemoveTrack(style, text.substr(0, text.find('=')));
+    SCUMBLE_RETURN_IF_ERROR(CheckDial(style, set));
+    SCUMBLE_ASSIGN(const std::size_t count, SetInPasses(style.finish, set));
+    RemoveTrack(style, set.key);
     return count;
   }
   // All passes of one name share a style's track.
   FinishChain trial{style.finish, {}};
-  SCUMBLE_ASSIGN(const std::size_t count, OverrideFinish(trial, text));
+  SCUMBLE_ASSIGN(const std::size_t count, OverrideFinish(trial, set));
   if (count == 0) return count;
   const auto added = AddTrack(style, *KeyOfTrack(style, frames->name), *frames);
-  return added ? Expected<std::size_t>(count) : AtSet(text, added.error());
+  return added ? Expected<std::size_t>(count) : AtSet(set, added.error());
 }
 
-Error NoSuchFinish(const std::string& text, std::span<const FinishPass> passes, const std::string& style) {
+Error NoSuchFinish(const StyleOverride& set, std::span<const FinishPass> passes, const std::string& style) {
   std::string names;
   for (const FinishPass& pass : passes) names += (names.empty() ? "" : ", ") + pass.name;
-  return UsageError("--set " + (style.empty() ? "" : style + ":") + text + ": no finish " +
+  return UsageError("--set " + (style.empty() ? "" : style + ":") + set.text + ": no finish " +
                     (style.empty() ? "" : "of that style ") + "has that name; " +
                     (!names.empty()  ? "there are " + names
                      : style.empty() ? "there is none, give --finish or [[finish]] of style.toml"

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <locale>
+#include <memory>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -124,18 +125,12 @@ template <class Pass>
 FinishKey PassColor(const char* name, Rgb16 Pass::*field, const char* help) {
   FinishKey key{name, KeyKind::kText, 0.0, 0.0, {}, "", help, {}, {}};
   key.set = [=](FinishPass& pass, const KeyValue& value) -> Status {
-    const auto* text = std::get_if<std::string>(&value);
-    const auto color = text ? ParseColor(*text) : std::nullopt;
+    const auto color = AsColor(value);
     if (!color) return UsageError(kColorForm);
     PassMember(pass, field) = *color;
     return Ok();
   };
-  key.get = [=](const FinishPass& pass) -> KeyValue {
-    const Rgb16& color = PassMember(pass, field);
-    char text[8];
-    std::snprintf(text, sizeof text, "#%02x%02x%02x", color[0] / 257u, color[1] / 257u, color[2] / 257u);
-    return std::string(text);
-  };
+  key.get = [=](const FinishPass& pass) -> KeyValue { return PassMember(pass, field); };
   return key;
 }
 
@@ -216,11 +211,14 @@ FinishKey RampKey() {
                            "from dark to light, rows with / between: \"#202040 #fff4d0\"; or a picture's file");
   key.set = [set = key.set](FinishPass& pass, const KeyValue& value) -> Status {
     const auto* text = std::get_if<std::string>(&value);
+    std::shared_ptr<const ColorRamp> colors;
     if (text && IsRampText(*text)) {
-      const Expected<ColorRamp> ramp = ParseColorRamp(*text);
-      if (!ramp) return ramp.error();
+      SCUMBLE_ASSIGN(ColorRamp ramp, ParseColorRamp(*text));
+      colors = std::make_shared<const ColorRamp>(std::move(ramp));
     }
-    return set(pass, value);
+    SCUMBLE_RETURN_IF_ERROR(set(pass, value));
+    std::get<ToonPass>(pass.effect).ramp_colors = std::move(colors);  // of a file it is read later
+    return Ok();
   };
   return key;
 }

@@ -11,7 +11,7 @@
 #include "core/image/hash.h"
 #include "core/style/color_ramp.h"
 #include "core/style/finish/finish_mask_keys.h"
-#include "core/style/finish/finish_names.h"
+#include "core/style/finish/finish_tables.h"
 #include "core/style/nearest_name.h"
 
 namespace scumble {
@@ -46,6 +46,20 @@ std::optional<Rgb16> ParseColor(const std::string& text) {
   return Rgb16{channel(16), channel(8), channel(0)};
 }
 
+std::string ColorText(const Rgb16& color) {
+  const bool has_8_bits = std::all_of(color.begin(), color.end(), [](unsigned channel) { return channel % 257 == 0; });
+  char text[16];
+  std::snprintf(text, sizeof text, has_8_bits ? "#%02x%02x%02x" : "#%04x%04x%04x", color[0] / (has_8_bits ? 257u : 1u),
+                color[1] / (has_8_bits ? 257u : 1u), color[2] / (has_8_bits ? 257u : 1u));
+  return text;
+}
+
+std::optional<Rgb16> AsColor(const KeyValue& value) {
+  if (const auto* color = std::get_if<Rgb16>(&value)) return *color;
+  const auto* text = std::get_if<std::string>(&value);
+  return text ? ParseColor(*text) : std::nullopt;
+}
+
 const FinishEffect* FindFinishEffect(const std::string& name) {
   for (const FinishEffect& effect : FinishEffects()) {
     if (effect.name == name) return &effect;
@@ -78,20 +92,12 @@ Expected<FinishPass> MakeFinishPass(const std::string& effect) {
 Status SetFinishKey(FinishPass& pass, const std::string& name, const KeyValue& value) {
   if (const FinishKey* key = FindFinishKey(pass, name)) return key->set(pass, value);
   if (name == "objects" || name == "materials") {
-    const auto* text = std::get_if<std::string>(&value);
-    if (!text) return UsageError("expected names with commas between");
-    std::vector<std::string>& list = name == "objects" ? pass.objects : pass.materials;
-    if (text->starts_with('[')) {
-      const auto parsed = internal::ParseToml("value = " + *text, name);
-      if (!parsed || parsed->size() != 1) return UsageError(internal::kNamesExpected);
-      return internal::ReadNames(*parsed->get("value"), list);
+    const auto* names = std::get_if<std::vector<std::string>>(&value);
+    if (!names) {
+      return UsageError(std::holds_alternative<std::string>(value) ? internal::kNamesExpected
+                                                                   : "expected names with commas between");
     }
-    list.clear();
-    for (std::size_t begin = 0; begin <= text->size() && !text->empty();) {
-      const std::size_t end = std::min(text->find(',', begin), text->size());
-      list.push_back(text->substr(begin, end - begin));
-      begin = end + 1;
-    }
+    (name == "objects" ? pass.objects : pass.materials) = *names;
     return Ok();
   }
   auto names = NamesOf(std::span<const FinishKey>(EffectOf(pass).keys));

@@ -7,7 +7,6 @@
 
 #include "core/style/color_ramp.h"
 #include "core/style/finish/finish_mask_keys.h"
-#include "core/style/finish/finish_names.h"
 #include "core/style/finish_keys.h"
 
 namespace scumble {
@@ -44,7 +43,11 @@ Expected<FinishPass> ReadPass(const toml::table& table, const std::string& file,
     const auto value = internal::ValueOf(node);
     Status done = Ok();
     if (name == "objects" || name == "materials") {
-      done = internal::ReadNames(node, name == "objects" ? pass.objects : pass.materials);
+      auto names = internal::NamesOf(node);
+      if (names)
+        (name == "objects" ? pass.objects : pass.materials) = *std::move(names);
+      else
+        done = UsageError(internal::kNamesExpected);
     } else if (name == "name") {
       const auto* text = value ? std::get_if<std::string>(&*value) : nullptr;
       if (!text || text->empty() || text->find_first_of(".=: ") != std::string::npos)

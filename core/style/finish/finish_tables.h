@@ -5,9 +5,12 @@
 #include <vector>
 
 #include "core/image/finish_pass.h"
-#include "core/style/toml/toml_values.h"
+#include "core/style/toml_values.h"
 
 namespace scumble::internal {
+
+// Of lists of names, by which effects are limited to objects and materials.
+inline constexpr const char* kNamesExpected = "expected names in quotes, as [\"Tree*\", \"House\"]";
 
 // A key whose value is a list: of frames with their values.
 struct FinishFrames {

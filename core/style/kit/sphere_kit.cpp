@@ -24,7 +24,7 @@
 #include "core/style/kit/template_pdf.h"
 #include "core/style/style_file.h"
 #include "core/style/style_keys.h"
-#include "core/style/toml/toml_values.h"
+#include "core/style/toml_values.h"
 
 namespace scumble {
 namespace {

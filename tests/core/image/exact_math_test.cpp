@@ -5,7 +5,11 @@
 
 #include <bit>
 #include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
 #include <limits>
+#include <random>
 
 #include "core/image/hash.h"
 #include "tests/support/numbers.h"
@@ -87,6 +91,30 @@ TEST(ExactMath, BitsAreTheSameEverywhere) {
     }
   }
   EXPECT_EQ(digest, 17878214109194021984u);
+}
+
+// As printf rounds and strtod reads.
+TEST(ExactMath, RoundedNumbersAreTheirDecimals) {
+  std::mt19937_64 random(3);
+  const auto expect = [](double x, int digits) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%.*g", digits, x);
+    ASSERT_EQ(RoundToDigits(x, digits), std::strtod(text, nullptr)) << text;
+    ASSERT_EQ(RoundToDigits(-x, digits), -std::strtod(text, nullptr)) << text;
+  };
+  for (int i = 0; i < 20000; ++i) {
+    const double share = double(random() >> 11) / double(std::uint64_t(1) << 53);
+    expect(std::pow(10.0, 29.0 * share - 7.0), 1 + i % 15);
+    expect(double(static_cast<float>(share)), 6);
+    expect(double(random() % 2000001) / 2.0, 6);  // with ties
+    expect(double(random() % 20001) / 16384.0, 6);
+  }
+  for (const double x : {0.1, 0.5, 1.0, 9.999995, 9.9999949, 99999.95, 999999.5, 1e6, 1e-5, 1e22, 2.5, 0.125}) {
+    for (int digits = 1; digits <= 15; ++digits) expect(x, digits);
+  }
+  for (const double x : {0.0, 1e300, std::numeric_limits<double>::infinity()}) EXPECT_EQ(RoundToDigits(x, 6), x);
+  EXPECT_TRUE(std::isnan(RoundToDigits(std::nan(""), 6)));
+  EXPECT_DOUBLE_EQ(RoundToDigits(1.23456789e-20, 6), 1.23457e-20);
 }
 
 }  // namespace

@@ -25,6 +25,18 @@
 namespace scumble {
 namespace {
 
+// What a --set makes of a chain.
+Expected<std::size_t> Set(FinishChain& chain, const std::string& text) {
+  SCUMBLE_ASSIGN(const StyleOverride set, ParseOverride(text));
+  return OverrideFinish(chain, set);
+}
+Expected<std::size_t> Set(std::vector<FinishPass>& passes, const std::string& text) {
+  FinishChain chain{passes, {}};
+  SCUMBLE_ASSIGN(const std::size_t count, Set(chain, text));
+  passes = std::move(chain.passes);
+  return count;
+}
+
 using ::testing::HasSubstr;
 
 Picture White(int side) {
@@ -180,30 +192,31 @@ TEST_F(FinishFile, EveryKeyTakesItsDefaultAndSaysIt) {
 TEST_F(FinishFile, OverridesGoToPassesByName) {
   std::vector<FinishPass> passes{*MakeFinishPass("outline"), *MakeFinishPass("tones"), *MakeFinishPass("outline")};
   passes[2].name = "ink";
-  const auto one = OverrideFinish(passes, "finish.ink.width=7.5");
+  const auto one = Set(passes, "finish.ink.width=7.5");
   ASSERT_TRUE(one) << one.error().message;
   EXPECT_EQ(*one, 1u);
   EXPECT_EQ(std::get<OutlinePass>(passes[2].effect).width, 7.5);
   EXPECT_EQ(std::get<OutlinePass>(passes[0].effect).width, OutlinePass().width);
   const std::pair<const char*, double> kWithoutZeros[] = {{".5", 0.5}, {"2.", 2.0}, {"+.25", 0.25}, {"5.e-1", 0.5}};
   for (const auto& [text, number] : kWithoutZeros) {
-    ASSERT_TRUE(OverrideFinish(passes, std::string("finish.ink.width=") + text)) << "zeros may be left off: " << text;
+    ASSERT_TRUE(Set(passes, std::string("finish.ink.width=") + text)) << "zeros may be left off: " << text;
     EXPECT_EQ(std::get<OutlinePass>(passes[2].effect).width, number) << text;
   }
   for (const char* text : {".", "-.", "1.2.", "..5", "1.x", ".e1"}) {
-    EXPECT_FALSE(OverrideFinish(passes, std::string("finish.ink.width=") + text)) << text;
+    EXPECT_FALSE(Set(passes, std::string("finish.ink.width=") + text)) << text;
   }
-  EXPECT_EQ(*OverrideFinish(passes, "finish.ink.ink=#102030"), 1u) << "quotes may be left off";
-  EXPECT_EQ(*OverrideFinish(passes, "finish.pen.width=3"), 0u);
-  EXPECT_THAT(NoSuchFinish("finish.pen.width=3", passes).message, HasSubstr("there are outline, tones, ink"));
-  EXPECT_EQ(*OverrideFinish(passes, "finish.ink.objects=Tree*,House"), 1u);
+  EXPECT_EQ(*Set(passes, "finish.ink.ink=#102030"), 1u) << "quotes may be left off";
+  EXPECT_EQ(*Set(passes, "finish.pen.width=3"), 0u);
+  EXPECT_THAT(NoSuchFinish(*ParseOverride("finish.pen.width=3"), passes).message,
+              HasSubstr("there are outline, tones, ink"));
+  EXPECT_EQ(*Set(passes, "finish.ink.objects=Tree*,House"), 1u);
   EXPECT_THAT(passes[2].objects, ::testing::ElementsAre("Tree*", "House"));
-  EXPECT_EQ(*OverrideFinish(passes, "finish.ink.objects=[\"Ball, red\", 'Dancer']"), 1u) << "as in the file";
+  EXPECT_EQ(*Set(passes, "finish.ink.objects=[\"Ball, red\", 'Dancer']"), 1u) << "as in the file";
   EXPECT_THAT(passes[2].objects, ::testing::ElementsAre("Ball, red", "Dancer"));
-  EXPECT_THAT(OverrideFinish(passes, "finish.ink.objects=[1]").error().message, HasSubstr("expected names in quotes"));
-  EXPECT_THAT(OverrideFinish(passes, "finish.ink.objects=[\"Ball\"").error().message, HasSubstr("names in quotes"));
-  EXPECT_FALSE(OverrideFinish(passes, "finish.width=3"));
-  EXPECT_FALSE(OverrideFinish(passes, "finish.ink.width=wide"));
+  EXPECT_THAT(Set(passes, "finish.ink.objects=[1]").error().message, HasSubstr("expected names in quotes"));
+  EXPECT_THAT(Set(passes, "finish.ink.objects=[\"Ball\"").error().message, HasSubstr("names in quotes"));
+  EXPECT_FALSE(Set(passes, "finish.width=3"));
+  EXPECT_FALSE(Set(passes, "finish.ink.width=wide"));
 }
 
 TEST_F(FinishFile, DialsTurnTheWholeChain) {
@@ -221,40 +234,40 @@ TEST_F(FinishFile, DialsTurnTheWholeChain) {
   };
   for (const char* name : kDials) {
     auto passes = chain();
-    ASSERT_TRUE(OverrideFinish(passes, "dial." + std::string(name) + "=0.5"));
+    ASSERT_TRUE(Set(passes, "dial." + std::string(name) + "=0.5"));
     EXPECT_EQ(text(passes), text(chain())) << name << " at rest";
   }
   auto passes = chain();
-  ASSERT_TRUE(OverrideFinish(passes, "dial.lines=0"));
+  ASSERT_TRUE(Set(passes, "dial.lines=0"));
   EXPECT_EQ(std::get<OutlinePass>(passes[0].effect).width, 0.0);
   EXPECT_EQ(passes[1].strength, 0.0);
-  ASSERT_TRUE(OverrideFinish(passes, "dial.detail=1"));
+  ASSERT_TRUE(Set(passes, "dial.detail=1"));
   EXPECT_EQ(passes[2].strength, 0.0);
   EXPECT_EQ(passes[3].strength, 0.0);
-  ASSERT_TRUE(OverrideFinish(passes, "dial.light=1"));
+  ASSERT_TRUE(Set(passes, "dial.light=1"));
   EXPECT_EQ(passes[4].strength, 0.8);
   EXPECT_EQ(std::get<ShadowsPass>(passes[4].effect).none, 2.0 * ShadowsPass().none);
   EXPECT_EQ(passes[5].strength, 0.4);
   EXPECT_EQ(std::get<ToonPass>(passes[5].effect).shade, 0.0);
-  ASSERT_TRUE(OverrideFinish(passes, "dial.light=0"));
+  ASSERT_TRUE(Set(passes, "dial.light=0"));
   EXPECT_EQ(passes[4].strength, 0.0);
   EXPECT_EQ(std::get<ToonPass>(passes[5].effect).shade, 1.0) << "no band shows, and the colour does";
   EXPECT_EQ(std::get<ToonPass>(passes[5].effect).cool, ToonPass().warm) << "neither does any side of gooch";
   EXPECT_EQ(std::get<ToonPass>(passes[5].effect).cool_base, ToonPass().warm_base);
-  ASSERT_TRUE(OverrideFinish(passes, "dial.depth=0.25"));
+  ASSERT_TRUE(Set(passes, "dial.depth=0.25"));
   EXPECT_EQ(std::get<DepthPass>(passes[6].effect).desaturate, 0.5 * DepthPass().desaturate);
   EXPECT_EQ(passes[7].strength, 0.4) << "no dial turns it";
-  const auto wrong = OverrideFinish(passes, "dial.line=0.5");
+  const auto wrong = Set(passes, "dial.line=0.5");
   ASSERT_FALSE(wrong);
   EXPECT_THAT(wrong.error().message, HasSubstr("did you mean lines?"));
-  EXPECT_FALSE(OverrideFinish(passes, "dial.lines=1.5"));
+  EXPECT_FALSE(Set(passes, "dial.lines=1.5"));
 }
 
 // Few tones in the paint itself make its strokes stand out; few tones of the light do not.
 TEST_F(FinishFile, LessDetailIsNoRougherPaint) {
   std::vector<FinishPass> passes{*MakeFinishPass("tones"), *MakeFinishPass("tones")};
   std::get<TonesPass>(passes[1].effect).tone = TonesPass::Tone::kLight;
-  ASSERT_TRUE(OverrideFinish(passes, "dial.detail=0"));
+  ASSERT_TRUE(Set(passes, "dial.detail=0"));
   EXPECT_EQ(std::get<TonesPass>(passes[0].effect).bins, TonesPass().bins);
   EXPECT_EQ(std::get<TonesPass>(passes[1].effect).bins, TonesPass().bins / 2);
 }
@@ -263,13 +276,13 @@ TEST_F(FinishFile, StyleHasItsOwn) {
   ASSERT_TRUE(WritePicture(folder_ / "lit.png", White(32)));
   std::ofstream(folder_ / "style.toml")
       << "[[exemplar]]\nimage = \"lit.png\"\nfills = true\n[[finish]]\neffect = \"outline\"\nmaterial = 1\nthin = 1\n";
-  const auto style = LoadStyle(folder_ / "style.toml", {"finish.outline.width=3"});
+  const auto style = LoadStyle(folder_ / "style.toml", *ParseStyleOverrides({"finish.outline.width=3"}));
   ASSERT_TRUE(style) << style.error().message;
   ASSERT_EQ(style->finish.size(), 1u);
   EXPECT_EQ(std::get<OutlinePass>(style->finish[0].effect).width, 3.0);
   EXPECT_TRUE(RequiredLayers(*style).Has(Layer::kMaterial));
   EXPECT_FALSE(RequiredLayers(*style).Has(Layer::kShadow));
-  const auto wrong = LoadStyle(folder_ / "style.toml", {"finish.ink.width=3"});
+  const auto wrong = LoadStyle(folder_ / "style.toml", *ParseStyleOverrides({"finish.ink.width=3"}));
   ASSERT_FALSE(wrong);
   EXPECT_THAT(wrong.error().message, HasSubstr("there are outline"));
 }
@@ -278,7 +291,7 @@ TEST_F(FinishFile, KeysChangeOverTime) {
   ASSERT_TRUE(WritePicture(folder_ / "lit.png", White(32)));
   const auto load = [&](const std::string& finish, const std::vector<std::string>& sets = {}) {
     std::ofstream(folder_ / "style.toml") << "[[exemplar]]\nimage = \"lit.png\"\nfills = true\n" + finish;
-    return LoadStyle(folder_ / "style.toml", sets);
+    return LoadStyle(folder_ / "style.toml", *ParseStyleOverrides(sets));
   };
   const std::string moving =
       "[[finish]]\neffect = \"outline\"\nname = \"ink\"\nwidth = [[1, 2], [11, 4]]\nlight = [[5, 0], [6, 1]]\n";
@@ -341,17 +354,19 @@ TEST_F(FinishFile, ColoursMoveInOklab) {
   const auto preset = LoadFinishPreset(
       Write("[[finish]]\neffect = \"fill\"\ncolor = [[0, \"#000000\"], [10, \"#ffffff\"], [20, \"#ff0000\"]]\n"));
   ASSERT_TRUE(preset) << preset.error().message;
-  const auto at = [&](int frame) { return std::get<std::string>(ValueAt(preset->tracks[0].keys, frame)); };
-  EXPECT_EQ(at(-1), "#000000");
-  EXPECT_EQ(at(5), "#636363") << "half of Oklab's lightness is an eighth of the light";
-  EXPECT_EQ(at(10), "#ffffff");
-  EXPECT_EQ(at(20), "#ff0000");
+  const auto at = [&](int frame) { return std::get<Rgb16>(ValueAt(preset->tracks[0].keys, frame)); };
+  EXPECT_EQ(at(-1), (Rgb16{0, 0, 0}));
+  EXPECT_NEAR(at(5)[1], 25465, 2) << "half of Oklab's lightness is an eighth of the light, which 8 bits do not hold";
+  EXPECT_EQ(at(10), (Rgb16{65535, 65535, 65535}));
+  EXPECT_EQ(at(20), (Rgb16{65535, 0, 0}));
+  EXPECT_EQ(ToText(preset->tracks[0].keys), "[[0, \"#000000\"], [10, \"#ffffff\"], [20, \"#ff0000\"]]");
+  EXPECT_EQ(ColorText({0x1111, 0xabab, 0x0102}), "#1111abab0102");
 }
 
 TEST_F(FinishFile, ChainsTakeKeyFramesFromTheCommandLine) {
   FinishChain chain{{*MakeFinishPass("outline"), *MakeFinishPass("tones")}, {}};
   FinishChain more = chain;
-  ASSERT_EQ(*OverrideFinish(more, "finish.outline.width=[[1, 2], [3, 4]]"), 1u);
+  ASSERT_EQ(*Set(more, "finish.outline.width=[[1, 2], [3, 4]]"), 1u);
   Append(more, chain);
   ASSERT_EQ(chain.passes.size(), 4u);
   const auto width_at = [&](std::size_t pass, int frame) {
@@ -360,22 +375,22 @@ TEST_F(FinishFile, ChainsTakeKeyFramesFromTheCommandLine) {
   };
   EXPECT_EQ(width_at(2, 2), 3.0);
   EXPECT_EQ(width_at(0, 2), OutlinePass().width) << "a pass of the same name and another preset";
-  const auto dial = OverrideFinish(chain, "dial.lines=0.2");
+  const auto dial = Set(chain, "dial.lines=0.2");
   ASSERT_FALSE(dial);
   EXPECT_THAT(dial.error().message, HasSubstr("finish.outline.width changes over time"));
-  EXPECT_EQ(*OverrideFinish(chain, "finish.outline.width=[[0, 6], [2, 8]]"), 2u);
+  EXPECT_EQ(*Set(chain, "finish.outline.width=[[0, 6], [2, 8]]"), 2u);
   EXPECT_EQ(width_at(0, 1), 7.0);
   EXPECT_EQ(width_at(2, 1), 7.0);
-  EXPECT_EQ(*OverrideFinish(chain, "finish.outline.width=5"), 2u);
+  EXPECT_EQ(*Set(chain, "finish.outline.width=5"), 2u);
   EXPECT_EQ(width_at(2, 1), 5.0) << "a plain value takes the place of key frames";
   EXPECT_TRUE(chain.tracks.empty());
-  EXPECT_EQ(*OverrideFinish(chain, "finish.pen.width=[[0, 6]]"), 0u);
-  const auto wrong = OverrideFinish(chain, "finish.outline.widht=[[0, 6]]");
+  EXPECT_EQ(*Set(chain, "finish.pen.width=[[0, 6]]"), 0u);
+  const auto wrong = Set(chain, "finish.outline.widht=[[0, 6]]");
   ASSERT_FALSE(wrong);
   EXPECT_THAT(wrong.error().message, HasSubstr("did you mean width?"));
-  EXPECT_FALSE(OverrideFinish(chain, "finish.outline.objects=[[0, \"A\"]]"));
-  EXPECT_FALSE(OverrideFinish(chain, "finish.outline.width=[[0, 1, 2]]"));
-  EXPECT_FALSE(OverrideFinish(chain, "dial.lines=[[0, 1]]"));
+  EXPECT_FALSE(Set(chain, "finish.outline.objects=[[0, \"A\"]]"));
+  EXPECT_FALSE(Set(chain, "finish.outline.width=[[0, 1, 2]]"));
+  EXPECT_FALSE(Set(chain, "dial.lines=[[0, 1]]"));
 }
 
 TEST_F(FinishFile, BundledPresetsAreRead) {

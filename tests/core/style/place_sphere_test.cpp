@@ -208,9 +208,9 @@ TEST_F(PlaceSphereTest, AnUnclearSquareIsRefusedUnlessItFills) {
     ASSERT_TRUE(style) << style.error().message;
     EXPECT_EQ(style->exemplars.front().picture.rgba, stored.rgba);
   }
-  EXPECT_FALSE(LoadStyle(folder_.path(), {"exemplar.1.fills=false"}));
+  EXPECT_FALSE(LoadStyle(folder_.path(), *ParseStyleOverrides({"exemplar.1.fills=false"})));
   std::filesystem::remove(folder_.path() / "style.toml");
-  EXPECT_TRUE(LoadStyle(file, {"exemplar.1.fills=true"}));
+  EXPECT_TRUE(LoadStyle(file, *ParseStyleOverrides({"exemplar.1.fills=true"})));
 }
 
 // What would be cut to its sphere is not where it fills the square by word, and a word is true or false.
@@ -219,11 +219,11 @@ TEST_F(PlaceSphereTest, FillsKeepsAnyPictureAsItIs) {
   painted.size = 200, painted.reach = 2.0;
   const std::string file = Write("ball.png", Laid(PaintSphere(painted), 400, 400, 60, 80, 1.0));
   ASSERT_TRUE(LoadStyle(file)->exemplars.front().cut);
-  const Expected<Style> style = LoadStyle(file, {"exemplar.1.fills=true"});
+  const Expected<Style> style = LoadStyle(file, *ParseStyleOverrides({"exemplar.1.fills=true"}));
   ASSERT_TRUE(style) << style.error().message;
   EXPECT_FALSE(style->exemplars.front().cut);
   EXPECT_EQ(style->exemplars.front().picture.width, 400);
-  const Expected<Style> wrong = LoadStyle(file, {"exemplar.1.fills=1"});
+  const Expected<Style> wrong = LoadStyle(file, *ParseStyleOverrides({"exemplar.1.fills=1"}));
   ASSERT_FALSE(wrong);
   EXPECT_EQ(wrong.error().kind, ErrorKind::kUsage);
   EXPECT_NE(wrong.error().message.find("expected true or false"), std::string::npos) << wrong.error().message;

@@ -11,7 +11,7 @@ namespace scumble {
 namespace {
 
 std::string Edited(const std::string& text, const std::vector<std::string>& settings) {
-  const auto edited = WithSettings(text, settings, "style.toml");
+  const auto edited = WithSettings(text, *ParseStyleOverrides(settings), "style.toml");
   EXPECT_TRUE(edited.ok()) << (edited.ok() ? "" : edited.error().message);
   return edited.ok() ? *edited : "";
 }
@@ -76,14 +76,15 @@ TEST(StyleEdit, ValuesAreExact) {
 }
 
 TEST(StyleEdit, RefusesWhatItCannotChange) {
-  EXPECT_EQ(WithSettings("", {"transfer.bogus=1"}, "s").error().kind, ErrorKind::kUsage);
-  EXPECT_EQ(WithSettings("", {"transfer.paper=\"a\" b"}, "s").error().kind, ErrorKind::kUsage);
-  EXPECT_EQ(WithSettings("", {"name=1\n[transfer]"}, "s").error().kind, ErrorKind::kUsage);
-  const auto inline_table = WithSettings("transfer = { levels = 5 }\n", {"transfer.threshold=0.2"}, "my/style.toml");
+  EXPECT_EQ(WithSettings("", *ParseStyleOverrides({"transfer.bogus=1"}), "s").error().kind, ErrorKind::kUsage);
+  EXPECT_EQ(WithSettings("", *ParseStyleOverrides({"transfer.levels=[[1, 2]]"}), "s").error().kind, ErrorKind::kUsage);
+  EXPECT_EQ(Edited("", {"name=1\n[transfer]"}), "name = \"1\\u000a[transfer]\"\n") << "a text, and no more";
+  const auto inline_table =
+      WithSettings("transfer = { levels = 5 }\n", *ParseStyleOverrides({"transfer.threshold=0.2"}), "my/style.toml");
   ASSERT_FALSE(inline_table.ok());
   EXPECT_THAT(inline_table.error().message, testing::AllOf(testing::HasSubstr("my/style.toml"),
                                                            testing::HasSubstr("set transfer.threshold=0.2 by hand")));
-  EXPECT_FALSE(WithSettings("[transfer\n", {"transfer.threshold=0.2"}, "style.toml").ok());
+  EXPECT_FALSE(WithSettings("[transfer\n", *ParseStyleOverrides({"transfer.threshold=0.2"}), "style.toml").ok());
 }
 
 }  // namespace

@@ -32,7 +32,8 @@ class StyleFile : public testing::Test {
 
   Expected<Style> Load(const std::string& toml, const std::vector<std::string>& overrides = {}) {
     std::ofstream(folder_ / "style.toml", std::ios::binary) << toml;
-    return LoadStyle(folder_.path(), overrides);
+    const auto sets = ParseStyleOverrides(overrides);
+    return sets ? LoadStyle(folder_.path(), *sets) : sets.error();
   }
   // A style with this one line under [transfer].
   Expected<Style> LoadLine(const std::string& line) { return Load("[transfer]\n" + line + "\n" + kExemplar); }

@@ -6,7 +6,7 @@
 
 #include "core/io/atomic_file.h"
 #include "core/style/style_file.h"
-#include "core/style/toml/toml_keys.h"
+#include "core/style/toml_values.h"
 #include "tests/support/refusal.h"
 #include "tests/support/temporary_folder.h"
 

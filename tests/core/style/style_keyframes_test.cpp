@@ -32,7 +32,8 @@ class StyleKeyframes : public testing::Test {
   Expected<Style> Load(const std::string& lines, const std::vector<std::string>& overrides = {}) {
     std::ofstream(folder_ / "style.toml", std::ios::binary)
         << "[transfer]\n" + lines + "\n[[exemplar]]\nimage = \"lit.png\"\n";
-    return LoadStyle(folder_.path(), overrides);
+    const auto sets = ParseStyleOverrides(overrides);
+    return sets ? LoadStyle(folder_.path(), *sets) : sets.error();
   }
   Style Loaded(const std::string& lines, const std::vector<std::string>& overrides = {}) {
     Expected<Style> style = Load(lines, overrides);

@@ -277,5 +277,35 @@ TEST_F(StyleFile, OnlySixHexadecimalDigitsAreAColour) {
   }
 }
 
+TEST(StyleOverrides, AreParsedIntoValues) {
+  const auto value = [](const std::string& text) { return std::get<KeyValue>(ParseOverride(text)->value); };
+  EXPECT_EQ(value("transfer.scale=.5"), KeyValue(0.5));
+  EXPECT_EQ(value("transfer.levels=5"), KeyValue(std::int64_t(5)));
+  EXPECT_EQ(value("transfer.method=litsphere"), KeyValue(std::string("litsphere")));
+  EXPECT_EQ(value("transfer.method=\"litsphere\""), KeyValue(std::string("litsphere")));
+  EXPECT_EQ(value("transfer.paper="), KeyValue(std::string()));
+  EXPECT_EQ(value("finish.ink.objects=a,b"), KeyValue(std::vector<std::string>{"a", "b"}));
+  EXPECT_EQ(value("finish.ink.objects=['a,b']"), KeyValue(std::vector<std::string>{"a,b"}));
+  EXPECT_EQ(value("finish.ink.objects=[1]"), KeyValue(std::string("[1]")));
+  const auto frames = [](const std::string& text) {
+    return std::get<StyleOverride::Frames>(ParseOverride("transfer.scale=" + text)->value);
+  };
+  EXPECT_EQ(frames("[[1, 2], [3, 0.5]]"), (StyleOverride::Frames{{1, std::int64_t(2)}, {3, 0.5}}));
+  EXPECT_TRUE(frames("[[1, 2, 3]]").empty()) << "no frames";
+  const auto one = ParseStyleOverride("a:b=c:transfer.scale=2");
+  ASSERT_TRUE(one) << one.error().message;
+  EXPECT_EQ(one->style, "a:b=c");
+  EXPECT_EQ(one->key, "transfer.scale");
+  EXPECT_EQ(one->text, "transfer.scale=2");
+  EXPECT_EQ(ToText(*one), "a:b=c:transfer.scale=2");
+  for (const char* text : {"transfer.scale", "=2", ":transfer.scale=2", "finish.ink.width"})
+    ExpectRefusal(ParseStyleOverride(text), ErrorKind::kUsage, {"--set"});
+  for (const StyleKey& key : StyleKeys()) {
+    const StyleOverride made = MakeExactOverride(key.name, key.Default());
+    const auto again = std::get<KeyValue>(ParseOverride(made.text)->value);
+    EXPECT_TRUE(again == key.Default() || AsNumber(again) == AsNumber(key.Default())) << made.text;
+  }
+}
+
 }  // namespace
 }  // namespace scumble

@@ -32,7 +32,7 @@ class ExtremeFiles : public CliTest {
   }
   std::optional<float> InOption(const std::string& key, const std::string& text, float TransferSettings::*field) {
     WritePainted("plain.png", 16, 16);
-    const auto style = LoadStyle(At("plain.png"), {"transfer." + key + "=" + text});
+    const auto style = LoadStyle(At("plain.png"), *ParseStyleOverrides({"transfer." + key + "=" + text}));
     if (!style) {
       EXPECT_EQ(style.error().kind, ErrorKind::kUsage) << "the caller's mistake";
     }

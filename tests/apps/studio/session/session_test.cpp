@@ -69,7 +69,7 @@ TEST_F(SessionTest, AViewWinsOverTheCamera) {
 // A later --set without a style's name would win over the style's own.
 TEST_F(SessionTest, WhatABudgetChoseStandsBeforeTheKeys) {
   PictureJob job;
-  job.style.style = "oil", job.style.sets = {"oil:transfer.blend_radius=64"};
+  job.style.style = "oil", job.style.sets = *ParseStyleOverrides({"oil:transfer.blend_radius=64"});
   const std::string command = CommandOf(job, {"--set", "transfer.blend_radius=0"});
   EXPECT_LT(command.find(" transfer.blend_radius=0"), command.find("oil:transfer.blend_radius=64")) << command;
 }

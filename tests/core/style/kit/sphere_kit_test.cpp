@@ -261,7 +261,7 @@ TEST(SphereKit, ATemplateNamedAsAStyleIsRefusedAndAPaintingStandsForItsFolder) {
   }
   fs::remove(folder / "guides.exr");
   ExpectRefusal(LoadStyle(folder.path()), {"lit.png is a whole template", "crop", "or write the guides"});
-  EXPECT_TRUE(LoadStyle(folder.path(), {"exemplar.1.fills=true"}));
+  EXPECT_TRUE(LoadStyle(folder.path(), *ParseStyleOverrides({"exemplar.1.fills=true"})));
 }
 
 TEST(SphereKit, APaintedTemplateIsNotOverwritten) {
