@@ -10,6 +10,7 @@
 
 #include "core/io/picture_file.h"
 #include "core/style/finish_keys.h"
+#include "core/style/style_override.h"
 #include "tests/support/cli_harness.h"
 #include "tests/support/gltf_builder.h"
 
@@ -97,8 +98,9 @@ TEST(FinishMemory, IsThatOfTheGreediestFrame) {
   std::get<SmoothPass>(smooth.effect).filter = SmoothPass::Filter::kKuwahara;
   const FinishChain greedy{{smooth}, {}};
   EXPECT_LT(needed(moving), needed(greedy));
-  ASSERT_TRUE(OverrideFinish(moving, "finish.smooth.filter=[[1, \"bilateral\"], [5, \"kuwahara\"]]"));
-  ASSERT_TRUE(OverrideFinish(moving, "finish.smooth.strength=[[1, 0], [9, 1]]"));
+  ASSERT_TRUE(
+      OverrideFinish(moving, ParseOverride("finish.smooth.filter=[[1, \"bilateral\"], [5, \"kuwahara\"]]").value()));
+  ASSERT_TRUE(OverrideFinish(moving, ParseOverride("finish.smooth.strength=[[1, 0], [9, 1]]").value()));
   EXPECT_EQ(moving.passes[0].strength, 0.0);
   EXPECT_EQ(needed(moving), needed(greedy));
 }
