@@ -13,9 +13,11 @@
 #include "core/style/finish/finish_tables.h"
 #include "core/style/finish_chain.h"
 #include "core/style/finish_keys.h"
+#include "core/style/nearest_name.h"
 #include "core/style/place_sphere.h"
 #include "core/style/rectify.h"
 #include "core/style/sphere_template.h"
+#include "core/style/style_edit.h"
 #include "core/style/style_keyframes.h"
 #include "core/style/style_keys.h"
 #include "core/style/toml_values.h"
@@ -37,7 +39,9 @@ std::string NameFor(const fs::path& path, bool is_folder) {
 }
 
 Error Explain(Error error, const std::string& where, const std::string& key, const KeyValue& value) {
-  error.message = where + ": " + key + " = " + ToText(value) + ": " + error.message;
+  // To the last digit, or a number just out of range would look as if it were in it.
+  const std::string text = std::holds_alternative<double>(value) ? TomlText(value) : ToText(value);
+  error.message = where + ": " + key + " = " + text + ": " + error.message;
   return error;
 }
 
@@ -60,7 +64,11 @@ Expected<const StyleKey*> KnownKey(const std::string& name, const std::string& w
     const std::string section = name.rfind(kGuideWeights, 0) == 0 ? kGuideWeights
                                 : name.rfind("transfer.", 0) == 0 ? "transfer."
                                                                   : "";
-    return UsageError(where + ": unknown key " + name + "; there are " + KnownKeys(section) +
+    std::vector<std::string> names;
+    for (const StyleKey& known : StyleKeys()) names.push_back(known.name);
+    const std::string nearest = NearestName(name, names);
+    return UsageError(where + ": unknown key " + name + (nearest.empty() ? "" : "; did you mean " + nearest + "?") +
+                      "; there are " + KnownKeys(section) +
                       (section.empty() ? ", [transfer], [[exemplar]] and [[finish]]" : ""));
   }
   return key;

@@ -93,7 +93,7 @@ Expected<StyleOverride> ParseStyleOverride(const std::string& text) {
   const std::string setting = colon == std::string::npos ? text : text.substr(colon + 1);
   if (const std::size_t equals = setting.find('=');
       !IsOfFinish(setting) && (equals == std::string::npos || equals == 0))
-    return UsageError("--set " + setting + ": expected KEY=VALUE, as in transfer.blend_radius=0");
+    return UsageError("--set " + text + ": expected KEY=VALUE, as in transfer.blend_radius=0");
   SCUMBLE_ASSIGN(StyleOverride one, ParseOverride(setting));
   if (colon != std::string::npos) one.style = text.substr(0, colon);
   return one;

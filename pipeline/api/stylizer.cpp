@@ -41,6 +41,7 @@ constexpr std::pair<std::string_view, std::string_view> kMembers[] = {
     {"--upsample", "upsample"},
     {"--upscale", "upscale"},
     {"--threads", "threads"},
+    {"--blender", "PATH in environment"},
     {"--max-memory", "max_memory"},
 };
 

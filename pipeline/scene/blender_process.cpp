@@ -259,7 +259,7 @@ Status CheckProgramEnd(const Expected<ProgramEnd>& ended, const BlenderTask& tas
   if (!ended) {
     if (ended.error().kind == ErrorKind::kCancelled) return ended.error();
     return Error{ended.error().kind, task.scene + ": " + ended.error().message + ": install " + kSupported +
-                                         ", or say where it is with --blender PATH" + ByHand(task)};
+                                         ", or name its program with --blender" + ByHand(task)};
   }
   // How a shell that runs Blender reports its signal.
   const int signal = ended->signal != 0                                   ? ended->signal

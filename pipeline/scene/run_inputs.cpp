@@ -85,9 +85,14 @@ void RunInputs::ReadsStyles(const StyleSet& styles) {
     ReadsQuoted(what, file.string(), file.parent_path().string());
   }
   for (const StyleOverride& set : styles.options.sets) {
-    const auto* value = std::get_if<KeyValue>(&set.value);
-    const auto* file = value ? std::get_if<std::string>(value) : nullptr;
-    if (file) Reads("--set " + ToText(set), *file);
+    const auto reads = [&](const KeyValue& value) {
+      if (const auto* file = std::get_if<std::string>(&value)) Reads("--set " + ToText(set), *file);
+    };
+    if (const auto* frames = std::get_if<StyleOverride::Frames>(&set.value)) {
+      for (const StyleTrack::Key& key : *frames) reads(key.value);
+    } else {
+      reads(std::get<KeyValue>(set.value));
+    }
   }
 }
 

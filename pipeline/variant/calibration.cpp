@@ -187,10 +187,10 @@ class Picker {
     Runs before = std::exchange(runs_[variant], {});
     const std::size_t kept = std::exchange(kept_[variant], 0);
     replaced_[variant] = checks_again_ = true;
-    SCUMBLE_ASSIGN(const bool fits, Fits(variant));
-    if (fits || LeastOf(runs_[variant]) <= LeastOf(before)) return fits;
+    const Expected<bool> fits = Fits(variant);
+    if (fits && (*fits || LeastOf(runs_[variant]) <= LeastOf(before))) return fits;
     runs_[variant] = std::move(before), kept_[variant] = kept, replaced_[variant] = false;
-    return !IsKnownNotToFit(variant);
+    return fits ? Expected<bool>(!IsKnownNotToFit(variant)) : fits;
   }
 
   // Where nothing fits. What was left out at its first run may have been slow by chance, so what is not far from the

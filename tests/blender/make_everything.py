@@ -17,8 +17,9 @@ import numpy as np
 from mathutils import Euler
 
 sys.dont_write_bytecode = True
-sys.path.insert(0, str(Path(__file__).resolve().parent))
-import make_matrix as kit  # noqa: E402  (Blender does not put a script's own folder on the path)
+HERE = Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE / "matrix")]  # Blender does not put a script's own folder there
+import make_matrix as kit  # noqa: E402
 import matrix_bends  # noqa: E402
 import matrix_hair  # noqa: E402
 import matrix_shapes  # noqa: E402

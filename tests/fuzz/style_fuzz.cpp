@@ -45,7 +45,7 @@ void FuzzStyle(Bytes input) {
   const std::size_t end = std::min(text.find('\0'), text.size());
   const auto path = InFile("style.toml", input.first(end));
   const auto sets = ParseStyleOverrides(Lines(text.substr(std::min(end + 1, text.size()))));
-  CheckRefusal(sets, 40000);
+  CheckRefusal(sets, 1000 + text.size());
   if (!sets) return;
   Expected<Style> style = LoadStyle(path, *sets);
   CheckRefusal(style, 40000);  // a value is quoted as it stands

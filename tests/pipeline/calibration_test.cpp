@@ -397,6 +397,22 @@ TEST(Calibration, WhatCannotBeMeasuredIsAnError) {
   EXPECT_EQ(picked.error().message, "the scene is gone");
 }
 
+TEST(Calibration, TimesStayWhereTheirRenewalIsCancelled) {
+  MemoryCache cache;
+  FakeClock clock{{{50.0}, {10.0}}};
+  EXPECT_EQ(MustPick(Ladder(2, &cache), 20.0, clock).variant, 1u);
+  const auto before = cache.kept;
+  int runs = 0;
+  const auto picked = PickVariant(Ladder(2, &cache), 20.0, [&](std::size_t) -> Expected<double> {
+    if (++runs > 2) return CancelledError();
+    return 60.0;
+  });
+  ASSERT_FALSE(picked.ok());
+  EXPECT_EQ(picked.error().kind, ErrorKind::kCancelled);
+  EXPECT_GT(runs, 2) << "times were being renewed";
+  EXPECT_EQ(cache.kept, before);
+}
+
 TEST(ChooseForGuides, StopsWhereTheProgressCallbackAsksForIt) {
   RunContext context;
   context.data_roots = {SCUMBLE_SOURCE_DIR};

@@ -50,7 +50,7 @@ bool Sets(const std::vector<Variant>& variants, const std::string& key) {
 }
 
 TEST(QualityLadder, BeginsWithTheStyleItselfAndNamesEachWayOnce) {
-  for (const char* const style : {"graphite", "ink", "sumi-e", "chiaroscuro", "scene-oil"}) {
+  for (const char* const style : {"charcoal", "ink", "sumi-e", "chiaroscuro", "scene-oil"}) {
     const StyleSet styles = Open(style);
     for (const LadderFrame& frame : {kCast, kGiven}) {
       const std::vector<Variant> variants = QualityLadder(styles, frame);
@@ -66,7 +66,7 @@ TEST(QualityLadder, BeginsWithTheStyleItselfAndNamesEachWayOnce) {
 
 // Guides may be smaller where they are made, and where the picture's sides are multiples.
 TEST(QualityLadder, GuidesAreSmallerOnlyWhereTheyMayBe) {
-  const StyleSet styles = Open("graphite");
+  const StyleSet styles = Open("charcoal");
   const auto factors = [&](const LadderFrame& frame) {
     std::vector<int> all;
     for (const Variant& variant : QualityLadder(styles, frame)) all.push_back(UpsampleOf(variant));
@@ -111,19 +111,19 @@ TEST(QualityLadder, SamplesGoFirstWhereThereAreAny) {
 }
 
 TEST(QualityLadder, StylesThatAskForLight) {
-  EXPECT_FALSE(AsksForLight(Open("graphite").styles.front()));
+  EXPECT_FALSE(AsksForLight(Open("charcoal").styles.front()));
   EXPECT_TRUE(AsksForLight(Open("chiaroscuro").styles.front())) << "exemplars by their light";
   EXPECT_TRUE(AsksForLight(Open("scene-oil").styles.front())) << "weighs it";
-  EXPECT_TRUE(AsksForLight(Open("graphite", {"transfer.shadow=paint"}).styles.front()));
+  EXPECT_TRUE(AsksForLight(Open("charcoal", {"transfer.shadow=paint"}).styles.front()));
 }
 
 // LadderSteps hold nothing that the style has anyway, and nothing that makes its look.
 TEST(QualityLadder, StepsSetWhatTheStyleHasNotAndLeaveItsLookAlone) {
-  EXPECT_FALSE(Sets(QualityLadder(Open("graphite"), kCast), "transfer.hybrid")) << "graphite is not split";
+  EXPECT_FALSE(Sets(QualityLadder(Open("charcoal"), kCast), "transfer.hybrid")) << "charcoal is not split";
   EXPECT_TRUE(Sets(QualityLadder(Open("sumi-e"), kCast), "transfer.hybrid"));
   EXPECT_FALSE(Sets(QualityLadder(Open("ink"), kCast), "transfer.blend_radius")) << "ink is crisp";
-  EXPECT_FALSE(Sets(QualityLadder(Open("graphite", {"transfer.method=litsphere"}), kCast), "transfer.method"));
-  StyleSet slow = Open("graphite");
+  EXPECT_FALSE(Sets(QualityLadder(Open("charcoal", {"transfer.method=litsphere"}), kCast), "transfer.method"));
+  StyleSet slow = Open("charcoal");
   slow.styles.front().transfer.method = Method::kBruteForce;
   EXPECT_EQ(QualityLadder(slow, kGiven)[1].name, "--set transfer.method=styleblit");
   for (const char* const key : {"transfer.threshold", "transfer.colorize", "transfer.edge", "transfer.edge_aware",
@@ -146,7 +146,7 @@ TEST(QualityLadder, StylesThatWeighGuidesKeepTheirChunks) {
 
 // Strokes of half the sharpness are more of the paint than any that the Lit Sphere smears: it comes after all else.
 TEST(QualityLadder, TheLitSphereIsTheLastResort) {
-  for (const char* const style : {"graphite", "sumi-e", "chiaroscuro"}) {
+  for (const char* const style : {"charcoal", "sumi-e", "chiaroscuro"}) {
     for (const LadderFrame& frame : {kCast, kGiven}) {
       bool smears = false;
       for (const Variant& variant : QualityLadder(Open(style), frame)) {
@@ -163,22 +163,22 @@ TEST(QualityLadder, TheLitSphereIsTheLastResort) {
 }
 
 TEST(QualityLadder, DraftsAreHalfTheSizeAndScaledUp) {
-  EXPECT_EQ(OptionsOf(VariantOf(Quality::kDraft, Open("graphite"), kCast)), "--upsample 2 --upscale");
-  EXPECT_EQ(OptionsOf(VariantOf(Quality::kDraft, Open("graphite"), kGiven)), "--set transfer.blend_radius=0");
+  EXPECT_EQ(OptionsOf(VariantOf(Quality::kDraft, Open("charcoal"), kCast)), "--upsample 2 --upscale");
+  EXPECT_EQ(OptionsOf(VariantOf(Quality::kDraft, Open("charcoal"), kGiven)), "--set transfer.blend_radius=0");
   EXPECT_EQ(OptionsOf(VariantOf(Quality::kDraft, Open("sumi-e"), kGiven)), "--set transfer.blend_radius=0")
       << "its split is what it looks like";
   LadderFrame over = kCast;
   over.full_size = true;
-  EXPECT_EQ(OptionsOf(VariantOf(Quality::kDraft, Open("graphite"), over)), "--set transfer.blend_radius=0")
+  EXPECT_EQ(OptionsOf(VariantOf(Quality::kDraft, Open("charcoal"), over)), "--set transfer.blend_radius=0")
       << "something lies underneath";
   EXPECT_EQ(OptionsOf(VariantOf(Quality::kDraft, Open("chiaroscuro"), over)),
             "--upsample 2 --set transfer.blend_radius=0");
-  for (const Variant& variant : QualityLadder(Open("graphite"), over)) EXPECT_FALSE(variant.upscale) << variant.name;
+  for (const Variant& variant : QualityLadder(Open("charcoal"), over)) EXPECT_FALSE(variant.upscale) << variant.name;
 }
 
 // One setting is for all styles of a picture: a step that takes from one must not give to another.
 TEST(QualityLadder, NoStyleComesToMoreThanItHas) {
-  StyleSet two = Open("graphite");
+  StyleSet two = Open("charcoal");
   two.styles.push_back(Open("charcoal").styles.front());
   two.styles[0].transfer.method = Method::kBruteForce;
   const auto has = [&](const char* setting) {
@@ -198,18 +198,18 @@ TEST(QualityLadder, NoStyleComesToMoreThanItHas) {
 }
 
 TEST(QualityLadder, WhatTheUserSetsStays) {
-  EXPECT_FALSE(Sets(QualityLadder(Open("graphite", {"transfer.blend_radius=3"}), kCast), "transfer.blend_radius"));
-  const StyleSet decided = Open("graphite", {"transfer.method=styleblit", "transfer.blend_radius=1"});
+  EXPECT_FALSE(Sets(QualityLadder(Open("charcoal", {"transfer.blend_radius=3"}), kCast), "transfer.blend_radius"));
+  const StyleSet decided = Open("charcoal", {"transfer.method=styleblit", "transfer.blend_radius=1"});
   EXPECT_EQ(Names(QualityLadder(decided, kGiven)), (std::vector<std::string>{"the style"}))
       << "nothing is left to take";
   // For one style by its name, the others may change.
-  const std::string graphite = std::string(SCUMBLE_SOURCE_DIR) + "/exemplars/graphite";
-  StyleSet named = Open("graphite", {graphite + ":transfer.method=styleblit"});
+  const std::string charcoal = std::string(SCUMBLE_SOURCE_DIR) + "/exemplars/charcoal";
+  StyleSet named = Open("charcoal", {charcoal + ":transfer.method=styleblit"});
   EXPECT_FALSE(Sets(QualityLadder(named, kCast), "transfer.method"));
 }
 
 TEST(QualityLadder, AWayAppliedIsTheSameAsItsOptions) {
-  for (const char* const style : {"graphite", "sumi-e"}) {
+  for (const char* const style : {"charcoal", "sumi-e"}) {
     for (const std::vector<std::string>& sets :
          {std::vector<std::string>{"transfer.threshold=0.2"}, {"transfer.blend_radius=2"}}) {
       const StyleSet opened = Open(style, sets);
@@ -227,7 +227,7 @@ TEST(QualityLadder, AWayAppliedIsTheSameAsItsOptions) {
 }
 
 TEST(QualityLadder, NamedPointsAreOfTheLadderAndFinalIsTheStyle) {
-  for (const char* const style : {"graphite", "ink", "sumi-e", "chiaroscuro", "scene-oil"}) {
+  for (const char* const style : {"charcoal", "ink", "sumi-e", "chiaroscuro", "scene-oil"}) {
     const StyleSet styles = Open(style);
     for (const LadderFrame& frame :
          {kCast, kGiven, LadderFrame{true, 961, 541, false}, LadderFrame{true, 960, 540, false},
@@ -252,16 +252,16 @@ TEST(QualityLadder, PreviewTakesWhatIsDear) {
   const auto preview = [](const char* style, const LadderFrame& frame) {
     return OptionsOf(VariantOf(Quality::kPreview, Open(style), frame));
   };
-  EXPECT_EQ(preview("graphite", kCast), "");
+  EXPECT_EQ(preview("charcoal", kCast), "");
   EXPECT_EQ(preview("sumi-e", kCast), "") << "its split is what it looks like";
   EXPECT_EQ(preview("chiaroscuro", kCast), "--upsample 2");
   EXPECT_EQ(preview("chiaroscuro", {true, 961, 541, false}), "--set transfer.blend_radius=0");
-  EXPECT_EQ(preview("graphite", kGiven), "--set transfer.blend_radius=0");
+  EXPECT_EQ(preview("charcoal", kGiven), "--set transfer.blend_radius=0");
 }
 
 // What lies underneath is part of a trial's work.
 TEST(TrialPainter, ReadsWhatLiesUnderneath) {
-  StyleSet styles = Open("graphite");
+  StyleSet styles = Open("charcoal");
   GuideSet guides(32, 32);
   for (const LayerInfo& info : AllLayers()) {
     if (AlwaysWritten().Has(info.layer)) guides.Add(info.layer);

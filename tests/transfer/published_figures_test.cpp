@@ -105,6 +105,7 @@ TEST(Figure23, WithoutWeightLightChoosesAtTheSeedAndCutsNothing) {
 TEST(Figure23, MoreWeightBringsShadowsNearerUntilTheyAreExact) {
   for (const char* name : {"chiaroscuro", "gouache", "ink", "pastel", "plein-air"}) {
     Style style = Bundled(name);
+    style.transfer.threshold = 0.15f;
     const auto luminance = StillLife().Plane(Layer::kLuminance);
     std::size_t last = std::numeric_limits<std::size_t>::max(), without = 0;
     for (const float weight : {0.0f, 0.1f, 0.5f, 1e6f, std::numeric_limits<float>::infinity()}) {
@@ -131,6 +132,7 @@ TEST(Figure23, MoreWeightBringsShadowsNearerUntilTheyAreExact) {
 
 TEST(Figure23, ThePublishedErrorLosesItsChunksWhereTheExcessKeepsThem) {
   Style style = Bundled("plein-air");
+  style.transfer.threshold = 0.08f;
   for (const float weight : {0.5f, 5.0f}) {
     style.transfer.luminance_weight = weight;
     style.transfer.luminance_error = LuminanceError::kExcess;

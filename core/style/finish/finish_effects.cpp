@@ -381,7 +381,8 @@ std::vector<FinishKey> DepthKeys() {
           PassNumber("air", &P::air, 0.0, 1.0, "share of the colour that the air adds at far"),
           PassColor("color", &P::color, "of tint and air"),
           PassNumber("blur", &P::blur, 0.0, 64.0, "sigma where the effect is full, pixels"),
-          PassText("focus_on", &P::focus_on, "an object whose middle depth is the focus; a name, * and ? fit any")};
+          PassText("focus_on", &P::focus_on,
+                   "an object whose middle depth is the focus; a name, in which * fits any letters")};
 }
 
 std::vector<FinishKey> PaletteKeys() {
