@@ -11,7 +11,7 @@ import numpy as np
 from mathutils import Matrix, Vector
 
 from export_nodes import (INSTANCER_MAP, READS_ALPHA, is_odd_panel, is_plain_mapping, is_used_panel, passed_through,
-                          previous, trace)
+                          previous, stand_for, trace)
 
 ASSOCIATED = "scumble_associated"  # property of an image: the one that stands for it
 
@@ -106,6 +106,7 @@ def associated(image):
             copy = bpy.data.images.new(image.name, *image.size)
             copy.pixels.foreach_set(pixels.ravel())
             copy.pack()
+            stand_for(copy, image)
             image[ASSOCIATED] = copy
     return image[ASSOCIATED] if image[ASSOCIATED] != 0 else image
 

@@ -15,7 +15,8 @@ import bpy
 import numpy as np
 
 from export_copies import merge_mappings
-from export_nodes import READS_ALPHA, holds_colours, holds_numbers, image_fault, is_raw, place_fault, previous
+from export_nodes import (ORIGINAL_FULL, READS_ALPHA, full_name_of, holds_colours, holds_numbers, image_fault, is_raw,
+                          name_of, place_fault, previous, stand_for)
 
 COPY = "scumble_copy"  # properties of an image, by kind: the copy that stands for it
 KIND = "scumble_kind"  # properties of an image, by use: kind_needed's answer
@@ -35,7 +36,7 @@ class Made:
     lines: list = field(default_factory=list)
 
 
-made = {}  # by the image's full name, kind and alpha; None where there can be none. It outlives the scene of a frame.
+made = {}  # by copy_of's key; None where there can be none. It outlives the scene of a frame.
 
 
 # ---- Conversion -----------------------------------------------------------------------------------------------------
@@ -214,7 +215,8 @@ def write_png(path, pixels):
 
 def load_copy(image, copied, kind):
     copy = bpy.data.images.load(copied.path, check_existing=False)
-    copy.name = image.name
+    copy.name = name_of(image)
+    stand_for(copy, image)
     copy.colorspace_settings.name = "sRGB" if kind == "colour" else "Non-Color"
     copy[RANGE] = copied.range
     return copy
@@ -377,7 +379,8 @@ def make(image, kind, alpha):
 
 
 def copy_of(image, kind, alpha, unsupported):
-    key, name = (image.name_full, kind, alpha), f"{COPY}.{kind}.{int(alpha)}"
+    """`made` has it by names of the user's file: Blender numbers images of ours anew in each frame."""
+    key, name = (full_name_of(image), ORIGINAL_FULL in image, kind, alpha), f"{COPY}.{kind}.{int(alpha)}"
     if key not in made:
         made[key] = make(image, kind, alpha)
     if made[key] is None:

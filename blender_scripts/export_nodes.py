@@ -11,7 +11,24 @@ INSTANCER_MAP = "scumble.instancer"  # the UV map that holds an instance's place
 
 READS_ALPHA = "scumble_reads_alpha"  # property of a node: whether something reads its image's alpha
 
+ORIGINAL, ORIGINAL_FULL = "scumble_original", "scumble_original_full"  # properties of what stands for another: its names
+
 LUMINANCE = (0.2126, 0.7152, 0.0722)  # of Blender's own colour space
+
+
+def stand_for(other, original):
+    """Gives an image of ours the names of the one in the user's file for which it stands."""
+    other[ORIGINAL], other[ORIGINAL_FULL] = name_of(original), full_name_of(original)
+
+
+def name_of(thing):
+    """The name in the user's file of an image or a node."""
+    return thing.get(ORIGINAL, thing.name)
+
+
+def full_name_of(image):
+    """The same with its library's, so that no other image of the file has it."""
+    return image.get(ORIGINAL_FULL, image.name_full)
 
 
 def principled_input(node, name):

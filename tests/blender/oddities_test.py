@@ -67,11 +67,21 @@ def blender_run(blender, *arguments):
 def exported(blender, folder, name, *arguments, before="0"):
     """The document of the exported scene; what is not expressed. `before`: Python that Blender runs first."""
     output = folder / (name + ".glb")
-    blender_run(blender, folder / (name + ".blend"), "--python-expr", before, "-P",
-                SOURCE / "blender_scripts/export_scene.py", "--", "--output", output, *arguments)
-    data = output.read_bytes()
-    document = json.loads(data[20:20 + struct.unpack_from("<I", data, 12)[0]])
+    export(blender, folder / (name + ".blend"), output, *arguments, before=before)
+    document = read(output)[0]
     return document, document["scenes"][document["scene"]]["extras"]["scumble"]
+
+
+def export(blender, scene, output, *arguments, before="0"):
+    blender_run(blender, scene, "--python-expr", before, "-P", SOURCE / "blender_scripts/export_scene.py", "--",
+                "--output", output, *arguments)
+
+
+def read(glb):
+    """The document and the binary chunk."""
+    data = glb.read_bytes()
+    length = struct.unpack_from("<I", data, 12)[0]
+    return json.loads(data[20:20 + length]), data[28 + length:]
 
 
 def triangles_of(document, node):
@@ -118,6 +128,17 @@ def check_images(document, extras):
     height = pictures("twice", "extras", "scumble", "bump", "texture")
     expect(height not in shared, "the height has a copy of its own", height)
     expect(not extras["unsupported"], extras["unsupported"])
+
+
+def check_blinking(blender, folder):
+    """Copies serve all frames of a run, each image its own."""
+    export(blender, folder / "blinking.blend", folder / "blinking.#.glb", "--frames", "1-2")
+    pictures = []
+    for frame in (1, 2):
+        document, binary = read(folder / f"blinking.{frame}.glb")
+        view = document["bufferViews"][document["images"][0]["bufferView"]]
+        pictures.append(binary[view["byteOffset"]:view["byteOffset"] + view["byteLength"]])
+    expect(pictures[0] != pictures[1], "a later frame has its own image's copy")
 
 
 def check_lost_images(document, extras):
@@ -236,6 +257,7 @@ def main():
         check_placed(*exported(blender, folder, "placed", "--frame", "10"))
         check_limits(*exported(blender, folder, "limits"))
         check_images(*exported(blender, folder, "images"))
+        check_blinking(blender, folder)
         few = FEW_PIXELS.format(str(SOURCE / "blender_scripts"))
         check_lost_images(*exported(blender, folder, "lost", before=few))
         check_against_cycles(program, blender, folder / "odd.blend")

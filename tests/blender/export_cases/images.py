@@ -207,6 +207,21 @@ def build(folder):
         group(folder)
 
 
+def build_blinking(folder):
+    """Two images with straight alpha and one start of a name, each seen in one frame alone, as roughness."""
+    for frame, (name, brightest) in enumerate((("wood.png", 0.2), ("wood.png.001", 0.8)), 1):
+        image = written(folder, f"wood{frame}.png", cells(0.3, brightest=brightest), "PNG", "sRGB", "8")
+        image.name = name
+        material, tree, surface = shader(f"blinking {frame}", "ShaderNodeBsdfPrincipled")
+        texture = tree.nodes.new("ShaderNodeTexImage")
+        texture.image = image
+        tree.links.new(texture.outputs["Color"], surface.inputs["Roughness"])
+        thing = plane(f"Blinking {frame}", frame, material)
+        for now in (1, 2):
+            thing.hide_render = now != frame
+            thing.keyframe_insert("hide_render", frame=now)
+
+
 def build_lost(folder):
     """What the export says of images: some are left out, others taken as far as it goes."""
     gap = tiles(folder, "gap", (1001, 1002, 1003), space="sRGB")
