@@ -215,7 +215,6 @@ def write_png(path, pixels):
 
 def load_copy(image, copied, kind):
     copy = bpy.data.images.load(copied.path, check_existing=False)
-    copy.name = name_of(image)
     stand_for(copy, image)
     copy.colorspace_settings.name = "sRGB" if kind == "colour" else "Non-Color"
     copy[RANGE] = copied.range
@@ -285,11 +284,11 @@ def join_tiles(image, kind, alpha):
         whole[y:y + height, x:x + width] = stretched(pixels, height, width, bits)
     if lost:
         more = f" and {len(lost) - 1} more" if len(lost) > 1 else ""
-        lines.append(f"image '{image.name}': its tile {lost[0]}{more} cannot be read from '{image.filepath}' and is "
-                     "white where it was the colour; in Cycles it is magenta")
+        lines.append(f"image '{name_of(image)}': its tile {lost[0]}{more} cannot be read from '{image.filepath}' and "
+                     "is white where it was the colour; in Cycles it is magenta")
     if any(shrinks for _, _, shrinks in tiles.values()):
-        lines.append(f"image '{image.name}': its tiles are shrunk to {width} x {height} pixels, because {columns} x "
-                     f"{rows} of them become one picture")
+        lines.append(f"image '{name_of(image)}': its tiles are shrunk to {width} x {height} pixels, because {columns} "
+                     f"x {rows} of them become one picture")
     clipped = sum(count for _, count, _ in tiles.values()) / sum(pixels[..., 0].size for pixels, _, _ in tiles.values())
     return whole, clipped, lines
 
@@ -311,7 +310,7 @@ def turned_fault(node):
     if source is None or source.node.type != "MAPPING" or columns == rows:
         return None
     turn = source.node.inputs["Rotation"].default_value[2]
-    return f"node '{node.name}' with {columns} x {rows} tiles at turned coordinates" if abs(turn) > 1e-6 else None
+    return f"node '{name_of(node)}' with {columns} x {rows} tiles at turned coordinates" if abs(turn) > 1e-6 else None
 
 
 def aim_at_tiles(node, image):
@@ -323,7 +322,7 @@ def aim_at_tiles(node, image):
     tree = node.id_data
     source = previous(node.inputs["Vector"]) or tree.nodes.new("ShaderNodeTexCoord").outputs["UV"]
     mapping = tree.nodes.new("ShaderNodeMapping")
-    mapping.name = f"Tiles of {node.name}"
+    mapping.name = f"Tiles of {name_of(node)}"
     mapping.inputs["Location"].default_value = (-left / columns, -low / rows, 0.0)
     mapping.inputs["Scale"].default_value = (1.0 / columns, 1.0 / rows, 1.0)
     tree.links.new(source, mapping.inputs["Vector"])
@@ -373,7 +372,7 @@ def make(image, kind, alpha):
             image.buffers_free()  # the original is not needed any more
     if clipped > CLIPPED_SHARE:
         what = "colours above 1, which are taken for 1" if kind == "colour" else "numbers beyond 0 and 1, which are cut"
-        result.lines.append(f"image '{image.name}': {100 * clipped:.2g}% of its pixels have {what}")
+        result.lines.append(f"image '{name_of(image)}': {100 * clipped:.2g}% of its pixels have {what}")
     write_png(result.path, pixels)
     return result
 

@@ -240,6 +240,8 @@ def build_lost(folder):
     spread(plane("Large", 4, textured("large", large)), 2)
     turned = ("Mapping", {"Rotation": (0, 0, 0.5)}), ("TexCoord", {})
     spread(plane("Turned", 6, textured("turned", large, *turned)), 2)
+    soft = written(folder, "soft.png", cells(0.3), "PNG", "sRGB")
+    plane("Soft", 7, with_alpha("soft", soft))
     boxed = textured("boxed", bright)
     boxed.node_tree.nodes["Image Texture"].projection = "BOX"
     plane("Boxed", 5, boxed)
