@@ -25,6 +25,7 @@ MOST_PIXELS = 8192 * 8192  # of all tiles together
 CLIPPED, CLIPPED_SHARE = (-0.02, 1.02), 1e-3  # beyond them a value is clipped visibly; more of the pixels are told
 WHITE, NEUTRAL = (1.0, 1.0, 1.0, 1.0), (0.5, 0.5, 1.0, 1.0)  # where there is no tile; as a normal, it bends nothing
 ROWS = 128  # that are converted at once
+GREY_WITH_ALPHA = {16, 64}  # depths of PNG with 8 and 16 bits; an image's `channels` are 4 for them, too
 PACKED = {"CHANNEL_PACKED", "NONE"}  # alpha modes with colours that do not depend on alpha
 
 
@@ -143,13 +144,23 @@ def is_read_by_cycles(image):
     return image.source != "GENERATED" and image.packed_file is None and not image.is_dirty
 
 
+def unmultiplied_pixels(image):
+    """The pixels of an image's file, its colours as they are under any alpha."""
+    copy = bpy.data.images.load(bpy.path.abspath(image.filepath, library=image.library), check_existing=False)
+    copy.alpha_mode, copy.colorspace_settings.name = "CHANNEL_PACKED", image.colorspace_settings.name
+    pixels = pixels_of(copy)
+    bpy.data.images.remove(copy)
+    return pixels
+
+
 def read(image, kind, alpha, by_cycles):
     """(pixels, look) of an image of one file; None where it cannot be read."""
-    pixels = pixels_of(image)
+    keeps_grey = by_cycles and image.file_format == "PNG" and image.depth in GREY_WITH_ALPHA  # it never multiplies them
+    pixels = unmultiplied_pixels(image) if keeps_grey else pixels_of(image)
     if pixels is None:
         return None
     space, is_float = image.colorspace_settings.name, image.is_float
-    bends = not image.colorspace_settings.is_data and image.alpha_mode not in PACKED
+    bends = not image.colorspace_settings.is_data and image.alpha_mode not in PACKED and not keeps_grey
     look = Look(is_float or is_raw(image), is_float and bends, bends, alpha, kind == "colour", 16)
     if not look.is_linear and space != "sRGB":
         pixels, look.is_linear = through_blender(pixels, space), True

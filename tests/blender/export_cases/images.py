@@ -3,6 +3,9 @@
 Files are written beside the .blend.
 """
 
+import struct
+import zlib
+
 import bpy
 import numpy as np
 
@@ -45,6 +48,18 @@ def written(folder, name, pixels, kind, space, depth="16", associate=True):
     bpy.context.scene.view_settings.view_transform = "Standard"
     image.save_render(str(folder / name), scene=bpy.context.scene)
     bpy.data.images.remove(image)
+    return loaded(folder, name, space)
+
+
+def written_grey(folder, name, space, alpha=0.3):
+    """A PNG of grey and alpha with 16 bits, which Blender does not write, loaded."""
+    y, x = np.mgrid[0:4, 0:4]
+    values = np.stack([0.3 + 0.6 * (x + y) / 6, np.where(y < 2, 1.0, alpha)], axis=2)
+    rows = b"".join(b"\0" + row.tobytes() for row in np.round(65535 * values).astype(">u2"))
+    chunks = (b"IHDR", struct.pack(">IIBBBBB", 4, 4, 16, 4, 0, 0, 0)), (b"IDAT", zlib.compress(rows)), (b"IEND", b"")
+    packed_chunks = [struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+                     for kind, data in chunks]
+    (folder / name).write_bytes(b"\x89PNG\r\n\x1a\n" + b"".join(packed_chunks))
     return loaded(folder, name, space)
 
 
@@ -151,7 +166,7 @@ def colours(folder):
 
 
 def alphas(folder):
-    """Cells 16 to 23: alpha that nothing reads, in each mode, and alpha that is read."""
+    """Cells 14 to 23 and 36 to 40: alpha that nothing reads, in each mode, and alpha that is read."""
     glass = cells(0.3)
     exr = written(folder, "glass.exr", glass, "OPEN_EXR", "", "32")
     for cell, mode in enumerate(("STRAIGHT", "CHANNEL_PACKED", "NONE")):
@@ -167,6 +182,11 @@ def alphas(folder):
     plane("Glass TIFF", 15, textured("glass tiff", written(folder, "glass.tif", glass, "TIFF", "sRGB")))
     cut = cells(0.05)
     plane("Cut EXR", 22, with_alpha("cut exr", written(folder, "cut.exr", cut, "OPEN_EXR", "", "32")))
+    plane("Grey", 36, textured("grey", written_grey(folder, "grey.png", "sRGB")))
+    plane("Grey clear", 37, textured("grey clear", written_grey(folder, "grey_clear.png", "sRGB", 0.0)))
+    plane("Grey linear", 38, textured("grey linear", loaded(folder, "grey.png", "Linear")))
+    plane("Grey packed", 39, textured("grey packed", packed(written_grey(folder, "grey_packed.png", "sRGB"))))
+    plane("Cut grey", 40, with_alpha("cut grey", written_grey(folder, "cut_grey.png", "sRGB", 0.05)))
     plane("Cut PNG", 23, with_alpha("cut png", written(folder, "cut.png", cut, "PNG", "sRGB")))
 
 
