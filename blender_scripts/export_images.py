@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 import bpy
 import numpy as np
 
+from blend_check import is_lost
 from export_copies import merge_mappings
 from export_nodes import (ORIGINAL_FULL, READS_ALPHA, full_name_of, holds_colours, holds_numbers, image_fault, is_raw,
                           name_of, place_fault, previous, stand_for)
@@ -364,6 +365,16 @@ def kind_of(image, use):
     return "" if fits and holds_numbers(image) else "height" if use == "height" else "data"
 
 
+def white(image, alpha):
+    """The copy of colours that cannot be read."""
+    result = Made(new_path(image.name))
+    if not is_lost(image):  # else blend_check.py has said so
+        result.lines.append(f"image '{name_of(image)}' cannot be read from '{image.filepath}' and is white where it was "
+                            "the colour; in Cycles it is magenta")
+    write_png(result.path, quantised(np.ones((1, 1, 4 if alpha else 3)), 8))
+    return result
+
+
 def make(image, kind, alpha):
     """The copy's file; None where the image cannot be read."""
     if image.source == "TILED":
@@ -392,7 +403,7 @@ def copy_of(image, kind, alpha, unsupported):
     """`made` has it by names of the user's file: Blender numbers images of ours anew in each frame."""
     key, name = (full_name_of(image), ORIGINAL_FULL in image, kind, alpha), f"{COPY}.{kind}.{int(alpha)}"
     if key not in made:
-        made[key] = make(image, kind, alpha)
+        made[key] = make(image, kind, alpha) or (white(image, alpha) if kind == "colour" else None)
     if made[key] is None:
         return None
     if image.get(name) is None:
