@@ -174,8 +174,8 @@ def read(image, kind, alpha, by_cycles):
         look.bits = 8
     if kind == "height" and is_float:
         low, high = float(np.nanmin(pixels[..., :3])), float(np.nanmax(pixels[..., :3]))
-        if np.isfinite(high - low) and (low < 0.0 or high > 1.0) and high > low:
-            look.low, look.range = low, high - low
+        if np.isfinite(high - low) and (low < 0.0 or high > 1.0):
+            look.low, look.range = low, high - low if high > low else 1.0  # a constant bends nothing
     return pixels, look
 
 
@@ -369,8 +369,8 @@ def white(image, alpha):
     """The copy of colours that cannot be read."""
     result = Made(new_path(image.name))
     if not is_lost(image):  # else blend_check.py has said so
-        result.lines.append(f"image '{name_of(image)}' cannot be read from '{image.filepath}' and is white where it was "
-                            "the colour; in Cycles it is magenta")
+        result.lines.append(f"image '{name_of(image)}' cannot be read from '{image.filepath}' and is white where it "
+                            "was the colour; in Cycles it is magenta")
     write_png(result.path, quantised(np.ones((1, 1, 4 if alpha else 3)), 8))
     return result
 
@@ -394,7 +394,7 @@ def make(image, kind, alpha):
             image.buffers_free()  # the original is not needed any more
     if clipped > CLIPPED_SHARE:
         what = "colours above 1, which are taken for 1" if kind == "colour" else "numbers beyond 0 and 1, which are cut"
-        result.lines.append(f"image '{name_of(image)}': {100 * clipped:.2g}% of its pixels have {what}")
+        result.lines.append(f"image '{name_of(image)}': {100 * clipped:.3g}% of its pixels have {what}")
     write_png(result.path, pixels)
     return result
 

@@ -212,7 +212,7 @@ def tiled(folder):
 
 
 def numbers(folder):
-    """Cells 32 to 37: normal maps and heights."""
+    """Cells 32 to 35 and 41 on: normal maps and heights."""
     exr = written(folder, "normals.exr", normals(), "OPEN_EXR", "Non-Color", "32")
     plane("Normals EXR", 32, bent("normals exr", exr))
     bpy.context.scene.view_settings.view_transform = "Raw"
@@ -220,6 +220,10 @@ def numbers(folder):
     plane("Normals sRGB", 34, bent("normals srgb", written(folder, "normals.png", normals(), "PNG", "sRGB")))
     height = written(folder, "heights.exr", heights(), "OPEN_EXR", "Non-Color", "32")
     plane("Heights", 35, bent("heights", height, "Bump", interpolation="Linear"))
+    level = np.full((4, 4, 4), 2.0, np.float32)
+    level[..., 3] = 1.0
+    level = written(folder, "level.exr", level, "OPEN_EXR", "Non-Color", "32")
+    plane("Level", 41, bent("level", level, "Bump", interpolation="Linear"))
 
 
 def build(folder):
@@ -249,6 +253,8 @@ def build_lost(folder):
     spread(plane("Gap", 0, textured("gap", gap)), 3)
     bright = written(folder, "bright.exr", cells(brightest=3.0), "OPEN_EXR", "", "32")
     plane("Bright", 1, textured("bright", bright))
+    brighter = written(folder, "brighter.exr", cells(brightest=20.0), "OPEN_EXR", "", "32")
+    plane("Brighter", 8, textured("brighter", brighter))
     frames = loaded(folder, "bright.exr", None)
     frames.name, frames.source = "frames", "SEQUENCE"
     plane("Frames", 2, textured("frames", frames))
