@@ -34,6 +34,7 @@ PACKED = {"CHANNEL_PACKED", "NONE"}  # alpha modes with colours that do not depe
 class Made:
     """A copy's file, and what has to be said of it."""
     path: str
+    is_colour: bool  # in sRGB
     range: float = 1.0
     lines: list = field(default_factory=list)
 
@@ -140,8 +141,14 @@ def pixels_of(image):
     return full
 
 
+def is_in_range(pixels):
+    """Whether no colour is beyond 0 and 1."""
+    return bool(np.all((pixels[..., :3] >= 0.0) & (pixels[..., :3] <= 1.0 + 1e-5)))
+
+
 def is_read_by_cycles(image):
-    """Whether Cycles reads the file itself. It then multiplies sRGB by alpha before it decodes; Blender, afterwards."""
+    """Whether Cycles reads the file itself. It then multiplies sRGB by alpha, and interpolates it, before it decodes;
+    Blender decodes first."""
     return image.source != "GENERATED" and image.packed_file is None and not image.is_dirty
 
 
@@ -167,12 +174,14 @@ def read(image, kind, alpha, by_cycles):
         pixels, look.is_linear = through_blender(pixels, space), True
         if pixels is None:
             return None
-    elif is_float and space == "sRGB" and by_cycles and bends and not alpha and pixels[..., 3].min() < 1.0:
-        pixels[..., :3] = encoded(np.maximum(straight(pixels), 0.0))
-        look.is_linear = look.is_associated = False
-    if look.colour or (is_raw(image) and not is_float):
+    elif is_float and space == "sRGB" and by_cycles:
+        look.colour |= kind == "height" and is_in_range(pixels)
+        if (look.colour and kind == "height") or (bends and not alpha and pixels[..., 3].min() < 1.0):
+            pixels[..., :3] = encoded(np.maximum(straight(pixels) if bends else pixels[..., :3], 0.0))
+            look.is_linear = look.is_associated = False
+    if kind == "colour" or (is_raw(image) and not is_float):
         look.bits = 8
-    if kind == "height" and is_float:
+    if kind == "height" and is_float and not look.colour:
         low, high = float(np.nanmin(pixels[..., :3])), float(np.nanmax(pixels[..., :3]))
         if np.isfinite(high - low) and (low < 0.0 or high > 1.0):
             look.low, look.range = low, high - low if high > low else 1.0  # a constant bends nothing
@@ -225,10 +234,10 @@ def write_png(path, pixels):
             file.write(struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data)))
 
 
-def load_copy(image, copied, kind):
+def load_copy(image, copied):
     copy = bpy.data.images.load(copied.path, check_existing=False)
     stand_for(copy, image)
-    copy.colorspace_settings.name = "sRGB" if kind == "colour" else "Non-Color"
+    copy.colorspace_settings.name = "sRGB" if copied.is_colour else "Non-Color"
     copy[RANGE] = copied.range
     return copy
 
@@ -367,7 +376,7 @@ def kind_of(image, use):
 
 def white(image, alpha):
     """The copy of colours that cannot be read."""
-    result = Made(new_path(image.name))
+    result = Made(new_path(image.name), True)
     if not is_lost(image):  # else blend_check.py has said so
         result.lines.append(f"image '{name_of(image)}' cannot be read from '{image.filepath}' and is white where it "
                             "was the colour; in Cycles it is magenta")
@@ -382,14 +391,14 @@ def make(image, kind, alpha):
         if joined is None:
             return None
         pixels, clipped, lines = joined
-        result = Made(new_path(image.name), 1.0, lines)
+        result = Made(new_path(image.name), kind == "colour", 1.0, lines)
     else:
         found = read(image, kind, alpha, is_read_by_cycles(image))
         if found is None:
             return None
         pixels, clipped = converted(*found)
         clipped /= pixels[..., 0].size
-        result = Made(new_path(image.name), found[1].range)
+        result = Made(new_path(image.name), found[1].colour, found[1].range)
         if image.source == "FILE" and not image.is_dirty:
             image.buffers_free()  # the original is not needed any more
     if clipped > CLIPPED_SHARE:
@@ -407,7 +416,7 @@ def copy_of(image, kind, alpha, unsupported):
     if made[key] is None:
         return None
     if image.get(name) is None:
-        image[name] = load_copy(image, made[key], kind)
+        image[name] = load_copy(image, made[key])
     for line in made[key].lines:
         unsupported.add(line)
     return image[name]

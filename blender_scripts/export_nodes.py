@@ -149,6 +149,8 @@ def image_fault(node, use):
         return f"node '{name_of(node)}' with an image of source {image.source}"
     if use == "alpha" or (use != "data" and holds_colours(image)) or (use != "colour" and holds_numbers(image)):
         return None
+    if use == "height" and image.colorspace_settings.name == "sRGB" and keeps_its_depth(image):
+        return None
     bits = ", of more than 8 bits" if image.is_float else ""
     return f"node '{name_of(node)}' with an image in {image.colorspace_settings.name}{bits}"
 

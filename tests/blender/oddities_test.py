@@ -123,6 +123,8 @@ def check_images(document, extras):
             found = found[key]
         return document["textures"][found["index"]]["source"]
 
+    materials = {material["name"]: material["extras"]["scumble"] for material in document["materials"]}
+    expect(materials["coded"]["bump"]["srgb"], "a height is decoded after it was interpolated", materials["coded"])
     color = ("pbrMetallicRoughness", "baseColorTexture")
     shared = {pictures(name, *color) for name in ("image 0", "mapped", "extended", "twice", "glowing")}
     expect(len(shared) == 1, "materials share a copy", shared)

@@ -224,6 +224,10 @@ def numbers(folder):
     level[..., 3] = 1.0
     level = written(folder, "level.exr", level, "OPEN_EXR", "Non-Color", "32")
     plane("Level", 41, bent("level", level, "Bump", interpolation="Linear"))
+    coded = heights()
+    coded[..., :3] /= 2.0
+    coded = written(folder, "coded.png", np.clip(coded, 0.0, 1.0), "PNG", "sRGB")
+    plane("Coded", 42, bent("coded", coded, "Bump", interpolation="Linear"))
 
 
 def build(folder):
