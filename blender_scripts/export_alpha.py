@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 
 import export_images
-from export_nodes import clear_links, constant, one_texture, previous
+from export_nodes import ORIGINAL, clear_links, constant, name_of, one_texture, previous, stand_for
 
 CUT = 0.5
 MOSTLY = (0.1, 0.9)  # between them an alpha is neither hole nor surface
@@ -45,6 +45,7 @@ def mask_of(source, invert):
         copy = bpy.data.images.new(image.name, *image.size, alpha=True)
         copy.pixels.foreach_set(pixels.ravel())
         copy.pack()
+        stand_for(copy, image)
         copy[f"{MASK}.Alpha"] = 0
         image[key] = copy
     return image[key] or image
@@ -57,6 +58,7 @@ def masked(tree, source, invert):
     if mask in (None, node.image):
         return source
     other = tree.nodes.new("ShaderNodeTexImage")
+    other[ORIGINAL] = name_of(node)
     other.image, other.interpolation, other.extension = mask, node.interpolation, node.extension
     below = previous(node.inputs["Vector"])
     if below is not None:
@@ -144,7 +146,7 @@ def close_clipped(source, reader):
     alphas = alphas_of(source)
     rims = (alphas[0], alphas[-1], alphas[:, 0], alphas[:, -1]) if alphas.size else ()
     if any(rim.max() >= CUT for rim in rims):
-        reader.complain(f"image '{source.node.image.name}' is its alpha and clipped: beyond it, its rim goes on")
+        reader.complain(f"image '{name_of(source.node.image)}' is its alpha and clipped: beyond it, its rim goes on")
     source.node.extension = "EXTEND"
 
 
@@ -152,7 +154,8 @@ def fault_of(source, color, reader):
     """The reason why the image cannot be the surface's alpha; None where it can."""
     fault = export_images.fault(source.node, "alpha" if source.name == "Alpha" else "any", reader.unsupported)
     if fault is None and color is not None and not one_texture(source.node, color.node, reader.shown_map):
-        fault = f"node '{source.node.name}' at other places than the colour's image, with which it shares a texture,"
+        fault = (f"node '{name_of(source.node)}' at other places than the colour's image, with which it shares a "
+                 "texture,")
     return fault
 
 
@@ -185,8 +188,8 @@ def read(tree, node, color, reader):
     alphas = alphas_of(source)
     soft = np.count_nonzero((alphas > MOSTLY[0]) & (alphas < MOSTLY[1]))
     if soft > SOFT_SHARE * alphas.size:
-        reader.complain(f"image '{source.node.image.name}' is its alpha and half transparent in wide parts, which are "
-                        "cut at one half")
+        reader.complain(f"image '{name_of(source.node.image)}' is its alpha and half transparent in wide parts, which "
+                        "are cut at one half")
     if color is None and source.name == "Alpha":  # else the exporter would write its RGB as the colour
         tree.links.new(masked(tree, source, False), socket)
     return True

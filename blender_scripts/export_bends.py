@@ -13,7 +13,7 @@ import numpy as np
 
 import export_images
 from export_flat import material_key
-from export_nodes import clear_links, constant, coordinates_of, previous, principled_input
+from export_nodes import clear_links, constant, coordinates_of, name_of, previous, principled_input
 
 SPACES = {"TANGENT", "OBJECT", "BLENDER_OBJECT"}
 COAT = "KHR_materials_clearcoat"
@@ -77,7 +77,7 @@ def read_map(node, bends, reader):
 def fault_of(source, use, reader):
     """The fault in an image's colour as input; None where there is none."""
     if source.node.type != "TEX_IMAGE" or source.name != "Color":
-        return f"node '{source.node.name}' ({source.node.type}), its output {source.name},"
+        return f"node '{name_of(source.node)}' ({source.node.type}), its output {source.name},"
     return export_images.fault(source.node, use, reader.unsupported)
 
 
@@ -97,7 +97,7 @@ def check_tangents(node, image, where, reader):
 
 def check_interpolation(image, where, reader):
     if image.interpolation in {"Cubic", "Smart"}:
-        reader.complain(f"{where}: interpolation {image.interpolation} of node '{image.name}' is taken for Linear")
+        reader.complain(f"{where}: interpolation {image.interpolation} of node '{name_of(image)}' is taken for Linear")
 
 
 def read_bump(node, bends, reader):

@@ -10,8 +10,8 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
-from export_nodes import (INSTANCER_MAP, READS_ALPHA, is_odd_panel, is_plain_mapping, is_used_panel, passed_through,
-                          previous, trace)
+from export_nodes import (INSTANCER_MAP, ORIGINAL, READS_ALPHA, is_odd_panel, is_plain_mapping, is_used_panel, name_of,
+                          passed_through, previous, stand_for, trace)
 
 ASSOCIATED = "scumble_associated"  # property of an image: the one that stands for it
 
@@ -106,6 +106,7 @@ def associated(image):
             copy = bpy.data.images.new(image.name, *image.size)
             copy.pixels.foreach_set(pixels.ravel())
             copy.pack()
+            stand_for(copy, image)
             image[ASSOCIATED] = copy
     return image[ASSOCIATED] if image[ASSOCIATED] != 0 else image
 
@@ -142,7 +143,7 @@ def twin_of(tree, node):
     twin = tree.nodes.new("ShaderNodeTexImage")
     for name in ("image", "interpolation", "extension", "projection"):
         setattr(twin, name, getattr(node, name))
-    twin.name, twin[READS_ALPHA] = node.name, node[READS_ALPHA]
+    twin[ORIGINAL], twin[READS_ALPHA] = name_of(node), node[READS_ALPHA]
     source = previous(node.inputs["Vector"])
     if source is not None:
         tree.links.new(source, twin.inputs["Vector"])

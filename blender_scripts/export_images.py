@@ -14,8 +14,10 @@ from dataclasses import dataclass, field
 import bpy
 import numpy as np
 
+from blend_check import is_lost
 from export_copies import merge_mappings
-from export_nodes import READS_ALPHA, holds_colours, holds_numbers, image_fault, is_raw, place_fault, previous
+from export_nodes import (ORIGINAL_FULL, READS_ALPHA, full_name_of, holds_colours, holds_numbers, image_fault, is_raw,
+                          name_of, place_fault, previous, stand_for)
 
 COPY = "scumble_copy"  # properties of an image, by kind: the copy that stands for it
 KIND = "scumble_kind"  # properties of an image, by use: kind_needed's answer
@@ -24,6 +26,7 @@ MOST_PIXELS = 8192 * 8192  # of all tiles together
 CLIPPED, CLIPPED_SHARE = (-0.02, 1.02), 1e-3  # beyond them a value is clipped visibly; more of the pixels are told
 WHITE, NEUTRAL = (1.0, 1.0, 1.0, 1.0), (0.5, 0.5, 1.0, 1.0)  # where there is no tile; as a normal, it bends nothing
 ROWS = 128  # that are converted at once
+GREY_WITH_ALPHA = {16, 64}  # depths of PNG with 8 and 16 bits; an image's `channels` are 4 for them, too
 PACKED = {"CHANNEL_PACKED", "NONE"}  # alpha modes with colours that do not depend on alpha
 
 
@@ -31,11 +34,12 @@ PACKED = {"CHANNEL_PACKED", "NONE"}  # alpha modes with colours that do not depe
 class Made:
     """A copy's file, and what has to be said of it."""
     path: str
+    is_colour: bool  # in sRGB
     range: float = 1.0
     lines: list = field(default_factory=list)
 
 
-made = {}  # by the image's full name, kind and alpha; None where there can be none. It outlives the scene of a frame.
+made = {}  # by copy_of's key; None where there can be none. It outlives the scene of a frame.
 
 
 # ---- Conversion -----------------------------------------------------------------------------------------------------
@@ -137,32 +141,50 @@ def pixels_of(image):
     return full
 
 
+def is_in_range(pixels):
+    """Whether no colour is beyond 0 and 1."""
+    return bool(np.all((pixels[..., :3] >= 0.0) & (pixels[..., :3] <= 1.0 + 1e-5)))
+
+
 def is_read_by_cycles(image):
-    """Whether Cycles reads the file itself. It then multiplies sRGB by alpha before it decodes; Blender, afterwards."""
+    """Whether Cycles reads the file itself. It then multiplies sRGB by alpha, and interpolates it, before it decodes;
+    Blender decodes first."""
     return image.source != "GENERATED" and image.packed_file is None and not image.is_dirty
+
+
+def unmultiplied_pixels(image):
+    """The pixels of an image's file, its colours as they are under any alpha."""
+    copy = bpy.data.images.load(bpy.path.abspath(image.filepath, library=image.library), check_existing=False)
+    copy.alpha_mode, copy.colorspace_settings.name = "CHANNEL_PACKED", image.colorspace_settings.name
+    pixels = pixels_of(copy)
+    bpy.data.images.remove(copy)
+    return pixels
 
 
 def read(image, kind, alpha, by_cycles):
     """(pixels, look) of an image of one file; None where it cannot be read."""
-    pixels = pixels_of(image)
+    keeps_grey = by_cycles and image.file_format == "PNG" and image.depth in GREY_WITH_ALPHA  # it never multiplies them
+    pixels = unmultiplied_pixels(image) if keeps_grey else pixels_of(image)
     if pixels is None:
         return None
     space, is_float = image.colorspace_settings.name, image.is_float
-    bends = not image.colorspace_settings.is_data and image.alpha_mode not in PACKED
+    bends = not image.colorspace_settings.is_data and image.alpha_mode not in PACKED and not keeps_grey
     look = Look(is_float or is_raw(image), is_float and bends, bends, alpha, kind == "colour", 16)
     if not look.is_linear and space != "sRGB":
         pixels, look.is_linear = through_blender(pixels, space), True
         if pixels is None:
             return None
-    elif is_float and space == "sRGB" and by_cycles and bends and not alpha and pixels[..., 3].min() < 1.0:
-        pixels[..., :3] = encoded(np.maximum(straight(pixels), 0.0))
-        look.is_linear = look.is_associated = False
-    if look.colour or (is_raw(image) and not is_float):
+    elif is_float and space == "sRGB" and by_cycles:
+        look.colour |= kind == "height" and is_in_range(pixels)
+        if (look.colour and kind == "height") or (bends and not alpha and pixels[..., 3].min() < 1.0):
+            pixels[..., :3] = encoded(np.maximum(straight(pixels) if bends else pixels[..., :3], 0.0))
+            look.is_linear = look.is_associated = False
+    if kind == "colour" or (is_raw(image) and not is_float):
         look.bits = 8
-    if kind == "height" and is_float:
+    if kind == "height" and is_float and not look.colour:
         low, high = float(np.nanmin(pixels[..., :3])), float(np.nanmax(pixels[..., :3]))
-        if np.isfinite(high - low) and (low < 0.0 or high > 1.0) and high > low:
-            look.low, look.range = low, high - low
+        if np.isfinite(high - low) and (low < 0.0 or high > 1.0):
+            look.low, look.range = low, high - low if high > low else 1.0  # a constant bends nothing
     return pixels, look
 
 
@@ -212,10 +234,10 @@ def write_png(path, pixels):
             file.write(struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data)))
 
 
-def load_copy(image, copied, kind):
+def load_copy(image, copied):
     copy = bpy.data.images.load(copied.path, check_existing=False)
-    copy.name = image.name
-    copy.colorspace_settings.name = "sRGB" if kind == "colour" else "Non-Color"
+    stand_for(copy, image)
+    copy.colorspace_settings.name = "sRGB" if copied.is_colour else "Non-Color"
     copy[RANGE] = copied.range
     return copy
 
@@ -283,11 +305,11 @@ def join_tiles(image, kind, alpha):
         whole[y:y + height, x:x + width] = stretched(pixels, height, width, bits)
     if lost:
         more = f" and {len(lost) - 1} more" if len(lost) > 1 else ""
-        lines.append(f"image '{image.name}': its tile {lost[0]}{more} cannot be read from '{image.filepath}' and is "
-                     "white where it was the colour; in Cycles it is magenta")
+        lines.append(f"image '{name_of(image)}': its tile {lost[0]}{more} cannot be read from '{image.filepath}' and "
+                     "is white where it was the colour; in Cycles it is magenta")
     if any(shrinks for _, _, shrinks in tiles.values()):
-        lines.append(f"image '{image.name}': its tiles are shrunk to {width} x {height} pixels, because {columns} x "
-                     f"{rows} of them become one picture")
+        lines.append(f"image '{name_of(image)}': its tiles are shrunk to {width} x {height} pixels, because {columns} "
+                     f"x {rows} of them become one picture")
     clipped = sum(count for _, count, _ in tiles.values()) / sum(pixels[..., 0].size for pixels, _, _ in tiles.values())
     return whole, clipped, lines
 
@@ -309,7 +331,7 @@ def turned_fault(node):
     if source is None or source.node.type != "MAPPING" or columns == rows:
         return None
     turn = source.node.inputs["Rotation"].default_value[2]
-    return f"node '{node.name}' with {columns} x {rows} tiles at turned coordinates" if abs(turn) > 1e-6 else None
+    return f"node '{name_of(node)}' with {columns} x {rows} tiles at turned coordinates" if abs(turn) > 1e-6 else None
 
 
 def aim_at_tiles(node, image):
@@ -321,7 +343,7 @@ def aim_at_tiles(node, image):
     tree = node.id_data
     source = previous(node.inputs["Vector"]) or tree.nodes.new("ShaderNodeTexCoord").outputs["UV"]
     mapping = tree.nodes.new("ShaderNodeMapping")
-    mapping.name = f"Tiles of {node.name}"
+    mapping.name = f"Tiles of {name_of(node)}"
     mapping.inputs["Location"].default_value = (-left / columns, -low / rows, 0.0)
     mapping.inputs["Scale"].default_value = (1.0 / columns, 1.0 / rows, 1.0)
     tree.links.new(source, mapping.inputs["Vector"])
@@ -352,6 +374,16 @@ def kind_of(image, use):
     return "" if fits and holds_numbers(image) else "height" if use == "height" else "data"
 
 
+def white(image, alpha):
+    """The copy of colours that cannot be read."""
+    result = Made(new_path(image.name), True)
+    if not is_lost(image):  # else blend_check.py has said so
+        result.lines.append(f"image '{name_of(image)}' cannot be read from '{image.filepath}' and is white where it "
+                            "was the colour; in Cycles it is magenta")
+    write_png(result.path, quantised(np.ones((1, 1, 4 if alpha else 3)), 8))
+    return result
+
+
 def make(image, kind, alpha):
     """The copy's file; None where the image cannot be read."""
     if image.source == "TILED":
@@ -359,31 +391,32 @@ def make(image, kind, alpha):
         if joined is None:
             return None
         pixels, clipped, lines = joined
-        result = Made(new_path(image.name), 1.0, lines)
+        result = Made(new_path(image.name), kind == "colour", 1.0, lines)
     else:
         found = read(image, kind, alpha, is_read_by_cycles(image))
         if found is None:
             return None
         pixels, clipped = converted(*found)
         clipped /= pixels[..., 0].size
-        result = Made(new_path(image.name), found[1].range)
+        result = Made(new_path(image.name), found[1].colour, found[1].range)
         if image.source == "FILE" and not image.is_dirty:
             image.buffers_free()  # the original is not needed any more
     if clipped > CLIPPED_SHARE:
         what = "colours above 1, which are taken for 1" if kind == "colour" else "numbers beyond 0 and 1, which are cut"
-        result.lines.append(f"image '{image.name}': {100 * clipped:.2g}% of its pixels have {what}")
+        result.lines.append(f"image '{name_of(image)}': {100 * clipped:.3g}% of its pixels have {what}")
     write_png(result.path, pixels)
     return result
 
 
 def copy_of(image, kind, alpha, unsupported):
-    key, name = (image.name_full, kind, alpha), f"{COPY}.{kind}.{int(alpha)}"
+    """`made` has it by names of the user's file: Blender numbers images of ours anew in each frame."""
+    key, name = (full_name_of(image), ORIGINAL_FULL in image, kind, alpha), f"{COPY}.{kind}.{int(alpha)}"
     if key not in made:
-        made[key] = make(image, kind, alpha)
+        made[key] = make(image, kind, alpha) or (white(image, alpha) if kind == "colour" else None)
     if made[key] is None:
         return None
     if image.get(name) is None:
-        image[name] = load_copy(image, made[key], kind)
+        image[name] = load_copy(image, made[key])
     for line in made[key].lines:
         unsupported.add(line)
     return image[name]

@@ -12,7 +12,7 @@ import export_bends
 import export_copies
 import export_images
 import export_styles
-from export_nodes import clear_links, constant, one_texture, previous, principled_input
+from export_nodes import clear_links, constant, name_of, one_texture, previous, principled_input
 
 PLAIN = {"BSDF_DIFFUSE": "DIFFUSE", "BSDF_GLOSSY": "GLOSSY", "EMISSION": "EMISSION", "BSDF_PRINCIPLED": "PRINCIPLED"}
 CYCLES_DEFAULT = (0.8, 0.8, 0.8)  # Cycles' material of faces without one
@@ -43,7 +43,8 @@ class Reader:
         value = constant(socket)
         if value is None:
             node = previous(socket).node
-            self.complain(f"node '{node.name}' ({node.type}) feeds {socket.name}, which keeps its own value instead")
+            self.complain(f"node '{name_of(node)}' ({node.type}) feeds {socket.name}, which keeps its own value "
+                          "instead")
             value = socket.default_value
         return float(value)
 
@@ -69,7 +70,8 @@ class Reader:
                 self.complain(f"attribute '{node.attribute_name}', which Cycles makes up, is black")
             return (1.0, 1.0, 1.0), (node.attribute_name, False)
         else:
-            self.complain(f"node '{node.name}' ({node.type}) feeds {socket.name}, which keeps its own colour instead")
+            self.complain(f"node '{name_of(node)}' ({node.type}) feeds {socket.name}, which keeps its own colour "
+                          "instead")
         return tuple(socket.default_value)[:3], None
 
 
@@ -119,7 +121,7 @@ def keep_or_cut(tree, reader, node, name, beside=None):
     if image is not None and export_images.fault(image, "data", reader.unsupported) is None:
         if beside is None or one_texture(image, beside, reader.shown_map):
             return None
-        reader.complain(f"node '{image.name}' at other places than the roughness' image, with which it shares a "
+        reader.complain(f"node '{name_of(image)}' at other places than the roughness' image, with which it shares a "
                         f"texture, feeds {name}, which keeps its own value instead")
         value = node.inputs[name].default_value
     else:

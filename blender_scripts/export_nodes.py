@@ -11,7 +11,24 @@ INSTANCER_MAP = "scumble.instancer"  # the UV map that holds an instance's place
 
 READS_ALPHA = "scumble_reads_alpha"  # property of a node: whether something reads its image's alpha
 
+ORIGINAL, ORIGINAL_FULL = "scumble_original", "scumble_original_full"  # properties of a stand-in: the other's names
+
 LUMINANCE = (0.2126, 0.7152, 0.0722)  # of Blender's own colour space
+
+
+def stand_for(other, original):
+    """Gives an image of ours the names of the one in the user's file for which it stands."""
+    other[ORIGINAL], other[ORIGINAL_FULL] = name_of(original), full_name_of(original)
+
+
+def name_of(thing):
+    """The name in the user's file of an image or a node."""
+    return thing.get(ORIGINAL, thing.name)
+
+
+def full_name_of(image):
+    """The same with its library's, so that no other image of the file has it."""
+    return image.get(ORIGINAL_FULL, image.name_full)
 
 
 def principled_input(node, name):
@@ -88,7 +105,7 @@ def coordinates_of(socket):
         below = previous(source.node.inputs["Vector"])
         if below is not None and below.node.type != "MAPPING":
             return coordinates_of(source.node.inputs["Vector"])
-    return "", f"node '{source.node.name}' ({source.node.type}) as coordinates"
+    return "", f"node '{name_of(source.node)}' ({source.node.type}) as coordinates"
 
 
 def keeps_its_depth(image):
@@ -114,9 +131,9 @@ def holds_numbers(image):
 def place_fault(node):
     """The fault in how and where an image lies on a surface; None where glTF has it."""
     if node.projection != "FLAT" or node.extension == "CLIP":
-        return f"node '{node.name}' with {node.projection} projection and extension {node.extension}"
+        return f"node '{name_of(node)}' with {node.projection} projection and extension {node.extension}"
     if is_odd_panel(node.texture_mapping):
-        return f"node '{node.name}' with a projection or limits in its Texture Mapping panel"
+        return f"node '{name_of(node)}' with a projection or limits in its Texture Mapping panel"
     return coordinates_of(node.inputs["Vector"])[1]
 
 
@@ -124,16 +141,18 @@ def image_fault(node, use):
     """The fault in an image texture; None where glTF has it. `use`: export_images.fault has them."""
     image = node.image
     if image is None:
-        return f"node '{node.name}' without an image"
+        return f"node '{name_of(node)}' without an image"
     fault = place_fault(node)
     if fault is not None:
         return fault
     if image.source not in {"FILE", "GENERATED"}:
-        return f"node '{node.name}' with an image of source {image.source}"
+        return f"node '{name_of(node)}' with an image of source {image.source}"
     if use == "alpha" or (use != "data" and holds_colours(image)) or (use != "colour" and holds_numbers(image)):
         return None
+    if use == "height" and image.colorspace_settings.name == "sRGB" and keeps_its_depth(image):
+        return None
     bits = ", of more than 8 bits" if image.is_float else ""
-    return f"node '{node.name}' with an image in {image.colorspace_settings.name}{bits}"
+    return f"node '{name_of(node)}' with an image in {image.colorspace_settings.name}{bits}"
 
 
 def placement_of(node, shown_map):

@@ -3,7 +3,7 @@
     blender -b -noaudio --factory-startup -P tests/blender/make_oddities.py -- --output FOLDER
 
 FOLDER gets odd.blend, images.blend and, at frame 10, placed.blend, seen from above in cells of 1 m; layered.blend,
-whose second view layer moves; limits.blend with lamps and instancers; and lost.blend with images.
+whose second view layer moves; limits.blend with lamps and instancers; and blinking.blend and lost.blend with images.
 """
 
 import argparse
@@ -121,7 +121,7 @@ def make_limits(folder):
 
 
 def make_images(folder):
-    for name, build in (("images", images.build), ("lost", images.build_lost)):
+    for name, build in (("images", images.build), ("blinking", images.build_blinking), ("lost", images.build_lost)):
         clear()
         build(folder)
         save(folder, name)

@@ -3,6 +3,9 @@
 Files are written beside the .blend.
 """
 
+import struct
+import zlib
+
 import bpy
 import numpy as np
 
@@ -45,6 +48,18 @@ def written(folder, name, pixels, kind, space, depth="16", associate=True):
     bpy.context.scene.view_settings.view_transform = "Standard"
     image.save_render(str(folder / name), scene=bpy.context.scene)
     bpy.data.images.remove(image)
+    return loaded(folder, name, space)
+
+
+def written_grey(folder, name, space, alpha=0.3):
+    """A PNG of grey and alpha with 16 bits, which Blender does not write, loaded."""
+    y, x = np.mgrid[0:4, 0:4]
+    values = np.stack([0.3 + 0.6 * (x + y) / 6, np.where(y < 2, 1.0, alpha)], axis=2)
+    rows = b"".join(b"\0" + row.tobytes() for row in np.round(65535 * values).astype(">u2"))
+    chunks = (b"IHDR", struct.pack(">IIBBBBB", 4, 4, 16, 4, 0, 0, 0)), (b"IDAT", zlib.compress(rows)), (b"IEND", b"")
+    packed_chunks = [struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+                     for kind, data in chunks]
+    (folder / name).write_bytes(b"\x89PNG\r\n\x1a\n" + b"".join(packed_chunks))
     return loaded(folder, name, space)
 
 
@@ -151,7 +166,7 @@ def colours(folder):
 
 
 def alphas(folder):
-    """Cells 16 to 23: alpha that nothing reads, in each mode, and alpha that is read."""
+    """Cells 14 to 23 and 36 to 40: alpha that nothing reads, in each mode, and alpha that is read."""
     glass = cells(0.3)
     exr = written(folder, "glass.exr", glass, "OPEN_EXR", "", "32")
     for cell, mode in enumerate(("STRAIGHT", "CHANNEL_PACKED", "NONE")):
@@ -167,6 +182,11 @@ def alphas(folder):
     plane("Glass TIFF", 15, textured("glass tiff", written(folder, "glass.tif", glass, "TIFF", "sRGB")))
     cut = cells(0.05)
     plane("Cut EXR", 22, with_alpha("cut exr", written(folder, "cut.exr", cut, "OPEN_EXR", "", "32")))
+    plane("Grey", 36, textured("grey", written_grey(folder, "grey.png", "sRGB")))
+    plane("Grey clear", 37, textured("grey clear", written_grey(folder, "grey_clear.png", "sRGB", 0.0)))
+    plane("Grey linear", 38, textured("grey linear", loaded(folder, "grey.png", "Linear")))
+    plane("Grey packed", 39, textured("grey packed", packed(written_grey(folder, "grey_packed.png", "sRGB"))))
+    plane("Cut grey", 40, with_alpha("cut grey", written_grey(folder, "cut_grey.png", "sRGB", 0.05)))
     plane("Cut PNG", 23, with_alpha("cut png", written(folder, "cut.png", cut, "PNG", "sRGB")))
 
 
@@ -192,7 +212,7 @@ def tiled(folder):
 
 
 def numbers(folder):
-    """Cells 32 to 37: normal maps and heights."""
+    """Cells 32 to 35 and 41 on: normal maps and heights."""
     exr = written(folder, "normals.exr", normals(), "OPEN_EXR", "Non-Color", "32")
     plane("Normals EXR", 32, bent("normals exr", exr))
     bpy.context.scene.view_settings.view_transform = "Raw"
@@ -200,11 +220,34 @@ def numbers(folder):
     plane("Normals sRGB", 34, bent("normals srgb", written(folder, "normals.png", normals(), "PNG", "sRGB")))
     height = written(folder, "heights.exr", heights(), "OPEN_EXR", "Non-Color", "32")
     plane("Heights", 35, bent("heights", height, "Bump", interpolation="Linear"))
+    level = np.full((4, 4, 4), 2.0, np.float32)
+    level[..., 3] = 1.0
+    level = written(folder, "level.exr", level, "OPEN_EXR", "Non-Color", "32")
+    plane("Level", 41, bent("level", level, "Bump", interpolation="Linear"))
+    coded = heights()
+    coded[..., :3] /= 2.0
+    coded = written(folder, "coded.png", np.clip(coded, 0.0, 1.0), "PNG", "sRGB")
+    plane("Coded", 42, bent("coded", coded, "Bump", interpolation="Linear"))
 
 
 def build(folder):
     for group in (colours, alphas, tiled, numbers):
         group(folder)
+
+
+def build_blinking(folder):
+    """Two images with straight alpha and one start of a name, each seen in one frame alone, as roughness."""
+    for frame, (name, brightest) in enumerate((("wood.png", 0.2), ("wood.png.001", 0.8)), 1):
+        image = written(folder, f"wood{frame}.png", cells(0.3, brightest=brightest), "PNG", "sRGB", "8")
+        image.name = name
+        material, tree, surface = shader(f"blinking {frame}", "ShaderNodeBsdfPrincipled")
+        texture = tree.nodes.new("ShaderNodeTexImage")
+        texture.image = image
+        tree.links.new(texture.outputs["Color"], surface.inputs["Roughness"])
+        thing = plane(f"Blinking {frame}", frame, material)
+        for now in (1, 2):
+            thing.hide_render = now != frame
+            thing.keyframe_insert("hide_render", frame=now)
 
 
 def build_lost(folder):
@@ -214,6 +257,8 @@ def build_lost(folder):
     spread(plane("Gap", 0, textured("gap", gap)), 3)
     bright = written(folder, "bright.exr", cells(brightest=3.0), "OPEN_EXR", "", "32")
     plane("Bright", 1, textured("bright", bright))
+    brighter = written(folder, "brighter.exr", cells(brightest=20.0), "OPEN_EXR", "", "32")
+    plane("Brighter", 8, textured("brighter", brighter))
     frames = loaded(folder, "bright.exr", None)
     frames.name, frames.source = "frames", "SEQUENCE"
     plane("Frames", 2, textured("frames", frames))
@@ -225,6 +270,8 @@ def build_lost(folder):
     spread(plane("Large", 4, textured("large", large)), 2)
     turned = ("Mapping", {"Rotation": (0, 0, 0.5)}), ("TexCoord", {})
     spread(plane("Turned", 6, textured("turned", large, *turned)), 2)
+    soft = written(folder, "soft.png", cells(0.3), "PNG", "sRGB")
+    plane("Soft", 7, with_alpha("soft", soft))
     boxed = textured("boxed", bright)
     boxed.node_tree.nodes["Image Texture"].projection = "BOX"
     plane("Boxed", 5, boxed)
