@@ -243,7 +243,7 @@ TEST_F(BlenderVerbs, FailuresAreReadable) {
                   {"newer.blend", "saved by Blender 9.99", "the older Blender"});
   ExpectErrorHere(With({"guidegen", "lost.blend"}, tail), 3, {"lost.blend", "no such file"});
   ExpectErrorHere(With({"guidegen", "bad.blend", "--blender", "no/blender"}, tail), 5,
-                  {"no/blender", "--blender PATH"});
+                  {"no/blender", "with --blender"});
   WriteProgram("newer", "echo 'scumble: error: this is Blender 9.9.9; versions from 3.4' >&2; exit 5");
   ExpectErrorHere(With({"guidegen", "bad.blend", "--blender", "./newer"}, tail), 5, {"Blender 9.9.9"});
   WriteProgram("silent", "exit 0");

@@ -101,7 +101,8 @@ TEST_F(CyclesMatrixTest, HairAgrees) {
     EXPECT_EQ(Figure(report, "A", "differing"), 0.0);
     EXPECT_EQ(Figure(report, "object", "differing"), 0.0);
     EXPECT_LT(Figure(report, "normal", "99% within"), name == "hair" ? 0.3 : 0.01);
-    EXPECT_LT(Figure(report, "depth", "99.9% within"), 1e-3);  // a strand's radius is 0.01 of its depth
+    // A strand's radius is 0.01 of its depth. At ties Cycles itself takes one strand or the other from run to run.
+    EXPECT_LT(Figure(report, "depth", "99.9% within"), 2e-3);
     EXPECT_LT(Figure(report, "albedo", "mean difference"), 0.002);
     EXPECT_LT(Figure(report, "lpe.LDE", "mean difference"), 0.5);
   }
