@@ -8,7 +8,7 @@
 
 #include "core/image/check.h"
 #include "core/image/exact_math.h"
-#include "core/image/jitter.h"
+#include "core/image/jitter_rate.h"
 #include "core/image/stopwatch.h"
 #include "transfer/frame/band_pipeline.h"
 #include "transfer/frame/compose.h"
@@ -16,7 +16,7 @@
 #include "transfer/frame/frame_setup.h"
 #include "transfer/match/coarse_match.h"
 #include "transfer/match/match.h"
-#include "transfer/outline/painted_edge.h"
+#include "transfer/rim/painted_edge.h"
 #include "transfer/shadow/cast_shadows.h"
 #include "transfer/tint/colorize.h"
 #include "transfer/vote/tone_texture_split.h"

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/image/jitter.h"
+#include "core/image/jitter_rate.h"
 #include "core/io/picture_file.h"
 #include "core/style/finish_keys.h"
 

@@ -17,7 +17,7 @@
 #include "core/io/picture_file.h"
 #include "core/style/finish_keys.h"
 #include "finish/finish.h"
-#include "finish/jitter.h"
+#include "finish/jitter_rate.h"
 #include "pipeline/finish_files.h"
 #include "pipeline/finish_layers.h"
 #include "pipeline/finish_set.h"

@@ -25,7 +25,7 @@ LIBRARIES = {
                  ["scene", "load", "load/gltf", "load/obj", "surface", "rays", "light", "cast"]),
     "transfer": ("transfer", {"public", "image", "painting", "filter"},
                  ["nearest", "exemplar", "seeds", "match", "vote", "vote/edge", "vote/wide", "tint", "frame",
-                  "outline", "shadow"]),
+                  "rim", "shadow"]),
     "finish": ("finish", {"public", "image", "filter"}, ["tone", "area", "points", "smooth", "hatch", "outline"]),
     "measure": ("measure", {"public", "image", "painting", "io", "filter"},
                 ["compare", "mosaic", "texture", "painting", "crosscheck", "tradeoff"]),

@@ -1,5 +1,5 @@
 // The distance field of outlines, against an exhaustive search.
-#include "transfer/outline/silhouettes.h"
+#include "transfer/rim/silhouettes.h"
 
 #include <cmath>
 #include <tuple>

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/image/jitter.h"
+#include "core/image/jitter_rate.h"
 #include "core/style/color_ramp.h"
 #include "core/style/finish/finish_mask_keys.h"
 #include "core/style/finish_keys.h"

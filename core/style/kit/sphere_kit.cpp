@@ -20,7 +20,7 @@
 #include "core/io/picture_file.h"
 #include "core/io/readable_file.h"
 #include "core/style/fiducials.h"
-#include "core/style/kit/guide_layers.h"
+#include "core/style/kit/kit_layers.h"
 #include "core/style/kit/template_pdf.h"
 #include "core/style/style_file.h"
 #include "core/style/style_keys.h"

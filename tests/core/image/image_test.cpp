@@ -15,7 +15,7 @@
 #include "core/image/color.h"
 #include "core/image/guides.h"
 #include "core/image/hash.h"
-#include "core/image/jitter.h"
+#include "core/image/jitter_rate.h"
 #include "core/image/layers.h"
 #include "tests/support/numbers.h"
 

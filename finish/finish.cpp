@@ -1,3 +1,5 @@
+#include "finish/finish.h"
+
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -16,13 +18,12 @@
 #include "core/filter/parallel.h"
 #include "core/image/check.h"
 #include "core/image/hash.h"
-#include "core/image/jitter.h"
+#include "core/image/jitter_rate.h"
 #include "finish/area/area_effects.h"
 #include "finish/area/ink.h"
 #include "finish/area/oklab_blocks.h"
-#include "finish/finish.h"
 #include "finish/hatch/hatch.h"
-#include "finish/jitter.h"
+#include "finish/jitter_rate.h"
 #include "finish/outline/outline.h"
 #include "finish/points/point_loop.h"
 #include "finish/smooth/smooth.h"

@@ -1,4 +1,4 @@
-#include "transfer/outline/painted_edge.h"
+#include "transfer/rim/painted_edge.h"
 
 #include <algorithm>
 #include <array>
@@ -6,8 +6,8 @@
 
 #include "core/image/fragments.h"
 #include "transfer/frame/compose.h"
-#include "transfer/outline/rim_segments.h"
-#include "transfer/outline/silhouettes.h"
+#include "transfer/rim/rim_segments.h"
+#include "transfer/rim/silhouettes.h"
 
 namespace scumble::internal {
 namespace {

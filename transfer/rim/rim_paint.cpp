@@ -1,4 +1,4 @@
-#include "transfer/outline/rim_paint.h"
+#include "transfer/rim/rim_paint.h"
 
 #include <tbb/parallel_for.h>
 

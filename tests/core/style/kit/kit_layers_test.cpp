@@ -1,5 +1,5 @@
 // The lines and steps of light that a painter switches on, against plain geometry.
-#include "core/style/kit/guide_layers.h"
+#include "core/style/kit/kit_layers.h"
 
 #include <gtest/gtest.h>
 

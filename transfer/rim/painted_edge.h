@@ -11,7 +11,7 @@
 #include "core/image/fragments.h"
 #include "core/image/guides.h"
 #include "scumble/picture.h"
-#include "transfer/outline/rim_paint.h"
+#include "transfer/rim/rim_paint.h"
 #include "transfer/seeds/seeds.h"
 #include "transfer/source_field.h"
 #include "transfer/tint/colorize.h"

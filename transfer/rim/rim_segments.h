@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "transfer/outline/silhouettes.h"
+#include "transfer/rim/silhouettes.h"
 #include "transfer/seeds/seeds.h"
 
 namespace scumble::internal {

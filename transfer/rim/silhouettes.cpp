@@ -1,4 +1,4 @@
-#include "transfer/outline/silhouettes.h"
+#include "transfer/rim/silhouettes.h"
 
 #include <tbb/parallel_for.h>
 

@@ -1,4 +1,4 @@
-#include "transfer/outline/rim_segments.h"
+#include "transfer/rim/rim_segments.h"
 
 #include <tbb/parallel_for.h>
 

@@ -1,4 +1,4 @@
-#include "core/style/kit/guide_layers.h"
+#include "core/style/kit/kit_layers.h"
 
 #include <algorithm>
 #include <array>
