@@ -233,7 +233,8 @@ TEST_F(BlenderProcess, BothVerbsTellTheSameFailureInTheSameWords) {
   fails("./talking", 3, ": out of paint");
   fails("./killed", 3, "ended from outside (Killed)");
   fails("./none", 5,
-        "./none cannot be run (No such file or directory): install Blender (3.4.1 and 4.3.2 are tested), or name its program");
+        "./none cannot be run (No such file or directory): install Blender (3.4.1 and 4.3.2 are tested), or name its "
+        "program");
 }
 
 // Python alone stands in for Blender here: a script that lacks a part ends before it asks anything of Blender.
