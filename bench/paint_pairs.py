@@ -295,6 +295,15 @@ def add_reading(pairs, of, path):
     save(pairs)
 
 
+def figures_of(style, scene, height, arguments):
+    """What paint_figures prints of pictures, a dictionary each."""
+    done = subprocess.run([str(ROOT / "build/bench/paint_figures"), str(ROOT / "exemplars" / style),
+                           str(guides(style, scene, height)), *map(str, arguments)], capture_output=True, text=True)
+    if done.returncode != 0:
+        sys.exit(done.stderr)
+    return [json.loads(line) for line in done.stdout.splitlines()]
+
+
 def measure(pairs, of):
     """The figures of what the sheets of a set show, whole pictures or parts."""
     wanted = {}
@@ -307,12 +316,8 @@ def measure(pairs, of):
     for (style, scene, crop), ways in sorted(wanted.items()):
         height = 540 if crop else 360
         files = {str(picture_file(style, scene, way, height)): way for way in sorted(ways)}
-        part = ["--part", *map(str, crop), str(CROP)] if crop else []
-        done = subprocess.run([str(ROOT / "build/bench/paint_figures"), str(ROOT / "exemplars" / style),
-                               str(guides(style, scene, height)), *part, *files], capture_output=True, text=True)
-        if done.returncode != 0:
-            sys.exit(done.stderr)
-        for line in map(json.loads, done.stdout.splitlines()):
+        part = ["--part", *crop, CROP] if crop else []
+        for line in figures_of(style, scene, height, [*part, *files]):
             way = files[line.pop("picture")]
             del line["halves"]
             figures[key_of(style, scene, crop) + way] = {k: round(v, 4) for k, v in line.items()}
@@ -376,11 +381,7 @@ def table_column(style, scene):
                          ("grey noise, deviation 0.05", with_noise(own, 0.05))):
         files.append(OUT / "pictures" / ("%s-%s-%s.png" % (style, scene, name.replace(" ", "_"))))
         write(files[-1], pixels)
-    done = subprocess.run([str(ROOT / "build/bench/paint_figures"), str(ROOT / "exemplars" / style),
-                           str(guides(style, scene, 540)), *map(str, files)], capture_output=True, text=True)
-    if done.returncode != 0:
-        sys.exit(done.stderr)
-    figures = [json.loads(line) for line in done.stdout.splitlines()]
+    figures = figures_of(style, scene, 540, files)
     return [figures[0]["halves"]] + [figure["paint"] for figure in figures]
 
 

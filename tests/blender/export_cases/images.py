@@ -184,7 +184,7 @@ def alphas(folder):
     plane("Cut EXR", 22, with_alpha("cut exr", written(folder, "cut.exr", cut, "OPEN_EXR", "", "32")))
     plane("Grey", 36, textured("grey", written_grey(folder, "grey.png", "sRGB")))
     plane("Grey clear", 37, textured("grey clear", written_grey(folder, "grey_clear.png", "sRGB", 0.0)))
-    plane("Grey linear", 38, textured("grey linear", loaded(folder, "grey.png", "Linear")))
+    plane("Grey linear", 38, textured("grey linear", loaded(folder, "grey.png", exr.colorspace_settings.name)))
     plane("Grey packed", 39, textured("grey packed", packed(written_grey(folder, "grey_packed.png", "sRGB"))))
     plane("Cut grey", 40, with_alpha("cut grey", written_grey(folder, "cut_grey.png", "sRGB", 0.05)))
     plane("Cut PNG", 23, with_alpha("cut png", written(folder, "cut.png", cut, "PNG", "sRGB")))
